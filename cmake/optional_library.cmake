@@ -27,3 +27,31 @@ function(keepout_optional name package found brings)
   endif()
   set(KEEPOUT_HAS_${name} ${has} PARENT_SCOPE)
 endfunction()
+
+# keepout_module(NAME SOURCES... [NOT_INSTALLED] LINKS LIBRARIES...): the shared object that brings parts
+# of another library, and that alone links it: see engine/include/keepout/module.h. Target
+# keepout_modules builds all of them.
+add_custom_target(keepout_modules)
+function(keepout_module name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_INSTALLED" "" "LINKS")
+  set(target keepout_module_${name})
+  add_library(${target} MODULE ${arg_UNPARSED_ARGUMENTS} ${PROJECT_SOURCE_DIR}/adapters/src/module_version.cpp)
+  target_link_libraries(${target} PRIVATE ${arg_LINKS})
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+  keepout_compile_options(${target})
+  set_target_properties(${target} PROPERTIES
+    PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/keepout-modules
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  add_dependencies(keepout_modules ${target})
+  if(KEEPOUT_INSTALL AND NOT arg_NOT_INSTALLED)
+    install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/keepout-modules
+            COMPONENT keepout_runtime)
+    set_property(GLOBAL APPEND PROPERTY KEEPOUT_INSTALLED_TARGETS ${target})
+    install(TARGETS ${target} LIBRARY DESTINATION keepout/keepout-modules COMPONENT python EXCLUDE_FROM_ALL)
+    if(KEEPOUT_PACKAGES)
+      install(TARGETS ${target} LIBRARY DESTINATION ${KEEPOUT_PACKAGE_LIBDIR}/keepout-modules
+              COMPONENT keepout-modules EXCLUDE_FROM_ALL)
+      set_property(GLOBAL APPEND PROPERTY KEEPOUT_PACKAGED_TARGETS ${target})
+    endif()
+  endif()
+endfunction()

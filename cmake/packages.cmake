@@ -15,9 +15,9 @@ set(CPACK_VERBATIM_VARIABLES ON)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
-set(CPACK_COMPONENTS_ALL libkeepout libkeepout-dev)
+set(CPACK_COMPONENTS_ALL libkeepout libkeepout-dev keepout-modules)
 if(KEEPOUT_BUILD_APPS)
-  list(APPEND CPACK_COMPONENTS_ALL keepout)
+  list(APPEND CPACK_COMPONENTS_ALL keepout keepout-bench)
 endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -40,10 +40,25 @@ set(CPACK_DEBIAN_LIBKEEPOUT-DEV_PACKAGE_NAME libkeepout-dev)
 set(CPACK_DEBIAN_LIBKEEPOUT-DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBKEEPOUT-DEV_PACKAGE_DEPENDS "${library} (= ${full_version}), libeigen3-dev (>= 3.4)")
 
+set(CPACK_DEBIAN_LIBKEEPOUT_PACKAGE_SUGGESTS keepout-modules)
+
+set(CPACK_COMPONENT_KEEPOUT-MODULES_DESCRIPTION "${about}\nThis package holds the modules of other libraries: the indices of FCL, Bullet and Embree,\nthe narrow phases of FCL and libccd, and the solvers of NLopt.")
+set(CPACK_DEBIAN_KEEPOUT-MODULES_PACKAGE_NAME keepout-modules)
+set(CPACK_DEBIAN_KEEPOUT-MODULES_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_KEEPOUT-MODULES_PACKAGE_SHLIBDEPS ON)
+
+set(CPACK_COMPONENT_KEEPOUT-BENCH_DESCRIPTION "${about}\nThis package holds keepout-bench, which times and compares indices, solvers and planners.")
+set(CPACK_DEBIAN_KEEPOUT-BENCH_PACKAGE_NAME keepout-bench)
+set(CPACK_DEBIAN_KEEPOUT-BENCH_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_KEEPOUT-BENCH_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_KEEPOUT-BENCH_PACKAGE_DEPENDS "keepout (= ${full_version})")
+set(CPACK_DEBIAN_KEEPOUT-BENCH_PACKAGE_RECOMMENDS keepout-modules)
+
 set(CPACK_COMPONENT_KEEPOUT_DESCRIPTION "${about}\nThis package holds the command, which needs no other.")
 set(CPACK_DEBIAN_KEEPOUT_PACKAGE_NAME keepout)
 set(CPACK_DEBIAN_KEEPOUT_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_KEEPOUT_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_KEEPOUT_PACKAGE_SUGGESTS "keepout-bench, keepout-modules")
 if(BUILD_SHARED_LIBS)
   set(CPACK_DEBIAN_KEEPOUT_PACKAGE_DEPENDS "${library} (= ${full_version})")
 endif()
@@ -56,7 +71,9 @@ execute_process(COMMAND ${KEEPOUT_GZIP} -9nf ${PROJECT_BINARY_DIR}/packaged/chan
                 COMMAND_ERROR_IS_FATAL ANY)
 set(package_libkeepout ${library})
 set(package_libkeepout-dev libkeepout-dev)
-set(package_keepout keepout)
+foreach(component keepout keepout-bench keepout-modules)
+  set(package_${component} ${component})
+endforeach()
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/debian_copyright DESTINATION share/doc/${package_${component}}
           RENAME copyright COMPONENT ${component} EXCLUDE_FROM_ALL)
@@ -67,9 +84,6 @@ endforeach()
 include(CPack)
 
 get_property(packaged GLOBAL PROPERTY KEEPOUT_PACKAGED_TARGETS)
-if(TARGET keepout_packaged)
-  list(APPEND packaged keepout_packaged)
-endif()
 add_custom_target(packages
   COMMAND ${CMAKE_CPACK_COMMAND} --config ${PROJECT_BINARY_DIR}/CPackConfig.cmake
   DEPENDS ${packaged}

@@ -22,7 +22,7 @@ endfunction()
 
 set(include "^ *# *include *[<\"]")
 forbid(engine "${include}keepout/(adapters|solvers|factory|fixtures|control|robot)/" "the engine knows no other part")
-foreach(part all_indices bullet ccd cgal embree fcl include src)
+foreach(part bullet ccd cgal embree fcl include src)
   forbid(adapters/${part} "${include}keepout/(solvers|factory|fixtures|control|robot|urdf)/" "adapters know only the engine")
 endforeach()
 forbid(solvers "${include}keepout/(adapters|factory|fixtures|control|robot)/" "solvers know only the engine")
@@ -54,10 +54,10 @@ foreach(part engine solvers control robot factory)
   forbid(${part} "${include}(urdf_[a-z]+/|tinyxml|keepout/urdf/)" "the library reads no description of robots")
 endforeach()
 
-# What is under the GPL stays in its own folder, and in the target that gathers all indices.
+# What is under the GPL stays in its own folder, which is a module.
 foreach(part engine solvers control robot factory fixtures oracle adapters/include adapters/src
         adapters/bullet adapters/ccd adapters/embree adapters/fcl adapters/ompl adapters/urdf)
-  forbid(${part} "${include}(CGAL/|keepout/adapters/all_indices)"
+  forbid(${part} "${include}CGAL/"
          "the library is not to depend on the GPL")
 endforeach()
 
@@ -102,22 +102,30 @@ forbid(engine/src/index/wide_bvh "${include}(\\.\\./)+pd_tree/|${include}keepout
 
 # Within the command: main and its smaller commands know every folder; a folder knows those that are
 # named here.
-set(folders bench compare live page plan record serve shared simulate verify)
+set(folders live page record serve shared simulate verify)
 set(known_to_shared)
 set(known_to_page shared)
 set(known_to_record shared page)
 set(known_to_serve shared)
-set(known_to_compare shared record)
-set(known_to_bench shared record compare)
 set(known_to_verify shared record)
 set(known_to_live shared page verify)
-set(known_to_plan shared record verify)
-set(known_to_simulate shared record compare bench verify)
+set(known_to_simulate shared record verify)
 foreach(folder IN LISTS folders)
   set(others ${folders})
   list(REMOVE_ITEM others ${folder} ${known_to_${folder}})
   list(JOIN others "|" others)
-  forbid(apps/keepout/${folder} "${include}\"(commands\\.h|\\.\\./|(${others})/)" "of the command, ${folder} knows only: ${known_to_${folder}}")
+  forbid(apps/keepout/${folder} "${include}\"(commands\\.h|\\.\\./|(${others}|bench|compare|plan)/)" "of the command, ${folder} knows only: ${known_to_${folder}}")
+endforeach()
+
+# What compares stands on the command, and the command does not know it.
+set(known_to_bench compare simulate)
+set(known_to_compare)
+set(known_to_plan verify)
+foreach(folder bench compare plan)
+  set(others bench compare plan live serve simulate verify)
+  list(REMOVE_ITEM others ${folder} ${known_to_${folder}})
+  list(JOIN others "|" others)
+  forbid(benchmarks/${folder} "${include}\"(commands\\.h|\\.\\./|(${others})/)" "of what compares, ${folder} knows only: ${known_to_${folder}}")
 endforeach()
 
 # What a page calls is the library, what is found wrong with a mesh, and no study.
@@ -126,15 +134,15 @@ forbid(apps/web "${include}keepout/oracle/" "the oracle is for tests and the com
 
 # What tests, shows and compares is above everything, and nothing may need it.
 forbid(examples "${include}(keepout/(fixtures|oracle)/|\"\\.\\./)" "an example is a program of a user")
-forbid(experiments "${include}\"(\\.\\./|shared/|bench/|verify/)" "experiments know the libraries, and not the command")
-forbid(benchmarks "${include}\"(bench|compare|live|plan|record|serve|simulate|verify)/" "the load on serve knows no study")
+forbid(benchmarks/native "${include}\"(\\.\\./|shared/|bench/|verify/)" "experiments know the libraries, and not the command")
+forbid(benchmarks/python "${include}keepout/(fixtures|oracle)/" "the loop that Python is held to is the library's")
 
 # Every folder with sources has a rule, but for those that may include everything: tests and docs.
 get_property(ruled GLOBAL PROPERTY folders_with_rules)
-foreach(parent "" apps/ apps/keepout/ adapters/)
+foreach(parent "" apps/ apps/keepout/ adapters/ benchmarks/)
   file(GLOB entries RELATIVE "${SOURCE}" "${SOURCE}/${parent}*")
   foreach(entry IN LISTS entries)
-    if(NOT IS_DIRECTORY "${SOURCE}/${entry}" OR entry MATCHES "^(build|docs|tests|adapters|apps|apps/keepout)$" OR entry IN_LIST ruled)
+    if(NOT IS_DIRECTORY "${SOURCE}/${entry}" OR entry MATCHES "^(build|docs|tests|adapters|apps|apps/keepout|benchmarks)$" OR entry IN_LIST ruled)
       continue()
     endif()
     file(GLOB_RECURSE sources "${SOURCE}/${entry}/*.h" "${SOURCE}/${entry}/*.cpp")

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../src/centered_frame.h"
-#include "../src/library_backends.h"
+#include "../src/index_module.h"
 #include "keepout/error.h"
 #include "keepout/geometry/shapes.h"
 #include "keepout/mesh/mesh.h"
@@ -301,6 +301,6 @@ constexpr IndexBackend backends[] = {
 
 }  // namespace
 
-std::span<const IndexBackend> bullet_indices() noexcept { return backends; }
-
 }  // namespace keepout
+
+const std::span<const keepout::IndexBackend> keepout_indices = keepout::backends;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "../src/ccd_bodies.h"
-#include "../src/library_backends.h"
+#include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/geometry/closest_point.h"
 
 namespace keepout {
@@ -90,6 +90,6 @@ constexpr NarrowPhaseBackend backends[] = {
 
 }  // namespace
 
-std::span<const NarrowPhaseBackend> ccd_narrow_phases() noexcept { return backends; }
-
 }  // namespace keepout
+
+const std::span<const keepout::NarrowPhaseBackend> keepout_narrow_phases = keepout::backends;

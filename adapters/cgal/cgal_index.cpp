@@ -7,7 +7,7 @@
 #include <boost/iterator/counting_iterator.hpp>
 #include <utility>
 
-#include "../src/library_backends.h"
+#include "../src/index_module.h"
 #include "keepout/geometry/shapes.h"
 
 namespace keepout {
@@ -92,6 +92,6 @@ constexpr IndexBackend backends[] = {
 
 }  // namespace
 
-std::span<const IndexBackend> cgal_indices() noexcept { return backends; }
-
 }  // namespace keepout
+
+const std::span<const keepout::IndexBackend> keepout_indices = keepout::backends;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "../src/centered_frame.h"
-#include "../src/library_backends.h"
+#include "../src/index_module.h"
 #include "keepout/error.h"
 #include "keepout/geometry/shapes.h"
 
@@ -141,6 +141,6 @@ constexpr IndexBackend backends[] = {
 
 }  // namespace
 
-std::span<const IndexBackend> embree_indices() noexcept { return backends; }
-
 }  // namespace keepout
+
+const std::span<const keepout::IndexBackend> keepout_indices = keepout::backends;

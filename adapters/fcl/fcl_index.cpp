@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "../src/library_backends.h"
+#include "../src/index_module.h"
 #include "keepout/error.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/shapes.h"
@@ -265,6 +265,6 @@ constexpr IndexBackend backends[] = {
 
 }  // namespace
 
-std::span<const IndexBackend> fcl_indices() noexcept { return backends; }
-
 }  // namespace keepout
+
+const std::span<const keepout::IndexBackend> keepout_indices = keepout::backends;

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "../src/ccd_bodies.h"
-#include "../src/library_backends.h"
+#include "keepout/adapters/narrow_phase_registry.h"
 
 namespace keepout {
 namespace {
@@ -131,17 +131,22 @@ class FclGjkIndep final : public NarrowPhase {
   fcl::detail::GJKSolver_indep<double> solver_;
 };
 
+template <class Phase>
+std::unique_ptr<NarrowPhase> make(const ConvexTool& tool) {
+  return std::make_unique<Phase>(tool);
+}
+
 std::string library() { return "FCL " FCL_VERSION; }
 
 constexpr NarrowPhaseBackend backends[] = {
-    {"fcl_gjk_libccd", "GJK and EPA of FCL, after libccd", make_narrow_phase_of<FclGjkLibccd>,
-     Allocation::inside, library},
-    {"fcl_gjk_indep", "GJK and EPA of FCL, its own", make_narrow_phase_of<FclGjkIndep>,
-     Allocation::inside, library},
+    {"fcl_gjk_libccd", "GJK and EPA of FCL, after libccd", make<FclGjkLibccd>, Allocation::inside,
+     library},
+    {"fcl_gjk_indep", "GJK and EPA of FCL, its own", make<FclGjkIndep>, Allocation::inside,
+     library},
 };
 
 }  // namespace
 
-std::span<const NarrowPhaseBackend> fcl_narrow_phases() noexcept { return backends; }
-
 }  // namespace keepout
+
+const std::span<const keepout::NarrowPhaseBackend> keepout_narrow_phases = keepout::backends;

@@ -4,11 +4,13 @@
 
 #include <utility>
 
+#include "index_module.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/pd_tree_1997.h"
 #include "keepout/index/wide_bvh.h"
-#include "library_backends.h"
+#include "keepout/module.h"
+#include "needed_libraries.h"
 
 namespace keepout {
 namespace {
@@ -25,38 +27,31 @@ constexpr IndexBackend ours[] = {
      "The tree of Williams et al. 1997 and Li et al. 2020: pd_tree without our split and leaves."},
 };
 
-}  // namespace
+constexpr PeerPart peers[] = {
+    {"fcl_obbrss", needs_fcl, "fcl"},
+    {"fcl_aabb", needs_fcl, "fcl"},
+    {"fcl_collide", needs_fcl, "fcl"},
+    {"bullet_quantized", needs_bullet, "bullet"},
+    {"bullet", needs_bullet, "bullet"},
+    {"bullet_callback", needs_bullet, "bullet"},
+    {"embree", "Embree 3 (install libembree-dev, configure with KEEPOUT_WITH_EMBREE=ON)", "embree"},
+    {"cgal", "CGAL (install libcgal-dev, configure with KEEPOUT_WITH_CGAL=ON; under the GPL)",
+     "cgal"},
+};
 
-Registry<IndexBackend> index_backends() noexcept {
-  static const std::vector<IndexBackend> all = joined<IndexBackend>({
-    ours,
-#if KEEPOUT_HAS_FCL
-        fcl_indices(),
-#endif
-#if KEEPOUT_HAS_BULLET
-        bullet_indices(),
-#endif
-#if KEEPOUT_HAS_EMBREE
-        embree_indices(),
-#endif
-  });
-  static const std::vector<AbsentPart> absent {
-#if !KEEPOUT_HAS_FCL
-    {"fcl_obbrss", needs_fcl}, {"fcl_aabb", needs_fcl}, {"fcl_collide", needs_fcl},
-#endif
-#if !KEEPOUT_HAS_BULLET
-        {"bullet_quantized", needs_bullet}, {"bullet", needs_bullet},
-        {"bullet_callback", needs_bullet},
-#endif
-#if !KEEPOUT_HAS_EMBREE
-        {"embree", "Embree 3 (install libembree-dev, configure with KEEPOUT_WITH_EMBREE=ON)"},
-#endif
-  };
-  return {"index", all, absent};
+const PartTable<IndexBackend>& table() {
+  static const PartTable<IndexBackend> table("index", ours, peers, "keepout_indices");
+  return table;
 }
 
+}  // namespace
+
+Registry<IndexBackend> index_backends() { return table().all(); }
+
+std::vector<std::string> index_names() { return table().names(); }
+
 std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh) {
-  return index_backends().named(name).make(std::move(mesh));
+  return table().named(name).make(std::move(mesh));
 }
 
 void require_at_most(std::size_t most, std::size_t count, std::string_view items,

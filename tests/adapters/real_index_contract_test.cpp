@@ -2,7 +2,7 @@
 // The contract of every index on real anatomy, scans and parts.
 
 #include "adapters/index_contract.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/mesh/load_mesh.h"
 
@@ -17,7 +17,7 @@ TEST_P(RealIndexContract, EveryIndexFindsWhatBruteForceFinds) {
   // About the same number of triangles is looked at for each mesh.
   const std::size_t points = std::clamp<std::size_t>(1'000'000 / mesh->triangle_count(), 3, 40);
   const std::vector<Probe> asked = probes(*mesh, points);
-  for (const IndexBackend& backend : all_index_backends()) {
+  for (const IndexBackend& backend : index_backends()) {
     if (backend.name == "brute_force") continue;  // is what the others are held to
     SCOPED_TRACE(backend.name);
     expect_brute_force_sets(*mesh, *backend.make(mesh), asked);

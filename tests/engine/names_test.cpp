@@ -150,7 +150,7 @@ TEST(Registry, AsksWhetherTheNearestNameWasMeant) {
     std::string_view name;
   };
   constexpr std::array<Part, 2> parts = {Part{"certified"}, Part{"paper"}};
-  constexpr std::array<AbsentPart, 1> absent = {AbsentPart{"embree", "Embree"}};
+  constexpr std::array<PeerPart, 1> absent = {PeerPart{"embree", "Embree"}};
   const auto refusal = [&](std::string_view name) {
     return error_of([&] { Registry<Part>("rule", parts, absent).named(name); });
   };

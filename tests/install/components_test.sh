@@ -13,7 +13,7 @@ cmake_minimum_required(VERSION 3.25)
 project(parts LANGUAGES CXX)
 separate_arguments(ASK)
 find_package(keepout ${ASK})
-foreach(part engine solvers adapters keepout control robot ompl urdf)
+foreach(part engine solvers adapters nlopt keepout control robot ompl urdf)
   if(TARGET keepout::${part})
     message(STATUS "has ${part}")
   endif()
@@ -63,18 +63,15 @@ if [ -e "$(library_folder "$prefix")/cmake/keepout/keepout-urdf.cmake" ]; then
 fi
 
 if [ "$form" = static ]; then
-  answer=$(ask "REQUIRED COMPONENTS adapters" "${without_libraries[@]}") && fail "adapters without FCL"
-  says "keepout::adapters needs fcl, which was not found: install libfcl-dev"
-  answer=$(ask "REQUIRED" "${without_libraries[@]}") && fail "the umbrella without FCL"
-  says "install libfcl-dev"
-  says "install libnlopt-dev"
-  answer=$(ask "COMPONENTS engine OPTIONAL_COMPONENTS adapters" "${without_libraries[@]}")
+  answer=$(ask "REQUIRED COMPONENTS nlopt" "${without_libraries[@]}") && fail "NLopt's solver without NLopt"
+  says "keepout::nlopt needs NLopt, which was not found: install libnlopt-dev"
+  answer=$(ask "COMPONENTS engine OPTIONAL_COMPONENTS nlopt" "${without_libraries[@]}")
   says "has engine"
-  says_not "has adapters"
-else
-  answer=$(ask "REQUIRED" "${without_libraries[@]}")
-  says "has keepout"
+  says_not "has nlopt"
 fi
+# Modules link the other libraries, and a user's program does not.
+answer=$(ask "REQUIRED" "${without_libraries[@]}")
+says "has keepout"
 
 answer=$(ask "REQUIRED" -DCMAKE_DISABLE_FIND_PACKAGE_Eigen3=ON "${with_libraries[@]}") &&
   fail "the engine without Eigen"

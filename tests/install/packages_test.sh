@@ -15,10 +15,10 @@ for package in "$work"/packages/*.deb; do
   done
   count=$((count + 1))
 done
-[ $count -eq 3 ] || fail "$count packages instead of 3"
+[ $count -eq 5 ] || fail "$count packages instead of 5"
 
 cd "$work/unpacked"
-for forbidden in cgal gpl all_indices fixtures oracle; do
+for forbidden in cgal gpl fixtures oracle; do
   found=$(find . -iname "*$forbidden*")
   [ -z "$found" ] || fail "not to be passed on: $found"
 done
@@ -28,6 +28,23 @@ found=$(grep -rlF "$source" . || true)
 usr/bin/keepout --version
 usr/bin/keepout inspect "$here/cube.obj" | grep -q watertight || fail "the command cannot inspect"
 ! usr/bin/keepout bench --help | grep -q '^ *cgal' || fail "the command has CGAL"
+
+# What a user runs and links needs none of the libraries that modules and comparisons need, and replaces
+# no function of the system.
+for file in usr/bin/keepout usr/lib/*/*.so.*; do
+  needed=$(readelf -d "$file" | grep NEEDED | grep -iE 'fcl|ccd|bullet|linearmath|embree|nlopt|ompl|assimp' || true)
+  [ -z "$needed" ] || fail "$file needs: $needed"
+  replaced=$(nm -D --defined-only "$file" | grep -E ' [TW] (malloc|calloc|realloc|free|pthread_)' || true)
+  [ -z "$replaced" ] || fail "$file replaces: $replaced"
+done
+printf '0 0 12 1 0 -4\n' > poses.txt
+for index in fcl_obbrss bullet embree; do
+  usr/bin/keepout replay "$here/cube.obj" --poses poses.txt --out steps.csv --index $index ||
+    fail "the command does not find the module of $index"
+  ! KEEPOUT_MODULES=/nowhere usr/bin/keepout replay "$here/cube.obj" --poses poses.txt --out steps.csv \
+    --index $index > said 2>&1 || fail "there is $index without its module"
+  grep -q "install lib" said || fail "without the module of $index it says: $(cat said)"
+done
 
 for library in usr/lib/*/*.so.*; do
   # Nothing but ours: no template of another library may stand in for a program's own.

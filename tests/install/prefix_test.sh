@@ -5,7 +5,7 @@
 . "$(dirname "$0")/common.sh"
 prefix=$1 source=$2
 
-for forbidden in cgal gpl all_indices fixtures oracle; do
+for forbidden in cgal gpl fixtures oracle; do
   found=$(find "$prefix" -iname "*$forbidden*")
   [ -z "$found" ] || fail "not to be installed: $found"
 done

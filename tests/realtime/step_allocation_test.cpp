@@ -4,7 +4,6 @@
 #include "engine/geometry/tools.h"
 #include "keepout/activation/convex_tool_rule.h"
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/all_indices.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
@@ -217,7 +216,7 @@ TEST(Index, AllocatesNothingWhileItAnswersUnlessItSaysSo) {
   std::vector<Vec3> points = surface_points(*mesh, 100, 0.5, random);
   const std::vector<Vec3> far = far_points(*mesh, 20, random);
   points.insert(points.end(), far.begin(), far.end());
-  for (const IndexBackend& backend : all_index_backends()) {
+  for (const IndexBackend& backend : index_backends()) {
     SCOPED_TRACE(backend.name);
     const std::unique_ptr<SpatialIndex> index = backend.make(mesh);
     TriangleBuffer candidates(mesh->triangle_count());
@@ -241,7 +240,7 @@ TEST(Index, AllocatesNothingWhileItAnswersUnlessItSaysSo) {
 }
 
 TEST(Index, OnlyFclsOwnQueryAllocates) {
-  for (const IndexBackend& backend : all_index_backends()) {
+  for (const IndexBackend& backend : index_backends()) {
     EXPECT_EQ(backend.allocation == Allocation::inside, backend.name == "fcl_collide")
         << backend.name;
   }

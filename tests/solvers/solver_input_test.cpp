@@ -111,7 +111,7 @@ TEST(SolverRegistry, AnUnknownNameListsTheKnownOnes) {
 }
 
 TEST(SolverRegistry, AnAbsentSolverSaysWhatItNeeds) {
-  for (const AbsentPart& part : solver_backends().absent()) {
+  for (const PeerPart& part : solver_backends().absent()) {
     EXPECT_CONTAINS(error_of([&] { make_solver(part.name); }), part.needs);
   }
 }

@@ -101,7 +101,7 @@ CLI::Option* add_option_of(CLI::App& command, const Option<Options>& option, Opt
           ->type_name(option.unit == "length" ? "MM"
                       : option.names.empty()  ? "NUMBER"
                                               : "")
-          ->default_str(text_of(option.get(options)));
+          ->default_str(keepout::text_of(option.get(options)));
   if (!option.names.empty()) added->check(one_of({option.names.begin(), option.names.end()}));
   return added;
 }

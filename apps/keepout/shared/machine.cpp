@@ -11,7 +11,7 @@
 #include <string_view>
 #include <thread>
 
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/simd_target.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/version.h"
@@ -65,7 +65,7 @@ std::vector<std::string> libraries() {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   };
-  add(all_index_backends());
+  add(index_backends());
   add(solver_backends());
   return names;
 }

@@ -8,10 +8,6 @@
 #include <ostream>
 #include <utility>
 
-#include "bench/bench.h"
-#include "bench/benchmark.h"
-#include "compare/compare.h"
-#include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/error.h"
 #include "record/record.h"
@@ -21,6 +17,7 @@
 #include "shared/number_text.h"
 #include "shared/output_file.h"
 #include "shared/progress.h"
+#include "shared/stop_signal.h"
 #include "shared/wrapped_text.h"
 #include "simulate/audit.h"
 #include "simulate/simulation.h"
@@ -101,43 +98,6 @@ std::vector<std::vector<Vec3>> hand_over(Audit& audit, const SimulateOptions& op
   }
 }
 
-struct Measured {
-  Benchmark benchmark;
-  Comparison comparison;
-};
-
-/// A quick benchmark on the same mesh; nothing, unless it was asked for.
-Measured timings_of(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
-                    std::ostream& out) {
-  Measured measured;
-  if (options.timings == Timings::of_the_run) return measured;
-  const StopSignal stop;
-  run_benchmark({.command = options.command,
-                 .subjects = {{.mesh = options.mesh.string()}},
-                 .combinations = combinations_of({.radii = {5.0, 1.0}}),
-                 .queries = 1500,
-                 .seconds = 0.3},
-                stop, measured.benchmark, out);
-  if (stop.has_come()) {
-    const std::size_t rows = measured.benchmark.rows.size();
-    if (rows == 0) {
-      std::cerr
-          << "keepout: stopped before any row of the benchmark was finished: the report is of "
-             "the simulation alone\n";
-    } else {
-      std::cerr << "keepout: stopped; " << grouped(rows) << " of "
-                << counted(measured.benchmark.planned, "row")
-                << " of the benchmark were finished, and are kept in the report\n";
-    }
-    return measured;
-  }
-  measured.comparison = compare_parts(options.mesh.stem().string(), mesh,
-                                      {.poses = 12, .problems = 400, .pairs = 100},
-                                      [&stop] { return stop.has_come(); });
-  print(out, measured.comparison);
-  return measured;
-}
-
 /// The last lines on the terminal.
 void print_next(const SimulateOptions& options, std::ostream& out) {
   const std::string mesh = shell_word(options.mesh.string());
@@ -190,30 +150,28 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   // Those of the benchmark are many, and tell who does not know it of nothing but numbers.
   std::ostream tables(options.tables == Tables::printed ? out.rdbuf() : nullptr);
   print_table(tables, simulation);
-  Measured measured;
+  PartTimings timings;
   try {
-    measured = timings_of(options, loaded.mesh, tables);
+    if (options.is_timing_parts) timings = options.time_parts(options, loaded.mesh, tables);
   } catch (const std::exception& error) {  // what was simulated is there, and kept
     std::cerr << "keepout: the benchmark is left out: " << error.what() << '\n';
   }
-  const auto& [benchmark, comparison] = measured;
   Json record = record_of(simulation);
-  if (!benchmark.rows.empty()) record["benchmark"] = json_of(benchmark);
-  record["comparison"] = json_of(comparison);
-  const bool complete = benchmark.rows.size() >= benchmark.planned && comparison.complete;
-  record["complete"] = complete;
+  record["benchmark"] = timings.benchmark;
+  record["comparison"] = timings.comparison;
+  record["complete"] = timings.complete;
   write_record(outputs, record, options.files, std::cerr);
   if (options.tables == Tables::printed) out << '\n';
   print_wrapped(out, record["subject"].get<std::string>() + ".");
   out << '\n';
   print_wrapped(out, record["headline"]);
   print_wrapped(out, record["account"]);
-  if (!benchmark.rows.empty()) {
-    out << "Timed as well, in the report: " << counted(benchmark.rows.size(), "combination")
+  if (timings.combinations > 0) {
+    out << "Timed as well, in the report: " << counted(timings.combinations, "combination")
         << " of index, rule, solver and radius.\n";
   }
   print_next(options, out);
-  return complete ? EXIT_SUCCESS : exit_interrupted;
+  return timings.complete ? EXIT_SUCCESS : exit_interrupted;
 }
 
 }  // namespace keepout::app

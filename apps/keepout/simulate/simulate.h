@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,10 +15,18 @@
 
 namespace keepout::app {
 
-enum class Timings {
-  of_the_run,    // what its own steps took
-  of_every_part  // and a quick benchmark of everything that could take its parts' place
+struct SimulateOptions;
+
+/// Timings of all indices, rules and solvers on the mesh of a simulation.
+struct PartTimings {
+  Json benchmark, comparison;    // for the record; null if there are none
+  std::size_t combinations = 0;  // rows of the benchmark
+  bool complete = true;          // false if a signal stopped it
 };
+
+/// Times all parts on a mesh; prints tables to `out`.
+using TimeParts = std::function<PartTimings(
+    const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh, std::ostream& out)>;
 
 /// Whether the tables of the report are printed too.
 enum class Tables { in_the_report, printed };
@@ -28,8 +38,9 @@ struct SimulateOptions {
   std::vector<std::string> rules;       // run beside the tool without a fixture
   MotionConstraintSettings constraint;  // its activation is each of the rules in turn
   HandSettings hand;
-  double max_step = 0.5;  // longest increment asked for in a cycle [mm]
-  Timings timings = Timings::of_the_run;
+  double max_step = 0.5;         // longest increment asked for in a cycle [mm]
+  TimeParts time_parts = {};     // unset in programs that cannot
+  bool is_timing_parts = false;  // whether to do so after the simulation
   Tables tables = Tables::in_the_report;
   std::string robot;                          // whose instrument is driven instead; empty: none
   std::vector<std::filesystem::path> meshes;  // for it; without one, the largest real ones

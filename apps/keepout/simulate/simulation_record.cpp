@@ -164,7 +164,9 @@ std::pair<std::size_t, Moment> telling_moment(const Simulation& simulation) {
   return {run - simulation.runs.begin(), worst_moment(*run)};
 }
 
-Json json_of(const Moment& moment) { return {{"stroke", moment.stroke}, {"cycle", moment.cycle}}; }
+Json moment_json(const Moment& moment) {
+  return {{"stroke", moment.stroke}, {"cycle", moment.cycle}};
+}
 
 void check(const Simulation& simulation) {
   if (simulation.mesh == nullptr || simulation.runs.empty()) {
@@ -207,14 +209,14 @@ Json run_json(const Simulation& simulation, std::size_t number, const RunSummary
   const Run& run = simulation.runs[number];
   Json strokes = Json::array(), crossings = Json::array();
   for (const Stroke& stroke : run.strokes) strokes.push_back(record_of(stroke));
-  for (const Moment& crossing : run.crossings) crossings.push_back(json_of(crossing));
+  for (const Moment& crossing : run.crossings) crossings.push_back(moment_json(crossing));
   return {{"rule", run.rule},
           {"name", display_name(run)},
           {"description", explanation(run)},
           {"kept_out", summary.kept_out()},
           {"words", outcome_of(summary, simulation.surface)},
           {"summary", json_of(summary, simulation.surface)},
-          {"worst", json_of(worst_moment(run))},
+          {"worst", moment_json(worst_moment(run))},
           {"strokes", std::move(strokes)},
           {"crossings", std::move(crossings)}};
 }

@@ -24,17 +24,17 @@ enum class Allocation : std::uint8_t {
   inside  // the library behind it does: for comparison, not for real time
 };
 
-/// A part that keepout has, but not this build of it.
-struct AbsentPart {
-  std::string_view name;   // as it would be asked for
+/// A part of another library, which a module of ours brings: see keepout/module.h.
+struct PeerPart {
+  std::string_view name;   // to ask for it by
   std::string_view needs;  // the library, its Debian package and our option
+  const char* module = nullptr;
 };
 
-/// Throws Error for a name that no part of a kind has: it lists the names there are and the one
-/// that was probably meant; or says what the part would need, when it is absent. `what` says what
-/// kind of part it is.
+/// Throws Error for a name that no part of a kind has. The message lists the names there are and
+/// suggests the nearest one, or says what an absent part needs. `what` is the kind of part.
 [[noreturn]] void refuse_name(std::string_view name, std::span<const std::string_view> known,
-                              std::string_view what, std::span<const AbsentPart> absent);
+                              std::string_view what, std::span<const PeerPart> absent);
 
 /// All parts of one kind that this build has, to choose from by name: a view of tables that last as
 /// long as the program.
@@ -43,11 +43,11 @@ class Registry : public std::span<const Part> {
  public:
   /// `kind`: as messages name it.
   Registry(std::string_view kind, std::span<const Part> parts,
-           std::span<const AbsentPart> absent = {}) noexcept
+           std::span<const PeerPart> absent = {}) noexcept
       : std::span<const Part>(parts), kind_(kind), absent_(absent) {}
 
-  /// The parts that this build was made without.
-  std::span<const AbsentPart> absent() const noexcept { return absent_; }
+  /// The parts of other libraries that cannot be had here.
+  std::span<const PeerPart> absent() const noexcept { return absent_; }
 
   /// Returns true if there is a part of that name.
   bool has(std::string_view name) const noexcept { return find(name) != nullptr; }
@@ -69,7 +69,7 @@ class Registry : public std::span<const Part> {
   }
 
   std::string_view kind_;
-  std::span<const AbsentPart> absent_;
+  std::span<const PeerPart> absent_;
 };
 
 }  // namespace keepout

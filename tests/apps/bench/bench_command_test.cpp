@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "apps/command_process.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/simd_target.h"
@@ -32,7 +32,7 @@ class BenchCommand : public testing::Test {
 
 TEST_F(BenchCommand, ListsEveryPart) {
   const ProcessOutcome outcome = succeeded(folder.run("bench --list"));
-  for (const IndexBackend& index : all_index_backends()) {
+  for (const IndexBackend& index : index_backends()) {
     EXPECT_CONTAINS(outcome.output, index.name) << index.name;
   }
   for (const SolverBackend& solver : solver_backends()) {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout::app {
@@ -25,7 +25,7 @@ TEST(Combinations, OfNothingAskedForHaveEveryIndexAndEverySolver) {
     seen_rules.insert(c.activation);
     seen_solvers.insert(c.solver);
   }
-  EXPECT_EQ(seen_indices.size(), all_index_backends().size() - 1) << "all but the oracle";
+  EXPECT_EQ(seen_indices.size(), index_backends().size() - 1) << "all but the oracle";
   EXPECT_EQ(seen_rules.size(), activation_rules().size());
   EXPECT_EQ(seen_solvers.size(), solver_backends().size());
 }

@@ -8,7 +8,7 @@
 
 #include "apps/command_process.h"
 #include "bench/speed/process.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/real_mesh.h"
 
 namespace keepout::test {
@@ -91,7 +91,7 @@ TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
   }
   std::size_t at_5_mm = 0;
   for (const json& query : record["queries"]) at_5_mm += query["radius"] == 5.0 ? 1 : 0;
-  EXPECT_EQ(at_5_mm, all_index_backends().size() - 1) << "all but brute force";
+  EXPECT_EQ(at_5_mm, index_backends().size() - 1) << "all but brute force";
 
   for (const char* words : {"at least 500x", "demanded", "Short of what is demanded:"}) {
     EXPECT_CONTAINS(outcome.output, words) << words;

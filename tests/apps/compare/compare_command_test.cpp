@@ -5,7 +5,7 @@
 #include <set>
 
 #include "apps/command_process.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/version.h"
@@ -38,7 +38,7 @@ TEST_F(CompareCommand, HoldsEveryIndexToBruteForceAndSaysWhatItCameTo) {
     EXPECT_EQ(row["steps_that_differ"], 0);
     EXPECT_LT(row["closest_point_error_mm"], 1e-12);
   }
-  EXPECT_EQ(names.size(), all_index_backends().size() - 1);
+  EXPECT_EQ(names.size(), index_backends().size() - 1);
   EXPECT_EQ(searched, (std::set<std::string>{"pd_tree", "wide_bvh"}))
       << "that is the form that users run";
   EXPECT_EQ(comparison["agree"], true);

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
@@ -27,11 +29,19 @@ struct IndexBackend {
   std::string_view remark = {};
 };
 
-/// All that this build has, the oracle first.
-Registry<IndexBackend> index_backends() noexcept;
+/// Returns all indices, brute force first. Loads all modules that bring some (see
+/// keepout/module.h).
+Registry<IndexBackend> index_backends();
 
-/// Builds the index of that name. Throws Error, listing the names there are, if there is none, and
-/// when it cannot hold the mesh.
+/// Returns the names of the indices that can be had. Loads no module.
+std::vector<std::string> index_names();
+
+/// Returns the index of that name on a mesh. Loads at most the module that brings it. Throws Error
+/// for an unknown name, and if the index cannot hold the mesh.
 std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh);
 
 }  // namespace keepout
+
+/// The table of a module that brings indices.
+extern "C" __attribute__((visibility("default"))) const std::span<const keepout::IndexBackend>
+    keepout_indices;

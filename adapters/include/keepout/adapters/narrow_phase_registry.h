@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "keepout/geometry/separation.h"
 #include "keepout/registry.h"
@@ -20,12 +22,19 @@ struct NarrowPhaseBackend {
   std::string (*library)();  // name and version of the library behind it; null for keepout's own
 };
 
-/// Returns all narrow phases of this build, the exact kernel first. Those of libraries are for
-/// comparison: see docs/convex_tools.md.
-Registry<NarrowPhaseBackend> narrow_phase_backends() noexcept;
+/// Returns all narrow phases, the exact kernel first. Those of libraries are for comparison: see
+/// docs/convex_tools.md. Loads all modules that bring some (see keepout/module.h).
+Registry<NarrowPhaseBackend> narrow_phase_backends();
 
-/// Makes the narrow phase of that name for a tool. Throws Error, which lists the names, for an
-/// unknown one.
+/// Returns the names of the narrow phases that can be had. Loads no module.
+std::vector<std::string> narrow_phase_names();
+
+/// Returns the narrow phase of that name for a tool. Loads at most the module that brings it.
+/// Throws Error for an unknown name.
 std::unique_ptr<NarrowPhase> make_narrow_phase(std::string_view name, const ConvexTool& tool);
 
 }  // namespace keepout
+
+/// The table of a module that brings narrow phases.
+extern "C" __attribute__((visibility("default"))) const std::span<const keepout::NarrowPhaseBackend>
+    keepout_narrow_phases;

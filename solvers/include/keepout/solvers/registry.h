@@ -2,8 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "keepout/registry.h"
 #include "keepout/step/solver.h"
@@ -23,11 +25,18 @@ struct SolverBackend {
   std::string (*library)();  // name and version of the library behind it; null for our own
 };
 
-/// All solvers of this build, our own first.
-Registry<SolverBackend> solver_backends() noexcept;
+/// Returns all solvers, our own first. Loads the module of NLopt's (see keepout/module.h).
+Registry<SolverBackend> solver_backends();
 
-/// A new solver, without room yet: see Solver::reserve. Throws Error for a name that is not in the
-/// table, listing those that are.
+/// Returns the names of the solvers that can be had. Loads no module.
+std::vector<std::string> solver_names();
+
+/// Returns a new solver, without room yet: see Solver::reserve. Loads at most the module that
+/// brings it. Throws Error for an unknown name.
 std::unique_ptr<Solver> make_solver(std::string_view name);
 
 }  // namespace keepout
+
+/// The table of a module that brings solvers.
+extern "C" __attribute__((visibility("default"))) const std::span<const keepout::SolverBackend>
+    keepout_solvers;

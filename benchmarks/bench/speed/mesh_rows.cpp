@@ -11,7 +11,7 @@
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
 #include "compare/subject.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/index_cache.h"
@@ -43,7 +43,7 @@ void measure_builds(SpeedRun& run, const IndexedMesh& on) {
   for (const Rival& rival : rivals) {
     const std::string name(rival.name);
     const Attempt theirs = attempted([&] {
-      const IndexBackend& backend = all_index_backends().named(rival.index);
+      const IndexBackend& backend = index_backends().named(rival.index);
       return timed_whole(name, 1, [&] { backend.make(on.mesh); });
     });
     SpeedRow row =
@@ -233,7 +233,7 @@ void measure_first_step(SpeedRun& run) {
   const Attempt theirs = attempted([&] {
     return timed_whole("assimp + FCL OBBRSS", 1, [&] {
       const auto mesh = std::make_shared<const Mesh>(assimp_surface(file));
-      const auto fcl = all_index_backends().named("fcl_obbrss").make(mesh);
+      const auto fcl = index_backends().named("fcl_obbrss").make(mesh);
     });
   });
   const MeasuredSide mine = timed_whole("ours", run.effort.builds, [&] { first_step(file); });

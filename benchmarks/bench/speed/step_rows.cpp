@@ -9,7 +9,7 @@
 
 #include "bench/speed/process.h"
 #include "bench/speed/speed_run.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/registry.h"
 #include "shared/number_text.h"
@@ -47,7 +47,7 @@ void measure_paper_steps(SpeedRun& run, const IndexedMesh& on) {
   run.show("building FCL's tree");
   IndexedMesh fcl{on.mesh, nullptr};
   Attempt theirs;
-  if (!all_index_backends().has(their_index)) theirs.refusal = "this build has no FCL";
+  if (!index_backends().has(their_index)) theirs.refusal = "this build has no FCL";
   if (!solver_backends().has(their_solver)) theirs.refusal = "this build has no NLopt";
   if (theirs.refusal.empty()) fcl.index = make_index(their_index, on.mesh);
 
@@ -98,7 +98,7 @@ void measure_unrelated_states(SpeedRun& run, const IndexedMesh& on) {
   };
   const Attempt ours = time_certified(run, on, "ours", kind.clearance, motions);
   Attempt theirs{.refusal = "this build has no FCL"};
-  if (all_index_backends().has(their_index)) {  // which has no wide instructions anywhere
+  if (index_backends().has(their_index)) {  // which has no wide instructions anywhere
     theirs = {time_plain(std::string(their_index), {on.mesh, make_index(their_index, on.mesh)})};
   }
   SpeedRow row = ratio("certified, unrelated states that are held back, margin .2 mm",

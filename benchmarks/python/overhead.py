@@ -4,7 +4,7 @@
 
 After ./test, or ninja -C build/release keepout_python keepout_cpp_loop:
 
-    PYTHONPATH=build/release/python python3 python/benchmark/overhead.py MESH
+    PYTHONPATH=build/release/python python3 benchmarks/python/overhead.py MESH
 
 The poses are alike for all; answers are held to those of C++, bit for bit, before anything is told.
 Times are of the processor, but for two threads, whose are by the clock; the least of several passes,

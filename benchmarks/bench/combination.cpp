@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/solvers/registry.h"
 #include "shared/names.h"
 
@@ -27,7 +27,7 @@ void add(std::vector<Combination>& all, const Names& index_names, const Names& r
   for (const std::string& index : index_names) {
     for (const std::string& rule : rules) {
       for (const std::string& solver : solvers) {
-        if (!all_index_backends().has(index) || !activation_rules().has(rule) ||
+        if (!index_backends().has(index) || !activation_rules().has(rule) ||
             !solver_backends().has(solver)) {
           continue;
         }
@@ -43,7 +43,7 @@ void add(std::vector<Combination>& all, const Names& index_names, const Names& r
 /// By index, as the table has them.
 std::vector<Combination> sorted(std::vector<Combination> all) {
   std::ranges::stable_sort(all, {}, [](const Combination& combination) {
-    const auto& table = all_index_backends();
+    const auto& table = index_backends();
     return std::ranges::find(table, combination.index, &IndexBackend::name) - table.begin();
   });
   return all;
@@ -54,12 +54,12 @@ Names or_else(const Names& asked, const Names& otherwise) {
 }
 
 std::vector<Combination> default_matrix(const Radii& radii) {
-  Names fast_indices = names(all_index_backends());
+  Names fast_indices = index_names();
   std::erase(fast_indices, "brute_force");  // takes a thousand times as long
   std::vector<Combination> all;
   add(all, fast_indices, {"paper", certified}, {reference_solver}, radii);
   add(all, {reference_index}, {"all_faces"}, {reference_solver}, radii);
-  add(all, {reference_index}, {"paper", certified}, names(solver_backends()), radii);
+  add(all, {reference_index}, {"paper", certified}, solver_names(), radii);
   add(all, {usual_index}, {"paper"}, {usual_solver}, radii);
   return sorted(std::move(all));
 }

@@ -10,7 +10,7 @@
 #include "compare/agreement.h"
 #include "compare/reference.h"
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
@@ -182,7 +182,7 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
   }
   for (const std::string& name : comparison.indices) {
     // One at a time: of a large mesh they need not fit all at once.
-    const std::shared_ptr<const SpatialIndex> index = all_index_backends().named(name).make(mesh);
+    const std::shared_ptr<const SpatialIndex> index = index_backends().named(name).make(mesh);
     for (const std::string& rule : comparison.activations) {
       std::optional<Findings> got = ask(index, rule);
       if (!got) return agreements;

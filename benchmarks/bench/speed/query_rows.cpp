@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bench/speed/speed_run.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/index/brute_force.h"
@@ -190,7 +190,7 @@ void measure_sphere_queries(SpeedRun& run, const IndexedMesh& on) {
     questions.push_back(question_of(on, radius, places));
     ours.push_back(measure(run, "wide_bvh", on, questions.back(), passes));
   }
-  for (const IndexBackend& backend : all_index_backends()) {
+  for (const IndexBackend& backend : index_backends()) {
     if (backend.name == "brute_force" || backend.name == "wide_bvh") continue;
     const std::string name(backend.name);
     run.show("sphere queries, " + name);

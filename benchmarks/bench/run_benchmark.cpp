@@ -11,7 +11,7 @@
 
 #include "bench/measure.h"
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/index/pd_tree.h"
@@ -102,7 +102,7 @@ void Trial::build(const std::string& index) {
           .load_s = loaded_.seconds,
           .load_cores = loaded_.cores,
           .index = index};
-  const IndexBackend& backend = all_index_backends().named(index);
+  const IndexBackend& backend = index_backends().named(index);
   const auto count = static_cast<double>(row_.triangles);
   constexpr double while_building = 1.5;  // some hold more then
   if (const auto taken = memory_.find(index); taken != memory_.end()) {
@@ -198,7 +198,7 @@ Benchmark new_benchmark(const BenchmarkPlan& plan) {
       }
     }
   };
-  describe(all_index_backends(), &Combination::index);
+  describe(index_backends(), &Combination::index);
   describe(activation_rules(), &Combination::activation);
   describe(solver_backends(), &Combination::solver);
   return benchmark;

@@ -12,7 +12,7 @@
 #include "compare/compare.h"
 #include "compare/comparison.h"
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/solvers/registry.h"
@@ -96,13 +96,13 @@ Comparison comparison_for(const BenchOptions& options, const Subject& subject,
 
 /// Says what there is to measure, and what this build was made without.
 void list_parts(std::ostream& out) {
-  const auto list_absent = [&](std::span<const AbsentPart> parts) {
-    for (const AbsentPart& part : parts) {
+  const auto list_absent = [&](std::span<const PeerPart> parts) {
+    for (const PeerPart& part : parts) {
       out << "  " << part.name << " is not in this build: needs " << part.needs << '\n';
     }
   };
-  out << listing("Indices (--index)", all_index_backends());
-  list_absent(all_index_backends().absent());
+  out << listing("Indices (--index)", index_backends());
+  list_absent(index_backends().absent());
   out << listing("Rules (--activation)", activation_rules());
   out << listing("Solvers (--solver)", solver_backends());
   list_absent(solver_backends().absent());
@@ -150,16 +150,16 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
       "brute force and to our own solver as it is timed");
   command.add_flag("--list", options.list, "Say what there is to measure, and stop");
-  const auto add_list = [&](const char* name, std::vector<std::string>& list, const auto& table,
-                            const char* text) {
+  const auto add_list = [&](const char* name, std::vector<std::string>& list,
+                            std::vector<std::string> known, const char* text) {
     command.add_option(name, list, text)
         ->delimiter(',')
         ->type_name("NAMES")
-        ->check(one_of(names(table)));
+        ->check(one_of(std::move(known)));
   };
-  add_list("--index", options.selection.indices, all_index_backends(), "Indices to measure");
-  add_list("--activation", options.selection.activations, activation_rules(), "Rules to measure");
-  add_list("--solver", options.selection.solvers, solver_backends(), "Solvers to measure");
+  add_list("--index", options.selection.indices, index_names(), "Indices to measure");
+  add_list("--activation", options.selection.activations, names(activation_rules()), "Rules to measure");
+  add_list("--solver", options.selection.solvers, solver_names(), "Solvers to measure");
   command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
       ->delimiter(',')
       ->type_name("NAMES");

@@ -8,7 +8,7 @@
 #include "compare/comparison.h"
 #include "compare/subject.h"
 #include "keepout/activation/registry.h"
-#include "keepout/adapters/all_indices.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/solvers/registry.h"
 #include "record/record.h"
 #include "shared/command_line.h"
@@ -24,7 +24,7 @@ namespace {
 
 /// All but brute force, which they are held to.
 std::vector<std::string> indices_to_compare() {
-  std::vector<std::string> all = names(all_index_backends());
+  std::vector<std::string> all = index_names();
   std::erase(all, "brute_force");
   return all;
 }
@@ -46,7 +46,7 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
     comparison.solvers = compare_solvers(
         mesh,
         {.rules = rules,
-         .solvers = names(solver_backends()),
+         .solvers = solver_names(),
          .problems = extent.problems / rules.size(),
          .seed = extent.seed,
          .most = {{"nlopt_cobyla", extent.problems / 10}, {"nlopt_mma", extent.problems / 10}}},

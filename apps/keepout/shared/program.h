@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdlib>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace keepout::app {
+
+/// What a program knows of how it was called.
+struct Call {
+  std::string program;  // as the user calls it: "keepout" or "./run"
+  std::string command;  // the whole command line, for records
+};
+
+/// A command of a program.
+struct Command {
+  std::string_view name;
+  std::function<void(CLI::App& app)> add;    // adds the command and its options to a command line
+  std::function<int(const Call& call)> run;  // runs it with these options; returns the exit status
+};
+
+/// Returns the command of that name whose options are an Options. `run` takes the options and the
+/// stream of results, and returns the exit status or nothing.
+template <class Options, class Run>
+Command command(std::string_view name, void (*add)(CLI::App&, Options&), Run run,
+                Options defaults = {}) {
+  const auto options = std::make_shared<Options>(std::move(defaults));
+  return {name, [=](CLI::App& app) { add(app, *options); },
+          [=](const Call& call) {
+            if constexpr (requires { options->command; }) options->command = call.command;
+            if constexpr (requires { options->called_as; }) options->called_as = call.program;
+            if constexpr (std::is_void_v<decltype(run(*options, std::cout))>) {
+              run(*options, std::cout);
+              return EXIT_SUCCESS;
+            } else {
+              return run(*options, std::cout);
+            }
+          }};
+}
+
+/// Runs the command that the command line names. Returns the exit status: see `--help`. Prints what
+/// failed on stderr.
+int run_program(const std::vector<Command>& commands, int argc, char** argv);
+
+}  // namespace keepout::app

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "user_commands.h"
+
+#include <iostream>
+#include <string>
+#include <utility>
+
+#include "commands.h"
+#include "keepout/activation/registry.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/mesh/load_mesh.h"
+#include "keepout/solvers/registry.h"
+#include "live/live.h"
+#include "record/report.h"
+#include "serve/serve.h"
+#include "shared/command_line.h"
+#include "shared/named_mesh.h"
+#include "shared/names.h"
+#include "verify/verify.h"
+
+namespace keepout::app {
+namespace {
+
+void add_inspect(CLI::App& app, InspectOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "inspect",
+      "Say what a mesh is made of and what is wrong with it: counts, holes, winding, "
+      "degenerate and duplicate triangles, size, unit and anatomical space");
+  add_mesh(command, options.mesh);
+  add_spaces(command, options.load);
+  command.add_flag("--json", options.json, "Print JSON instead of text");
+  command.add_flag("--self-intersections", options.self_intersections,
+                   "Also count the pairs of triangles that cut through each other");
+}
+
+void add_register(CLI::App& app, RegisterOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "register",
+      "Find where the mesh is in the robot's frame, from points that are known in both, and by how "
+      "much that may be off where the tool works");
+  command
+      .add_option("FILE", options.fiducials,
+                  "One pair a line, 'measured x,y,z, model x,y,z' and, if wanted, a weight; the "
+                  "first line may be a header")
+      ->type_name("")
+      ->required();
+  command
+      .add_option(
+          "--measured-in", options.unit,
+          "Unit of what was measured, which is also that of the robot's poses; the model is "
+          "in mm")
+      ->transform(one_of<LengthUnit>({{"mm", LengthUnit::millimetre}, {"m", LengthUnit::metre}}))
+      ->default_str("mm");
+  command
+      .add_option("--target", options.targets,
+                  "Place in the mesh where the tool works; may be given several times")
+      ->type_name("X Y Z")
+      ->type_size(3)
+      ->allow_extra_args(false)
+      ->check(number_within(-1e6, 1e6, "a number from -1e6 to 1e6", "MM"));
+  command
+      .add_option("--fle", options.fle,
+                  "Localisation error of a pair, root mean square; by default estimated from what "
+                  "is left between the pairs")
+      ->type_name("MM")
+      ->check(length(Zero::refused));
+  command.add_option("--confidence", options.confidence, "Probability with which the margin holds")
+      ->check(number_within(0.01, 0.9999, "a probability from 0.01 to 0.9999", "PROBABILITY"))
+      ->capture_default_str();
+  command.add_option("--json", options.json, "Where to write the results as JSON")
+      ->type_name("FILE.json");
+}
+
+void add_replay(CLI::App& app, ReplayOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "replay", "Solve one step for each line of a pose file and write every result as CSV");
+  add_mesh(command, options.mesh);
+  add_spaces(command, options.load);
+  command
+      .add_option("--poses", options.poses,
+                  "One step a line, 'px py pz dx dy dz': tip and desired increment, in mm")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--out", options.steps, "Where to write the steps")
+      ->type_name("STEPS.csv")
+      ->required();
+  command
+      .add_option("--planes", options.planes,
+                  "Where to write all planes that were posed, whether or not they limited the step")
+      ->type_name("PLANES.csv");
+  add_activation(command, options.constraint.activation);
+  add_constraint_options(command, options.constraint);
+  add_convex_tool(command, options.constraint);
+  add_guides(command, options.guides);
+  CLI::Option* closed = command.add_flag_callback(
+      "--closed-loop", [&options] { options.loop = Loop::closed; },
+      "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at the first line's "
+      "r, each step desires goal minus tip, and the tip follows what was solved");
+  add_length(command, "--max-step", options.max_step, Zero::refused,
+             "Longest increment to desire in a closed loop")
+      ->needs(closed);
+  command.footer([] {
+    return "STEPS.csv: step, status, tip, desired increment, solved increment (u), triangles in "
+           "reach,\n"
+           "planes, what each stage took, and how far the tip was from the surface before the "
+           "step; "
+           "empty "
+           "where\nthe step is invalid_input. PLANES.csv: allowed are all u with normal . u >= "
+           "offset.\n\n" +
+           listing("Rules", activation_rules()) + listing("Indices", index_backends()) +
+           listing("Solvers", solver_backends());
+  });
+}
+
+void add_simulate(CLI::App& app, SimulateOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "simulate",
+      "Push a tool over and into the anatomy with a simulated hand, without a fixture "
+      "and with each rule, and write an HTML report with pictures");
+  command.add_option("MESH", options.meshes, std::string(mesh_help) + "; with --robot several")
+      ->type_name("");
+  add_spaces(command, options.load);
+  options.files.add_to(command);
+  command.add_option("--activation", options.rules, "Rules to run beside the unguarded tool")
+      ->check(one_of(names(activation_rules())))
+      ->delimiter(',')
+      ->capture_default_str();
+  if (options.time_parts) {
+    command.add_flag(
+        "--bench", options.is_timing_parts,
+        "Then time indices, rules and solvers side by side on this mesh, into the same report: a "
+        "quick 'keepout bench'");
+  }
+  command.add_flag_callback(
+      "--verbose", [&options] { options.tables = Tables::printed; },
+      "Print the tables of the report as well");
+  add_constraint_options(command, options.constraint);
+  add_length(command, "--max-step", options.max_step, Zero::refused,
+             "Longest increment to desire in a cycle");
+  add_number(command, "--seed", options.hand.seed, 0, largest_seed,
+             "Seed of the hand: same seed, same motion");
+  add_number(command, "--strokes", options.hand.strokes, 1, 100'000, "How often the hand goes in");
+  add_number(command, "--cycles", options.hand.cycles, 10, 1'000'000,
+             "Control cycles of each stroke, at 1 kHz");
+  CLI::Option* const robot =
+      command
+          .add_option(
+              "--robot", options.robot,
+              "Drive the instrument of a robot instead: shaft, wrist and jaw, guarded in "
+              "joint space, in part, and not at all; without MESH on skull, airway and brain")
+          ->check(one_of({"psm"}));
+  command
+      .add_option("--speed", options.speeds,
+                  "How fast, in multiples of 0.5 mm and 0.02 rad a cycle")
+      ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
+      ->delimiter(',')
+      ->capture_default_str()
+      ->needs(robot);
+  for (const char* other : {"--space", "--untagged", "--activation", "--verbose", "--index-cache",
+                            "--solver", "--max-step"}) {
+    command.get_option(other)->excludes(robot);
+  }
+  command.get_option("--inside")->excludes(robot);
+  if (options.time_parts) command.get_option("--bench")->excludes(robot);
+  for (const auto& option : step_options) {
+    if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
+  }
+  command.final_callback([&options] {
+    if (!options.robot.empty()) return;
+    if (options.meshes.empty()) throw CLI::RequiredError("MESH");
+    if (options.meshes.size() > 1) {
+      throw CLI::ValidationError("MESH", "is one, not several, but with --robot");
+    }
+    options.mesh = options.meshes.front();
+  });
+}
+
+void add_serve(CLI::App& app, ServeOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "serve",
+      "Answer requests of other programs, one JSON object a line, on stdin and stdout or on a "
+      "Unix socket");
+  ServiceSettings& service = options.service;
+  add_mesh(command, service.mesh);
+  add_spaces(command, options.load);
+  CLI::Option* socket =
+      command.add_option("--socket", options.socket, "Listen at this path instead of stdin")
+          ->type_name("PATH");
+  add_number(command, "--max-clients", options.most_clients, 1, 256,
+             "Clients of the socket at a time")
+      ->needs(socket);
+  add_number(command, "--max-line", service.longest_line, 256, std::uint64_t{1} << 24,
+             "Longest request")
+      ->type_name("BYTES");
+  add_number(command, "--joints", service.limits.joints, 1, 64, "Columns of a Jacobian, at most");
+  add_number(command, "--rows", service.limits.rows, 0, 1024, "Rows of a request's own, at most");
+  add_activation(command, service.constraint.activation);
+  add_constraint_options(command, service.constraint);
+  add_convex_tool(command, service.constraint);
+  command.footer(protocol_help());
+}
+
+}  // namespace
+
+std::vector<Command> user_commands(TimeParts time_parts) {
+  SimulateOptions simulation;
+  simulation.rules = names(activation_rules());
+  simulation.time_parts = std::move(time_parts);
+  const auto serve_on_stdin = [](const ServeOptions& options, std::ostream&) {
+    return serve(options, std::cerr);
+  };
+  return {command("inspect", add_inspect, inspect),
+          command("register", add_register, register_fiducials),
+          command("replay", add_replay, replay),
+          command("simulate", add_simulate, simulate, std::move(simulation)),
+          command("live", add_live, live),
+          command("serve", add_serve, serve_on_stdin),
+          command("verify", add_verify, verify),
+          command("report", add_report, report)};
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "keepout/registry.h"
+
+namespace keepout {
+
+// A module is a shared object, such as keepout-modules/fcl.so, that brings parts of another
+// library. Only the module links that library. keepout loads a module when one of its parts is
+// first asked for. It looks in the folder that the environment variable KEEPOUT_MODULES names, and
+// otherwise in the folder `keepout-modules` beside the program or the library, or in the library
+// folder of their prefix.
+
+/// Returns true if the file of that module exists.
+bool has_module(const char* module);
+
+/// Returns the address of a table that the module exports under the name `table`; null if there is
+/// no such module, or if it has no such table. Loads the module the first time. Throws Error if the
+/// module cannot be loaded, or is one of another version of keepout.
+const void* table_in_module(const char* module, const char* table);
+
+/// Returns the parts that the module exports as a std::span<const Part> under the name `table`;
+/// otherwise as table_in_module.
+template <class Part>
+std::span<const Part> parts_in_module(const char* module, const char* table) {
+  const void* const parts = table_in_module(module, table);
+  return parts == nullptr ? std::span<const Part>{}
+                          : *static_cast<const std::span<const Part>*>(parts);
+}
+
+/// All parts of one kind: keepout's own and those in modules. A table lasts as long as the program.
+template <class Part>
+class PartTable {
+ public:
+  /// `kind` names the parts in messages; `table`, their tables in modules.
+  PartTable(std::string_view kind, std::span<const Part> own, std::span<const PeerPart> peers,
+            const char* table)
+      : kind_(kind), own_(own), peers_(peers), table_(table) {}
+
+  /// Returns all parts, our own first. Loads every module that there is. Parts of a module that
+  /// cannot be loaded are absent.
+  Registry<Part> all() const {
+    std::call_once(is_complete_, [this] {
+      all_.assign(own_.begin(), own_.end());
+      for (const PeerPart& peer : peers_) {
+        if (const Part* const part = loaded(peer)) {
+          all_.push_back(*part);
+        } else {
+          absent_.push_back(peer);
+        }
+      }
+    });
+    return {kind_, all_, absent_};
+  }
+
+  /// Returns the part of that name. Loads at most the module that brings it. Throws Error for an
+  /// unknown or absent part, as refuse_name does, and for a module that cannot be loaded.
+  const Part& named(std::string_view name) const {
+    if (const Part* const own = with_name(own_, name)) return *own;
+    for (const PeerPart& peer : peers_) {
+      if (peer.name != name) continue;
+      const auto parts = parts_in_module<Part>(peer.module, table_);
+      if (const Part* const part = with_name(parts, name)) return *part;
+    }
+    return all().named(name);
+  }
+
+  /// Returns the names of the parts that can be had. Loads nothing.
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const Part& part : own_) names.emplace_back(part.name);
+    for (const PeerPart& peer : peers_) {
+      if (has_module(peer.module)) names.emplace_back(peer.name);
+    }
+    return names;
+  }
+
+ private:
+  static const Part* with_name(std::span<const Part> parts, std::string_view name) noexcept {
+    for (const Part& part : parts) {
+      if (part.name == name) return &part;
+    }
+    return nullptr;
+  }
+
+  /// Returns the part, or null if its module is absent or cannot be loaded.
+  const Part* loaded(const PeerPart& peer) const {
+    try {
+      return with_name(parts_in_module<Part>(peer.module, table_), peer.name);
+    } catch (const Error&) {
+      return nullptr;
+    }
+  }
+
+  std::string_view kind_;
+  std::span<const Part> own_;
+  std::span<const PeerPart> peers_;
+  const char* table_;
+  mutable std::once_flag is_complete_;  // of all_ and absent_
+  mutable std::vector<Part> all_;
+  mutable std::vector<PeerPart> absent_;
+};
+
+}  // namespace keepout
