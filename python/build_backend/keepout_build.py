@@ -83,7 +83,7 @@ def build_package(settings, staging):
         sys.exit(f"keepout: build-dir {build} holds no build; configure it first, or leave it out")
     if not given:
         configure(build)
-    run("cmake", "--build", build, "--target", "keepout_stubs")
+    run("cmake", "--build", build, "--target", "keepout_stubs", "keepout_modules")
     run("cmake", "--install", build, "--component", "python", "--prefix", staging)
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
     if not (staging / "keepout" / f"_core{suffix}").exists():
