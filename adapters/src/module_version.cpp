@@ -3,6 +3,6 @@
 #include "keepout/version.h"
 
 extern "C" {
-__attribute__((visibility("default"))) extern const char keepout_module_version[];
+[[gnu::visibility("default")]] extern const char keepout_module_version[];
 const char keepout_module_version[] = KEEPOUT_VERSION;
 }

@@ -26,9 +26,9 @@ enum class Allocation : std::uint8_t {
 
 /// A part of another library, which a module of ours brings: see keepout/module.h.
 struct PeerPart {
-  std::string_view name;   // to ask for it by
-  std::string_view needs;  // the library, its Debian package and our option
-  const char* module = nullptr;
+  std::string_view name;         // to ask for it by
+  std::string_view needs;        // the library, its Debian package and our option
+  const char* module = nullptr;  // the name of its file, without .so
 };
 
 /// Throws Error for a name that no part of a kind has. The message lists the names there are and

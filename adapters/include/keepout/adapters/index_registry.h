@@ -43,5 +43,5 @@ std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<
 }  // namespace keepout
 
 /// The table of a module that brings indices.
-extern "C" __attribute__((visibility("default"))) const std::span<const keepout::IndexBackend>
+extern "C" [[gnu::visibility("default")]] const std::span<const keepout::IndexBackend>
     keepout_indices;

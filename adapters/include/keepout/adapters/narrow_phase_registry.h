@@ -36,5 +36,5 @@ std::unique_ptr<NarrowPhase> make_narrow_phase(std::string_view name, const Conv
 }  // namespace keepout
 
 /// The table of a module that brings narrow phases.
-extern "C" __attribute__((visibility("default"))) const std::span<const keepout::NarrowPhaseBackend>
+extern "C" [[gnu::visibility("default")]] const std::span<const keepout::NarrowPhaseBackend>
     keepout_narrow_phases;

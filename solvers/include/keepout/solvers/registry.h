@@ -38,5 +38,5 @@ std::unique_ptr<Solver> make_solver(std::string_view name);
 }  // namespace keepout
 
 /// The table of a module that brings solvers.
-extern "C" __attribute__((visibility("default"))) const std::span<const keepout::SolverBackend>
+extern "C" [[gnu::visibility("default")]] const std::span<const keepout::SolverBackend>
     keepout_solvers;
