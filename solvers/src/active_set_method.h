@@ -39,6 +39,8 @@ class Method {
     if (!task_.read(problem)) return SolveStatus::ill_posed;
     start();
 
+    // Violated rows enter. When none is left, the active rows are settled once; the motion is
+    // optimal if no row is violated after that, either.
     const int budget = 100 + 20 * n();
     while (iterations_ < budget) {
       const int row = rows_.most_violated(u_, feasibility * reach_);
