@@ -13,7 +13,7 @@ namespace keepout::python {
 namespace {
 
 constexpr const char* region_doc =
-    R"(A convex region that something is to stay in, in the frame of the mesh: made by half_space, slab,
+    R"(A convex region that something is to stay in, in the world: made by half_space, slab,
 tube or ball.)";
 
 constexpr const char* guide_doc =

@@ -313,8 +313,9 @@ class Method {
   TaskSpace<N> task_;
   Basis<N> basis_;
   Vector<N> u_;
-  Vector<N> mu_;                // of the active rows, in the order of the basis
-  Vector<N> w_, h_, r_, rest_;  // the entering row: in task space, in the basis, on active rows
+  Vector<N> mu_;  // of the active rows, in the order of the basis
+  // The entering row: in task space, in the basis, on active rows, and the rest. Else scratch.
+  Vector<N> w_, h_, r_, rest_;
   Vector<N> step_, gradient_, slack_;
 };
 

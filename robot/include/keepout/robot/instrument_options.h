@@ -94,9 +94,9 @@ struct InstrumentCapacity {
 
 /// The table of these options.
 inline constexpr std::array instrument_capacity_options{
-    option<&InstrumentCapacity::triangles>("max_triangles", "", {0, 4294967296.0},
+    option<&InstrumentCapacity::triangles>("max_triangles", "", {1, 4294967296.0},
                                            "Capacity for the triangles of one mesh near one body."),
-    option<&InstrumentCapacity::planes>("max_planes", "", {0, 1 << 30},
+    option<&InstrumentCapacity::planes>("max_planes", "", {1, 1 << 16},
                                         "Capacity for the rows of a cycle, joint limits apart."),
     option<&InstrumentCapacity::looks>(
         "max_looks", "", {0, static_cast<double>(Budget::unlimited)},
