@@ -38,8 +38,8 @@ double farthest_out(const Bench& bench, const Guide& guide, const std::vector<do
   return most;
 }
 
-// The solver does not converge on the first problem with the guide's row. The next one lets the
-// point use the band, although the guide does not pull it back.
+// In the second cycle the solver does not converge on the first problem with the guide's row. The
+// next problem lets the point use the band, although the guide does not pull it back.
 TEST(Guide, ThatLetsAPointUseItsBandIsReportedAsRelaxed) {
   constexpr double band = 0.01;
   for (const bool fails : {false, true}) {
@@ -47,7 +47,7 @@ TEST(Guide, ThatLetsAPointUseItsBandIsReportedAsRelaxed) {
     const auto solver = std::make_shared<ActiveSet>();
     solver->reserve(3, 200);
     Eigen::Index least_rows = 1000;
-    bool is_due = fails;
+    bool is_due = false;
     const auto mesh = mesh_of(make_cube(20.0));
     InstrumentConstraint guard(
         mesh, std::make_shared<WideBvh>(mesh), free_ball(1.0),
@@ -63,10 +63,12 @@ TEST(Guide, ThatLetsAPointUseItsBandIsReportedAsRelaxed) {
     const Region above = Region::half_space(Vec3(0, 0, 400), Vec3::UnitZ());
     guard.set_guides({Guide::point("above", center, above).with_band(band)});
     const std::vector<double> at{0.0, 0.0, 400.05};
-    const InstrumentStep step = guard.step(at, Twist{.linear = Vec3(0, 0, -0.1)});
-    ASSERT_EQ(step.status, Status::limited) << step.reason();
+    ASSERT_EQ(guard.step(at, Twist{.linear = Vec3(0, 0, -0.1)}).status, Status::limited);
+    is_due = fails;
+    const InstrumentStep step = guard.step(at, Twist{.linear = Vec3(0, 0, -0.055)});
+    ASSERT_TRUE(step.ok()) << step.reason();
     EXPECT_FALSE(is_due);
-    EXPECT_NEAR(step.increment[2], fails ? -0.05 - band : -0.05, 1e-6);
+    EXPECT_NEAR(step.increment[2], fails ? -0.055 : -0.05, 1e-6);
     EXPECT_EQ(step.relaxation, fails ? Relaxation::guides : Relaxation::none);
   }
 }

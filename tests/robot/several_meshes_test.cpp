@@ -461,7 +461,7 @@ TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
   EXPECT_THROW(guard.set_options(wide), Error) << "wider than the margin of some mesh";
 }
 
-// A clearance that was forgotten would let the body use up half of its distance again.
+// Clearances, rows and triangles of the last cycle stay, so the next one costs as much as ever.
 TEST(SeveralMeshes, OneThatIsRefusedTakesNothingFromABodyThatIsTooClose) {
   const auto cube = cube_of(10.0);
   const auto index = std::make_shared<WideBvh>(cube);
