@@ -13,7 +13,7 @@ namespace keepout::python {
 namespace {
 
 constexpr const char* region_doc =
-    R"(A convex region that something is to stay in, in the frame of the mesh: made by half_space, slab,
+    R"(A convex region that something is to stay in, in the world: made by half_space, slab,
 tube or ball.)";
 
 constexpr const char* guide_doc =
@@ -97,7 +97,7 @@ void bind_guides(py::module_& module) {
                                point(direction, "direction"), angle);
           },
           py::arg("name"), py::arg("link"), py::arg("axis"), py::arg("direction"), py::arg("angle"),
-          "A direction of a link, (3,) in its frame, stays within an angle of one in the mesh's "
+          "A direction of a link, (3,) in its frame, stays within an angle of one in the world "
           "[rad].")
       .def_static(
           "remote_center",
@@ -116,7 +116,7 @@ void bind_guides(py::module_& module) {
             return Guide::orientation(name, link, rotation(kept), angle);
           },
           py::arg("name"), py::arg("link"), py::arg("rotation"), py::arg("angle"),
-          "A link keeps an orientation, (3, 3) in the mesh's frame, to within an angle of any "
+          "A link keeps an orientation, (3, 3) in the world, to within an angle of any "
           "turn\n"
           "[rad]: a list of three guides, one for each axis.")
       .def("with_band", &Guide::with_band, py::arg("band"),

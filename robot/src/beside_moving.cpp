@@ -62,7 +62,7 @@ void JointCycle::settle_immovable() noexcept {
       if (is_ok(status) && obstacle.knot == PointMotion::last_knot) {
         pairs_.settle(p);
       } else {
-        lower_level(p, 1.0, is_ok(status) ? Status::unsolved : status);
+        give_way(p, 1.0, is_ok(status) ? Status::unsolved : status);
       }
     }
   }
@@ -81,9 +81,12 @@ bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
 }
 
 /// Gives way where the last attempt failed: guides stop pulling, then the instrument stands still,
-/// then a guide is dropped, and last the level of pairs is lowered. Returns false if nothing is
-/// left to try. If `best` is proved, it stands still.
+/// then a guide is dropped, and last the level of pairs is lowered. (After an infeasible search
+/// guides have stopped pulling already.) Returns false if nothing is left to try: also if the
+/// solver did not converge before it proposed a motion. If this sets `best`, the instrument stands
+/// still, and no search is needed.
 bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
+  // Copied, as stand_still() judges another motion.
   const std::size_t guide = judgement_.guide.guide;
   const bool guide_failed =
       judgement_.guide.knot < PointMotion::last_knot && !guides_.is_dropped(guide);
@@ -104,7 +107,7 @@ bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
   prefer_degraded(failed);
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     if (!failed[p]) continue;
-    lower_level(p, 1.0, search_status_ == Status::free ? Status::unsolved : search_status_);
+    give_way(p, 1.0, search_status_ == Status::free ? Status::unsolved : search_status_);
   }
   return failed.any();
 }
@@ -136,13 +139,14 @@ bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
   prefer_degraded(pairs);
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     if (!pairs[p]) continue;
-    lower_level(p, reachable_level(p), Status::infeasible);
+    give_way(p, reachable_level(p), Status::infeasible);
   }
   return pairs.any();
 }
 
-/// Lowers the level of a pair, or drops the pair. A dropped pair has no obstacle and no rows.
-void JointCycle::lower_level(std::size_t p, double most, Status reason) noexcept {
+/// Lowers the level of a pair, or drops the pair, as PairWatch::lower_level(). A dropped pair has
+/// no obstacle and no rows. `most`: 1 for no bound.
+void JointCycle::give_way(std::size_t p, double most, Status reason) noexcept {
   pairs_.lower_level(p, most, reason);
   if (pairs_.is_watched(p)) return;
   memory_.obstacles[p] = {};
@@ -150,8 +154,9 @@ void JointCycle::lower_level(std::size_t p, double most, Status reason) noexcept
 }
 
 /// Returns the largest level of a pair at which each of its rows, taken alone, can be satisfied
-/// within the joint limits: a row demands g . dq >= min(bound, 0) - drift - degradation. `surplus`:
-/// by how much the largest g . dq within the limits exceeds that without a degradation.
+/// within the joint limits: a row demands g . dq >= min(bound, 0) - drift - degradation.
+/// Corrections are left out, as they belong to earlier trials. `surplus`: by how much the largest g
+/// . dq within the limits exceeds that without a degradation.
 double JointCycle::reachable_level(std::size_t p) const noexcept {
   const double full_demand = pairs_.full_demand(p);
   double degradation = 0.0;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "keepout/activation/facet.h"
+#include "keepout/activation/tolerances.h"
 
 namespace keepout {
 namespace {
@@ -34,8 +35,8 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
                                          double displacement) noexcept {
   Obstacle first;
   latest_ = PointMotion::last_knot;
+  const double out_of_reach = radius_ + demand_ + displacement;
   for (NearTriangle& triangle : triangles) {
-    const double out_of_reach = radius_ + demand_ + displacement;
     if (triangle.is_measured && triangle.at_start.distance >= out_of_reach) continue;
     budget_.spend(1);
     if (budget_.is_spent()) return {0, nullptr};
@@ -46,13 +47,13 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
     // little farther away, and a body that does not move passes, so that rounding does not
     // accumulate.
     const double distance = triangle.at_start.distance - radius_;
-    due_plus_rounding_ = std::min(demand_, distance + 2.0 * tolerance_);
+    due_plus_rounding_ = std::min(demand_, distance + plane_rounding * tolerance_);
     const bool owes = due_plus_rounding_ < demand_;
     if (owes && displacement == 0.0) continue;
     owes_ = owes_ || owes;
     const Gap at_end = gap_at(PointMotion::last_knot, *triangle.corners);
     const bool gains_too_little =
-        owes && at_end.distance < triangle.at_start.distance + tolerance_ / 8.0;
+        owes && at_end.distance < triangle.at_start.distance + due_gain * tolerance_;
     const int knot = gains_too_little ? 0
                                       : proved_until(triangle, 0, triangle.at_start,
                                                      PointMotion::last_knot, at_end);
@@ -94,14 +95,14 @@ bool Certificate::separates(const Vec3& normal, const NearTriangle& triangle, in
   budget_.spend(work_of_separation);
   const double least = least_height(normal, lo, hi);
   const double behind = support(*triangle.corners, normal);
-  if (!(least - behind >= radius_ + due_plus_rounding_ - 2.0 * tolerance_)) return false;
+  if (!(least - behind >= radius_ + due_plus_rounding_ - plane_rounding * tolerance_)) return false;
   const bool is_whole = lo == 0 && hi == PointMotion::last_knot;
   if (is_whole && plane_count_ < most_planes) planes_[plane_count_++] = {normal, least};
   return true;
 }
 
 bool Certificate::is_covered(const NearTriangle& triangle) const noexcept {
-  const double needed = radius_ + demand_ - 2.0 * tolerance_;
+  const double needed = radius_ + demand_ - plane_rounding * tolerance_;
   return std::any_of(planes_.begin(), planes_.begin() + plane_count_, [&](const Plane& plane) {
     return plane.least - support(*triangle.corners, plane.normal) >= needed;
   });

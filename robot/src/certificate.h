@@ -21,7 +21,7 @@ namespace keepout {
 class Certificate {
  public:
   /// The obstacle to a proof; by default, there is none. Knot 0 without a triangle: the budget
-  /// ended.
+  /// ended, or the triangles nearby are not known.
   struct Obstacle {
     int knot = PointMotion::last_knot;  // the motion is proved up to here
     /// The triangle that limits the proof; or null. Valid until the pair's triangles are gathered

@@ -65,17 +65,17 @@ CycleMemory::CycleMemory(const Instrument& of, Solver& its_solver,
 }
 
 void CycleMemory::prepare() {
-  pairs.clear();
+  std::vector<PairMemory> all;
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     for (std::size_t b = 0; b < instrument.bodies().size(); ++b) {
       const std::size_t capacity = meshes[m].neighborhood->room();
-      pairs.push_back({.body = b,
-                       .mesh = m,
-                       .triangles = NearSet(capacity, distance_beyond_axis(instrument, b))});
+      all.push_back({.body = b,
+                     .mesh = m,
+                     .triangles = NearSet(capacity, distance_beyond_axis(instrument, b))});
     }
   }
-  obstacles.resize(pairs.size());
-  measure();
+  obstacles.resize(all.size());
+  pairs = std::move(all);
   forget();
 }
 

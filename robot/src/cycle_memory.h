@@ -50,7 +50,7 @@ struct CycleMemory {
   // PairWatch: all bodies with the first mesh, all with the second, and so on.
   std::vector<MeshMemory> meshes;
   std::vector<PairMemory> pairs;
-  std::vector<Certificate::Obstacle> obstacles;    // to the last trial, of each pair
+  std::vector<Certificate::Obstacle> obstacles;    // to the last motion judged, of each pair
   Buffer<DegradedClearance> degraded{most_pairs};  // of the last cycle
   // GuideWatch.
   std::vector<GuideMemory> guides;
@@ -65,14 +65,16 @@ struct CycleMemory {
   std::vector<double> bounds;
   JointVector increment;  // the result
 
-  /// Makes the parts that depend on the meshes, and forgets all. Allocates.
+  /// Makes the memory of the pairs of a body and a mesh, and forgets all. Allocates. Precondition:
+  /// measure() after the meshes have changed.
   void prepare();
   /// Computes the tolerance and the largest length. The latter does not depend on the poses of the
   /// meshes, so repeated placing cannot raise it.
   void measure() noexcept;
   /// Returns the least margin beside any mesh. [length]
   double least_margin(const InstrumentOptions& options) const noexcept;
-  /// Returns true if rounding hides the least margin, the band, or a guide's band.
+  /// Returns true if rounding hides the band, a guide's band, or what the least margin is beyond
+  /// the band.
   bool is_lost_in_rounding(const InstrumentOptions& options) const noexcept;
   /// Throws Error unless all options are in range and rounding leaves something of the margins.
   void require_usable(const InstrumentOptions& options) const;

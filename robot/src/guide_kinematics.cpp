@@ -57,7 +57,9 @@ double guided_bend(const Guide& guide, const ChainState& state, std::span<const 
   };
   const MotionBounds first = of(guide.first());
   if (guide.kind() == Guide::Kind::point) return first.bend;
-  // p = (1 - u) a + u b, u linear: p'' = (1 - u) a'' + u b'' + 2 u' (b' - a').
+  // p = (1 - u) a + u b, u linear between the fractions of the guided point at both ends: another
+  // point of the shaft, which is no nearer to the center than the guided one (docs/guides.md).
+  // p'' = (1 - u) a'' + u b'' + 2 u' (b' - a').
   const MotionBounds second = of(guide.second());
   return std::max(first.bend, second.bend) + 2.0 * slide * (first.path + second.path);
 }

@@ -6,6 +6,7 @@
 
 #include "certified_clearance.h"
 #include "guide_kinematics.h"
+#include "keepout/activation/tolerances.h"
 
 namespace keepout {
 namespace {
@@ -24,9 +25,10 @@ void GuideWatch::open() noexcept {
     certified = certified_clearance(-excess, certified, -guide.band(), guide.band(), tolerance);
     // The certified excess, or the present one if rounding has added to it. Then the motion must
     // end a little farther in, so that rounding does not accumulate.
-    allowed_[g] = std::max(-certified + 2.0 * tolerance, excess);
-    const bool owes = excess > -certified + 2.0 * tolerance;
-    at_end_[g] = owes ? excess - tolerance / 8.0 : allowed_[g];
+    const double due = -certified + plane_rounding * tolerance;
+    allowed_[g] = std::max(due, excess);
+    const bool owes = excess > due;
+    at_end_[g] = owes ? excess - due_gain * tolerance : allowed_[g];
     owes_ = owes_ || owes;
     is_recovering_ = is_recovering_ || is_recovering(g);
     memory_.guide_states[g] = {.excess = excess};

@@ -31,7 +31,7 @@ Solver& required(const std::unique_ptr<Solver>& solver) {
   return *solver;
 }
 
-const InstrumentCapacity& required(const InstrumentCapacity& capacity) {
+const InstrumentCapacity& checked(const InstrumentCapacity& capacity) {
   if (capacity.planes == 0 || capacity.planes > (1u << 16)) {
     throw Error("the capacity must be of at least one plane, and at most 65536");
   }
@@ -45,12 +45,12 @@ struct InstrumentConstraint::State {
         const InstrumentCapacity& capacity_)
       : instrument(std::move(instrument_)),
         solver(std::move(solver_)),
-        capacity(required(capacity_)),
+        capacity(checked(capacity_)),
         memory(instrument, required(solver), capacity),
         options(options_) {}
 
-  /// Replaces the mesh of a number, or adds one. Throws Error, and restores the meshes, if the
-  /// options cannot be used with it.
+  /// Replaces the mesh of a number, or adds one. Throws Error, and changes nothing, if the options
+  /// cannot be used with it.
   void put(MeshMemory mesh, std::size_t number) {
     const std::vector<MeshMemory>::iterator at =
         memory.meshes.begin() + static_cast<std::ptrdiff_t>(number);
@@ -68,20 +68,23 @@ struct InstrumentConstraint::State {
       } else {
         std::swap(memory.meshes[number], mesh);
       }
-      memory.prepare();
+      memory.measure();
       throw;
     }
   }
 
-  /// Makes what depends on the meshes. Throws Error if the options cannot be used with them.
+  /// Makes what depends on the meshes, and forgets the last cycle. Throws Error, and forgets
+  /// nothing, if the options cannot be used with the meshes.
   void prepare() {
-    memory.prepare();
+    memory.measure();
     memory.require_usable(options);
+    // The default of a tip's step, measured on wide_bvh: that of the slowest index serves all.
     std::size_t looks = capacity.looks > 0 ? capacity.looks : Capacity::looks_of_a_walk;
     for (const MeshMemory& each : memory.meshes) {
       const SpatialIndex& index = each.neighborhood->index();
       looks = std::max(looks, Capacity::looks_or_default(capacity.looks, index));
     }
+    memory.prepare();
     memory.budget = Budget(looks);
   }
 
@@ -99,7 +102,7 @@ struct InstrumentConstraint::State {
     InstrumentStep result{.status = renew_and_check(q, is_input_valid)};
     if (is_ok(result.status)) {
       JointCycle cycle(memory, options, q, JointCycle::MeshMotion::predicted);
-      result = cycle.run(make_task(memory.trial_motion.chain_at_start()));
+      result = cycle.run(make_task(cycle.chain_at_start()));
     }
     // Without a proved motion beside meshes that move, no clearance is certified.
     if (!result.ok() && memory.is_moving()) result.level = 0.0;

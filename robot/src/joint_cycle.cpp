@@ -100,8 +100,8 @@ Status JointCycle::search(const JointTask& task, Trial& best) noexcept {
   return is_inconclusive && stopping_limits_.has(Limit::guide) ? Status::fallback : status;
 }
 
-/// Returns the outcome of a search that found a motion. `asked`: the fraction of the task that it
-/// was for.
+/// Returns the outcome of a search that found a motion. `asked`: the last fraction of the task that
+/// was tried or would be next, below 1 if the whole task was not enough.
 Status JointCycle::outcome(const Trial& best, double asked) noexcept {
   if (best.share < 1.0 || asked < 1.0) return Status::fallback;
   return best.limits.empty() ? Status::free : Status::limited;
@@ -109,21 +109,25 @@ Status JointCycle::outcome(const Trial& best, double asked) noexcept {
 
 /// Searches for a fraction of the task, with half of the work budget that is left. Returns true if
 /// another fraction may succeed.
+///
+/// A whole motion that strays (measure_flange) is kept, and more damping is tried: the cheaper of
+/// the two stays in `best`. After a second attempt `is_improved` only says if that improved on the
+/// first.
 bool JointCycle::search_fraction(const JointTask& task, double asked, Trial& best) noexcept {
   search_status_ = Status::free;
   is_shortened_ = asked < 1.0;
   if (is_shortened_) rows_.scale_corrections(quarter_squared);
-  bool is_whole = false;
-  const bool was_spent = memory_.budget.halved([&] {
+  bool is_improved = false;
+  const bool was_spent = memory_.budget.halved([&] {  // of this half
     JointTask reduced = task.scaled(asked);
     // A motion is shortened because it bends too much. Damping reduces the largest rotations most.
     if (is_shortened_ && !cycle_.meshes_move && task.is_of_flange()) reduced = reduced.damped();
     for (int dampings = 0;; ++dampings) {
       has_strayed_ = false;
-      is_whole = solve_and_judge(task, reduced, best);
-      if (!is_whole) note_failure();
-      const Status ended = is_whole ? refine(task, reduced, best) : search_status_;
-      if (is_whole && dampings > 0) best.limits.add(Limit::linearization);
+      is_improved = solve_and_judge(task, reduced, best);
+      if (!is_improved) note_failure();
+      const Status ended = is_improved ? refine(task, reduced, best) : search_status_;
+      if (is_improved && dampings > 0) best.limits.add(Limit::linearization);
       const bool is_over =
           !has_strayed_ || dampings == most_dampings || is_spent() || ended != Status::free;
       if (is_over) return is_spent();
@@ -133,16 +137,16 @@ bool JointCycle::search_fraction(const JointTask& task, double asked, Trial& bes
     }
   });
   // A refinement that the budget or the capacity ends takes nothing from the motion it refines.
-  if (is_whole) return true;
+  if (is_improved) return true;
   if (was_spent && search_status_ == Status::free) search_status_ = Status::out_of_budget;
   note_end(search_status_);
   return search_status_ != Status::ill_posed && search_status_ != Status::infeasible;
 }
 
 /// Solves, judges and adds rows until all of a motion is proved. Returns true if `best` is now that
-/// motion. Otherwise `best` is replaced by the proved part of the trial that costs least, if
-/// nothing was found before or that costs less; beside meshes that move it is kept. `reduced`: the
-/// task that is solved for; motions are compared by `task`.
+/// motion. If false, beside still meshes `best` is the cheapest motion or part proved so far;
+/// beside meshes that move it is unchanged. A whole motion that is not cheaper than what was found
+/// before counts as false. `reduced`: the task that is solved for; motions are compared by `task`.
 bool JointCycle::solve_and_judge(const JointTask& task, const JointTask& reduced,
                                  Trial& best) noexcept {
   const bool was_found = best.is_found();
@@ -163,7 +167,8 @@ bool JointCycle::solve_and_judge(const JointTask& task, const JointTask& reduced
     trial.share = trial.proved();
     trial.cost = task.cost_of_share(trial.increment, trial.share);
     // A motion may cost more than standing still only by what a return of bodies and guides within
-    // their bands explains: by two bands. Otherwise only the share that costs least is executed.
+    // their bands explains: by two bands, taken as a length also for a task of the joints.
+    // Otherwise only the share that costs least is executed.
     const double affordable = task.miss_at_rest + 2.0 * cycle_.options.band;
     if (!is_recovering() && !cycle_.meshes_move && trial.cost > affordable * affordable) {
       // Guides within their bands are pulled back only if that does not cost the task too much. If
@@ -296,7 +301,7 @@ void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
   for (std::size_t k = 0; k < n; ++k) increment[k] = best.increment[k] + 0.0;  // turns -0 into 0
   box_.clip(increment);  // defence only: it changes nothing (docs/joint-space-step.md, Lemma 7)
   result.increment = {increment.data(), n};
-  // The last motion judged may be another one.
+  // The last motion judged, in this cycle or an earlier one, may be another one.
   if (memory_.trial_motion.increment() != increment) set_trial(increment);
   pairs_.remember_end();
 }

@@ -16,13 +16,20 @@ namespace keepout {
 ///
 ///     run
 ///       open
-///       search, or beside meshes that move search_beside_moving
+///       WorkingRows::add_first_rows
+///       search
 ///         search_fraction, of the task, then of less of it
 ///           solve_and_judge: JointProblem::solve, judge, add_rows, and again
 ///           refine
+///       or, beside meshes that move, search_beside_moving
+///         settle_immovable
+///         search_fraction, of the task, a quarter of it and none of it
+///         degrade: relax_guides, stand_still, degrade_conflict, drop a guide, or give_way; and
+///                  search_fraction again
 ///       cut
 ///       report_guides, report_limits
 ///       carry_out
+///       PairWatch::remember_clearances
 class JointCycle {
  public:
   /// The velocities of the meshes in a cycle: ignored, as if all stood still, or predicted.
@@ -31,6 +38,11 @@ class JointCycle {
   /// From q (n). The indices must be current. All must outlive it.
   JointCycle(CycleMemory& memory, const InstrumentOptions& options, std::span<const double> q,
              MeshMotion mesh_motion) noexcept;
+
+  /// Returns the chain as the cycle starts, for the task.
+  const ChainState& chain_at_start() const noexcept {
+    return memory_.trial_motion.chain_at_start();
+  }
 
   /// Finds the increment for a task. Precondition: the task is finite. Beside a mesh that moves,
   /// all of a motion is proved or nothing: a part of it would not be safe.
@@ -41,8 +53,8 @@ class JointCycle {
   MotionProof prove(const JointVector& increment) noexcept;
 
  private:
-  /// What the proof of a trial motion found. The obstacles of pairs are in CycleMemory::obstacles;
-  /// a pair that was not judged has none.
+  /// What the proof of a trial motion found. The obstacles of pairs are in CycleMemory::obstacles
+  /// until the next motion is judged; a pair that was not judged has none.
   struct Judgement {
     int knot = 0;                  // the motion is proved up to here
     Status status = Status::free;  // or why the triangles near a pair are not known: knot is 0 then
@@ -69,7 +81,7 @@ class JointCycle {
   bool degrade(const JointTask& task, Trial& best) noexcept;
   void prefer_degraded(std::bitset<most_pairs>& pairs) const noexcept;
   bool degrade_conflict(const JointTask& task) noexcept;
-  void lower_level(std::size_t p, double most, Status reason) noexcept;
+  void give_way(std::size_t p, double most, Status reason) noexcept;
   double reachable_level(std::size_t p) const noexcept;
   // The report (joint_report.cpp).
   void note_failure() noexcept;

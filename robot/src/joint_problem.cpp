@@ -11,7 +11,8 @@ namespace keepout {
 /// One stage of the relaxation of rows that pull back.
 struct JointProblem::Stage {
   Relaxation relaxation;
-  double unused;      // the fraction of a guide's band that is left to curvature; 1: all rows hold
+  double unused;      // the fraction of a guide's band that is left to curvature; 1 stands for no
+                      // relaxation: rows keep their bounds
   bool pulls_guides;  // towards their regions; false: their rows only hold them
   double recovery;    // the fraction of a body's retreat that is demanded; 0: no row demands motion
 
@@ -46,9 +47,13 @@ Proposal JointProblem::solve(const JointTask& task, std::span<const Row> rows) n
     if (guides_pull && i < first_guide_stage_) continue;
     proposal.status = solve_once(task, rows, stage, {}, solution);
     proposal.relaxation = stage.relaxation;
-    // Where no body is pulled back, these stages only drop the corrections of rows.
+    // Where no body is pulled back, only guides are relaxed, if any: the first of these stages lets
+    // a guide that does not pull use its band, too, the second repeats it, and the last one drops
+    // what corrections demand beyond standing still. (Without rows of guides the first repeats
+    // stage 0; after pulling guides, the stage before.)
     if (stage.relaxation == Relaxation::recovery && !bodies_pull) {
-      proposal.relaxation = guides_pull ? Relaxation::guides : Relaxation::none;
+      proposal.relaxation =
+          guides_pull || may_leave_more(rows) ? Relaxation::guides : Relaxation::none;
     }
     const bool is_solved = proposal.status == SolveStatus::optimal;
     if (i < Stage::whole_band && is_solved && guides_pull &&
@@ -96,6 +101,14 @@ OwnerSet JointProblem::conflict(const JointTask& task, std::span<const Row> rows
   return owners & ~left_out;
 }
 
+/// Returns true if a guide's row allows more in the stages of a recovery than in the first stage.
+bool JointProblem::may_leave_more(std::span<const Row> rows) const noexcept {
+  return std::any_of(rows.begin(), rows.end(), [&](const Row& row) {
+    return is_guide(row.owner) &&
+           guide_bound(row, Stage::all[Stage::whole_band]) < guide_bound(row, Stage::all[0]);
+  });
+}
+
 /// Notes the kinds of the rows that limit a solution, and their guides.
 void JointProblem::describe_active(std::span<const Row> rows, Proposal& proposal) const noexcept {
   for (const std::uint32_t number : proposal.active) {
@@ -114,8 +127,9 @@ void JointProblem::describe_active(std::span<const Row> rows, Proposal& proposal
 /// Tries a relaxed stage if the motion of the stage `tried` is unreasonably long: it leaves one of
 /// the guides again that it pulls back, and is much longer than to pull them back one by one. (Rows
 /// of guides that miss each other by little are nearly opposite: only a very long motion satisfies
-/// all of them.) Returns true if it is also much longer than the relaxed motion. `solution`: the
-/// motion; replaced if true is returned.
+/// all of them.) Returns true if it is also much longer than the relaxed motion: then the caller
+/// goes on with its next stage, and `solution` means nothing. If false, `solution` is that of
+/// `tried`; it may have been solved again.
 bool JointProblem::try_relaxed_instead(const JointTask& task, std::span<const Row> rows,
                                        const Stage& tried, const Stage& relaxed,
                                        Solution& solution) noexcept {
@@ -143,7 +157,8 @@ bool JointProblem::try_relaxed_instead(const JointTask& task, std::span<const Ro
   return is_shorter;
 }
 
-/// Returns the least change of a body's height over its plane that a motion must make. [length]
+/// Returns the least gradient . dq of a body's row: the change of height that it demands, less what
+/// the mesh's own motion makes, less the degradation. [length]
 double JointProblem::body_bound(const Row& row, const Stage& stage) const noexcept {
   const double bound = (row.bound > 0.0 ? stage.recovery * row.bound : row.bound) + row.correction;
   return (stage.recovery > 0.0 ? bound : std::min(bound, 0.0)) - row.drift -

@@ -56,6 +56,7 @@ class JointProblem {
                          const OwnerSet& left_out, Solution& solution) noexcept;
   bool try_relaxed_instead(const JointTask& task, std::span<const Row> rows, const Stage& tried,
                            const Stage& relaxed, Solution& solution) noexcept;
+  bool may_leave_more(std::span<const Row> rows) const noexcept;
   double body_bound(const Row& row, const Stage& stage) const noexcept;
   double guide_bound(const Row& row, const Stage& stage) const noexcept;
   void describe_active(std::span<const Row> rows, Proposal& proposal) const noexcept;

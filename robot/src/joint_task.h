@@ -17,6 +17,7 @@ namespace keepout {
 /// in a unit of its own, so that a radian and a length are about as much: dq_k = unit_k u_k.
 struct JointTask {
   static constexpr int most_equations = Chain::most_joints;
+  static_assert(most_equations >= 6, "a task of the flange has 6");
 
   std::array<double, most_equations * Chain::most_joints>
       jacobian{};                                // J (equations, n), column by column

@@ -64,7 +64,7 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
   candidates.clear();
   near.index().collect_near({from_, to_, radius + beyond_}, candidates);
   budget.spend(16 + candidates.size());
-  if (candidates.overflowed()) budget.mark_overflow();
+  // Marks no overflow of the budget: the caller may search again in a smaller region.
   if (candidates.overflowed() || budget.is_spent()) return false;
   const Mesh& mesh = near.mesh();
   // Everything that matters is within the radius of the core.
@@ -84,7 +84,6 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
       const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
       if (lane >= count) break;
       if (ids_.size() == capacity_) {
-        budget.mark_overflow();
         forget();
         return false;
       }

@@ -16,7 +16,7 @@ namespace keepout {
 struct NearTriangle {
   TriangleId id;
   double at_least;           // a lower bound of its distance at the start of the cycle [length]
-  const Triangle* corners;   // valid until triangles are gathered again
+  const Triangle* corners;   // their positions; valid until triangles are gathered again
   Vec3* normal;              // of the last plane between it and the core; zero if there is none
   bool is_measured = false;  // at_start is known
   Gap at_start = {};         // at the start of the cycle

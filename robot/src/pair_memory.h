@@ -17,8 +17,8 @@ namespace keepout {
 
 /// A mesh, its pose, and what the cycles remember of it.
 struct MeshMemory {
-  std::unique_ptr<Neighborhood> neighborhood;
-  double own_margin;  // 0: the mesh has the margin of the options [length]
+  std::unique_ptr<Neighborhood> neighborhood;  // mesh, index and candidates; CycleMemory's budget
+  double own_margin;                           // 0: the mesh has the margin of the options [length]
   bool is_watertight;
   RelativeMotion motion;                           // of the instrument, in the mesh's frame
   Pose pose = {};                                  // at the start of the next cycle

@@ -180,8 +180,8 @@ bool PairWatch::has_unknown_side(std::size_t m) noexcept {
   const std::size_t bodies = memory_.instrument.bodies().size();
   for (std::size_t p = m * bodies; p < (m + 1) * bodies; ++p) {
     if (memory_.pairs[p].may_have_crossed) return true;
-    // No surface is within twice this distance of the core (the half is slack), so none is between
-    // a point and where a step has led it, if these are so near to each other.
+    // No surface is within twice this distance of the core; the other half is slack. So no surface
+    // is between a point and the end of its last step, if the point is within it of that end.
     const double free = 0.5 * (radius(p) + full_demand(p));
     for (const std::uint8_t point : points(p)) {
       if (!mesh.sides.is_near(point, mesh.motion.start_in_mesh()[point], free)) return true;

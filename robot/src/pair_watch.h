@@ -13,6 +13,15 @@ namespace keepout {
 /// The pairs of a body and a mesh in a cycle: the clearance that is certified for each, the
 /// triangles near it, and the proof that a motion maintains the clearance. Pairs are numbered (p)
 /// mesh by mesh: all bodies beside the first mesh, and so on.
+///
+/// Clearances are distances from the body's surface; the distance from its core is larger by the
+/// radius. In increasing order:
+///
+///     demand <= full_demand <= target = margin - band    that a motion must be proved to maintain
+///     row_margin = margin                                that rows demand
+///     vicinity - radius                                  within which triangles are listed
+///
+/// Where bodies are slowed down (slow_down), full_demand and row_margin are larger.
 class PairWatch {
  public:
   /// How the pairs stand at the start of a cycle.
@@ -106,8 +115,9 @@ class PairWatch {
 
   /// Returns the triangles that may be nearer than `distance` to the body's core at the start of
   /// the cycle, nearest first; nothing if they are not known because the budget or the capacity
-  /// ended. Precondition: open() or judge() has searched up to `distance`, as open() does up to the
-  /// row margin of a body that recovers. [length]
+  /// ended. Precondition: triangles are known up to `distance`: up to vicinity(), in which the row
+  /// margin of a body that recovers is, after open(); up to the reach of the trial after judge().
+  /// [length]
   std::span<NearTriangle> nearer_than(std::size_t p, double distance) noexcept {
     return memory_.pairs[p].triangles.nearer_than(distance, memory_.budget);
   }

@@ -37,7 +37,8 @@ class PointMotion {
   /// Both must outlive it.
   PointMotion(const Instrument& instrument, Budget& budget);
 
-  /// Begins a cycle, with the joints at q (n).
+  /// Begins a cycle, with the joints at q (n). Until set_trial() the increment is that of the last
+  /// cycle, and positions are known at the start only.
   void begin_cycle(std::span<const double> q) noexcept;
 
   /// Sets the motion from there: dq.

@@ -44,6 +44,7 @@ std::optional<Row> RowMaker::at_contact(std::size_t pair, const NearTriangle& tr
   const Vec3 at = position_of(pair, point, 0);
   const ClosestPoint closest = closest_point(corners, at);
   if (!(closest.distance > 0.0)) return std::nullopt;
+  // So that the start satisfies the row, or misses it by no more than its distance does.
   const double needed_height =
       std::min(pairs_.radius(pair) + pairs_.row_margin(pair), closest.distance) - memory_.tolerance;
   const Vec3 straight = -closest.offset / closest.distance;
@@ -150,8 +151,8 @@ Vec3 RowMaker::position_of(std::size_t pair, const CorePoint& point, int knot) n
       chain.at(memory_.instrument.points()[points[0]].link, point.on_link), knot);
 }
 
-/// Fills the fields that depend on the normal. `at`: the row's point at the start of the cycle, in
-/// the mesh's frame. [length]
+/// Fills offset, height, bound and drift, which depend on the normal. `at`: the row's point at the
+/// start of the cycle, in the mesh's frame. [length]
 void RowMaker::finish(Row& row, const Vec3& at, const Triangle& corners) const noexcept {
   const RelativeMotion& motion = pairs_.motion(row.owner);
   row.offset =

@@ -9,8 +9,10 @@ namespace keepout {
 struct Trial : Proposal {
   int knot = 0;         // the motion is proved up to this knot; 0: nothing is proved
   double share = 0.0;   // of the motion that is executed: of the proved part, what costs least
-  double cost = 0.0;    // of that share
-  double missed = 0.0;  // of a task of the flange, by its true motion: see flange_error
+  double cost = 0.0;    // of that share: by the linear task, or if cut_for_flange() has cut the
+                        // motion, by the true motion of the flange
+  double missed = 0.0;  // of a task of the flange, by the true motion, before it was cut for the
+                        // flange: see flange_error
 
   /// Returns true if all of the motion is proved.
   bool is_proved() const noexcept { return knot == PointMotion::last_knot; }

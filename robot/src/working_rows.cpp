@@ -77,7 +77,7 @@ bool WorkingRows::add(std::span<const Certificate::Obstacle> obstacles) noexcept
     if (obstacle.triangle == nullptr) continue;
     const NearTriangle& triangle = *obstacle.triangle;
     const bool is_new = add(p, triangle, knot_of_plane(obstacle.knot));
-    changed = changed || is_new || correct(p, triangle.id);
+    changed = changed || is_new || correct(p, triangle.id);  // see the header
   }
   return changed && !memory_.rows.overflowed();
 }

@@ -29,8 +29,9 @@ class WorkingRows {
   /// Adds the rows that the last cycle remembered, and for bodies and guides that recover, rows
   /// that pull them back.
   void add_first_rows() noexcept;
-  /// Adds rows for the obstacles to the last motion, one of each pair, or corrects the rows of
-  /// their triangles. Returns true if any row changed.
+  /// Adds rows for the obstacles to the last motion, one of each pair. Corrects the rows of a
+  /// triangle that has them all, but only if no row of an earlier pair has changed: the others are
+  /// corrected after later motions. Returns true if any row changed.
   bool add(std::span<const Certificate::Obstacle> obstacles) noexcept;
   /// Like add(obstacles), but for a guide that the motion violates beyond a knot.
   bool add(const GuideWatch::Obstacle& obstacle) noexcept;
@@ -49,7 +50,8 @@ class WorkingRows {
   bool turn_planes_to_end() noexcept;
   /// Restores the rows that turn_planes_to_end() has replaced.
   void turn_back() noexcept;
-  /// Scales the corrections for curvature by a factor, for a shorter motion, and allows three more.
+  /// Scales the corrections for curvature by a factor, for a motion that may be shorter, and allows
+  /// three more.
   void scale_corrections(double factor) noexcept;
 
  private:

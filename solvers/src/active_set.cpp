@@ -43,7 +43,7 @@ struct ActiveSet::Workspace {
   int variables = 0;
   int rows = 0;
   RowStore store;
-  PointMethod point;       // the tip itself, J = I (moves_a_point)
+  PointMethod point;       // three variables with J = I, as of a tip (moves_a_point)
   Method<3> space;         // three joints, and problems that PointMethod could not prove
   Method<6> six_joints;    // a pose, or most arms
   Method<7> seven_joints;  // a redundant arm

@@ -39,6 +39,8 @@ class Method {
     if (!task_.read(problem)) return SolveStatus::ill_posed;
     start();
 
+    // Violated rows enter. When none is left, the active rows are settled once; the motion is
+    // optimal if no row is violated after that, either.
     const int budget = 100 + 20 * n();
     while (iterations_ < budget) {
       const int row = rows_.most_violated(u_, feasibility * reach_);
@@ -311,8 +313,9 @@ class Method {
   TaskSpace<N> task_;
   Basis<N> basis_;
   Vector<N> u_;
-  Vector<N> mu_;                // of the active rows, in the order of the basis
-  Vector<N> w_, h_, r_, rest_;  // the entering row: in task space, in the basis, on active rows
+  Vector<N> mu_;  // of the active rows, in the order of the basis
+  // The entering row: in task space, in the basis, on active rows, and the rest. Else scratch.
+  Vector<N> w_, h_, r_, rest_;
   Vector<N> step_, gradient_, slack_;
 };
 

@@ -37,7 +37,7 @@ class PointMethod {
     Vec3 normal;
     double square;  // of the normal
     double bound;
-    double mu;  // of half the cost
+    double mu;  // multiplier of half the cost: a Solution has twice of it
     int row;
   };
 
@@ -47,6 +47,7 @@ class PointMethod {
     double rest2 = 0;  // |rest|^2
   };
 
+  /// Returns a number of an active row as an index of an array.
   static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
   bool list_rows(const StepProblem& problem) noexcept;

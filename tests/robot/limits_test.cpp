@@ -197,6 +197,30 @@ TEST(Limits, TellASpentBudgetFromASmallStore) {
   EXPECT_TRUE(moving.limits.has(Limit::capacity)) << name(moving.status);
 }
 
+// A first search for triangles is too wide for the capacity, and a second one fits. Then the budget
+// may end while the side of the ball is found.
+TEST(Limits, TellASpentBudgetFromASearchThatWasTooWide) {
+  const auto mesh = mesh_of(make_cube(2.0));
+  const auto index = std::make_shared<WideBvh>(mesh);
+  std::size_t all = 0;
+  const auto status = [&](std::size_t looks) {
+    InstrumentConstraint guard(mesh, index, free_ball(1.0), std::make_unique<ActiveSet>(),
+                               {.margin = 5.0}, {.triangles = 80, .looks = looks});
+    const InstrumentStep step =
+        guard.step(std::vector<double>{0.0, 0.0, 55.5}, {.linear = Vec3(0, 0, -0.01)});
+    all = guard.looks();
+    return step.status;
+  };
+  ASSERT_TRUE(is_ok(status(Budget::unlimited)));
+  int spent = 0;
+  for (std::size_t looks = 1, most = all; looks <= most; looks += 3) {
+    const Status ended = status(looks);
+    EXPECT_NE(ended, Status::over_capacity) << looks;
+    spent += ended == Status::out_of_budget ? 1 : 0;
+  }
+  EXPECT_GT(spent, 10);
+}
+
 // The work budget or the memory of an instrument's cycle runs out at an arbitrary point.
 
 /// An arm that turns twice beside a cube whose corners are at 50. The ball at its end swings across

@@ -461,6 +461,35 @@ TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
   EXPECT_THROW(guard.set_options(wide), Error) << "wider than the margin of some mesh";
 }
 
+// Clearances, rows and triangles of the last cycle stay, so the next one costs as much as ever.
+TEST(SeveralMeshes, OneThatIsRefusedTakesNothingFromABodyThatIsTooClose) {
+  const auto cube = cube_of(10.0);
+  const auto index = std::make_shared<WideBvh>(cube);
+  const auto vast = cube_of(1e13);
+  const auto index_of_vast = std::make_shared<WideBvh>(vast);
+  const InstrumentOptions options{.margin = 0.5, .band = 0.05, .recovery = 0.0};
+  InstrumentConstraint guard = guard_of(cube, free_ball(1.0), options);
+  InstrumentConstraint undisturbed = guard_of(cube, free_ball(1.0), options);
+  Vec3 at(6.2, 0.1, 0.2);
+  for (int i = 0; i < 6; ++i) {
+    SCOPED_TRACE(i);
+    const InstrumentStep step = step_of(guard, at, Vec3(-1, 0.1, 0));
+    const InstrumentStep expected = step_of(undisturbed, at, Vec3(-1, 0.1, 0));
+    ASSERT_TRUE(step.ok()) << step.reason();
+    EXPECT_EQ(step.status, expected.status);
+    EXPECT_EQ(moved(at, step), moved(at, expected));
+    EXPECT_EQ(guard.looks(), undisturbed.looks());
+    at = moved(at, step);
+    if (i % 2 == 0) {
+      EXPECT_THROW(guard.add_mesh(cube, index, 0.001), Error) << "below the band";
+    } else {
+      EXPECT_THROW(guard.follow(vast, index_of_vast), Error) << "the margin is lost in rounding";
+    }
+    EXPECT_EQ(guard.tolerance(), undisturbed.tolerance());
+  }
+  EXPECT_GE(clearance(at, 1.0, *cube, {}), 0.15 - 1e-9);
+}
+
 TEST(SeveralMeshes, IsFollowedWhereItIs) {
   const auto cube = cube_of(10.0);
   InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);

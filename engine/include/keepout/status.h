@@ -51,8 +51,9 @@ enum class Limit : std::uint8_t {
   joint_position,  // a position limit of a joint
   joint_velocity,  // a velocity or increment limit of a joint
   rows,            // the caller's own rows
-  radius,          // the radius of the motion sphere
-  linearization,   // the true motion of the joints departs too far from the linear task
+  radius,          // the radius of the motion sphere, or in a recovery twice the retreat
+  linearization,   // the true motion of the joints departs too far from the linear task, or a
+                   // motion would cost the task more than standing still
   budget,          // the work budget of the cycle ended
   capacity,        // a store was too small
   truncated,       // only a part of a motion was proved, or one towards a nearer target

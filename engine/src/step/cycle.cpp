@@ -83,7 +83,7 @@ Step Cycle::run() noexcept {
   if (is_ok(opening.status)) {
     found = search_and_refine();
     add_time(&StageTimes::solve);
-    step.planes = memory_.solver_planes();
+    step.planes = memory_.solver_planes();  // of a failure: report() replaces them
   }
   step.triangles = rule_.triangles();
   if (found.status == Status::infeasible || found.status == Status::unsolved) {
@@ -123,6 +123,7 @@ Opening Cycle::open_as_far_as_fits() noexcept {
   };
   while (is_too_much() && target_halvings_ < most_halvings) {
     halved_for_ = opening.status;
+    // StepOptions::query may have asked for more, which does not fit.
     input_.searched_region = end_region_;
     input_.target *= 0.5;
     // Only in a recovery, where the longest motion is about twice the target (see run).
@@ -168,14 +169,16 @@ std::optional<Cycle::Outcome> Cycle::solve_and_judge(LastTrial& last) noexcept {
   for (int round = 0; round < most_rounds; ++round) {
     const Trial trial = solve();
     last.solution = {};  // the solver has replaced it: with joints, no part of it can be made
-    const bool has_part = last.free_fraction > 0.0 && !request_.jacobian;
+    const bool has_earlier_part = last.free_fraction > 0.0 && !request_.jacobian;
     if (!trial.motion) {
-      if (!has_part) return Outcome{trial.failure};
+      if (!has_earlier_part) return Outcome{trial.failure};
       add_limit_of(trial.failure, limits_);
       break;
     }
     const Vec3& motion = *trial.motion;
-    // Triangles beyond the motion sphere were not searched.
+    // Triangles beyond the motion sphere were not searched. (In the ball over the target no trial
+    // is longer: solve_relaxing() clips it.) The part of the trial before is given up, too,
+    // although cut() might accept it: that costs motion, not safety.
     if (motion.norm() > input_.longest) {
       memory_.planes.push(bound_of(motion, input_.longest));
       last.free_fraction = 0.0;
@@ -193,7 +196,7 @@ std::optional<Cycle::Outcome> Cycle::solve_and_judge(LastTrial& last) noexcept {
       return Outcome{trial.solution.active.empty() ? Status::free : Status::limited, motion};
     }
     if (budget_.is_spent()) add_limit_of(budget_.failure(), limits_);
-    if (budget_.is_spent() && has_part) break;  // this trial was not judged
+    if (budget_.is_spent() && has_earlier_part) break;  // this trial was not judged
     last = {motion, judgement.free_fraction, trial.solution};
     if (judgement.verdict == Verdict::blocked) break;
   }

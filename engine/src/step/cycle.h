@@ -20,7 +20,10 @@ namespace keepout {
 /// judged. Refine: searches for a better motion. On failure the motion is zero and the status gives
 /// the cause.
 ///
-/// Only the judgement of rule and guides is trusted. Planes and solver merely propose.
+/// Planes and solver merely propose; rule and guides judge. The rule's judgement holds only for a
+/// trial that ends in the searched region, as triangles beyond were not searched. solve_relaxing()
+/// clips each trial to the ball over the target, and solve_and_judge() rejects those longer than
+/// the motion sphere.
 ///
 /// Each search gets half of the work budget that is left, so each refinement gets half of what the
 /// search before it has left over.
@@ -88,7 +91,7 @@ class Cycle {
   const Motion& request_;
   RuleInput input_;
   EndRegion end_region_;              // where the solved motions may end
-  int target_halvings_ = 0;           // until the triangles of the target fit
+  int target_halvings_ = 0;           // until its triangles fit, in both openings of a recovery
   Status halved_for_ = Status::free;  // over_capacity or out_of_budget, if the target was halved
   Relaxation relaxation_ = Relaxation::none;
   Limits limits_;  // of the present search, apart from active rows

@@ -7,16 +7,17 @@
 namespace keepout {
 
 /// Linearizes the planes of an accepted motion again, at that motion (the certified rule turns
-/// them), while they allow a better one, at most options.refinements times. All planes go on
-/// allowing the accepted motion, so nothing is lost.
+/// them: the rotation of the cuts of docs/certified-step-algorithm.md), while they allow a better
+/// one, at most options.refinements times. All planes go on allowing the accepted motion, so
+/// nothing is lost.
 Cycle::Outcome Cycle::refine(Outcome best) noexcept {
   for (int refinement = 0; refinement < options_.refinements; ++refinement) {
     memory_.set_aside();
     input_.accepted = best.motion;
     if (rule_.relinearize(input_, memory_.earlier_planes.view(), memory_.planes)) {
       const Outcome next = search();
-      const bool is_accepted = next.status == Status::limited || next.status == Status::free;
-      if (is_accepted && is_worthwhile(next.motion, best.motion)) {
+      const bool is_whole = next.status == Status::limited || next.status == Status::free;
+      if (is_whole && is_worthwhile(next.motion, best.motion)) {
         best = next;
         continue;
       }

@@ -60,7 +60,8 @@ std::size_t work_of(const StepProblem& program, const Solution& solution) noexce
 /// Returns the nearest motion that planes and guides allow. If no half-space of a guide is left to
 /// add, the motion may leave the region of the guide.
 Cycle::Trial Cycle::solve() noexcept {
-  // Without planes the projection of the target is the target.
+  // Without planes the projection of the target is the target. (Of a solver that does not ignore
+  // idle planes it may differ in the last digits: RuleInput::is_projected.)
   const bool is_bare = memory_.planes.empty() && !memory_.planes.overflowed();
   if (is_bare && input_.is_projected && memory_.guides.empty()) return {.motion = input_.target};
   Trial trial = solve_relaxing();
@@ -116,9 +117,9 @@ Cycle::Trial Cycle::solve_once() noexcept {
   if (solution.u.size() != static_cast<std::size_t>(program.jacobian.cols())) {
     return {.failure = Status::unsolved};
   }
-  return {.motion = tip_motion(program, solution, 1e-10 * options_.radius),
-          .solution = solution,
-          .failure = Status::ill_posed};
+  const std::optional<Vec3> motion = tip_motion(program, solution, 1e-10 * options_.radius);
+  if (!motion) return {.failure = Status::ill_posed};
+  return {.motion = motion, .solution = solution};
 }
 
 std::optional<Vec3> tip_motion(const StepProblem& program, const Solution& solution,

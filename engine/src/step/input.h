@@ -24,8 +24,9 @@ inline double position_rounding(const Vec3& tip, const StepOptions& options) noe
   return 1e-12 * (tip.lpNorm<1>() + required_clearance(options)) + 1e-10 * options.radius;
 }
 
-/// Returns where motions for a request may end: in the motion sphere, or where the rule restricts
-/// them to. `rule_region`: the rule's ActivationRule::end_region().
+/// Returns where the cycle must keep the ends of motions for a request: in the motion sphere, or in
+/// the smaller region that the rule asks for. `rule_region`: the rule's
+/// ActivationRule::end_region().
 EndRegion end_region_of(const Motion& request, EndRegion rule_region) noexcept;
 
 /// Returns the input of the rule for a request, whose target is the desired increment.

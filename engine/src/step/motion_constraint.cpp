@@ -25,6 +25,7 @@ void require_mesh_in_range(const Mesh& mesh) {
   }
 }
 
+/// Makes the neighborhood. As the first member made, it also checks that rule and solver are there.
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               std::shared_ptr<const SpatialIndex> index,
                                               const ActivationRule* rule, const Solver* solver,
@@ -140,9 +141,8 @@ void MotionConstraint::require_usable(const StepOptions& options) {
   const RuleInput input =
       rule_input_of({.tip = tip, .desired = Vec3::Zero()}, options, rule_->end_region());
   memory_->planes.clear();
-  const bool fits = rule_->gather(input);
-  const Opening opening = rule_->open(input, memory_->planes);
-  if (fits && opening.status == Status::margin_too_small) {
+  if (!rule_->gather(input)) return;
+  if (rule_->open(input, memory_->planes).status == Status::margin_too_small) {
     throw Error(
         "the margin is too small for a mesh and a radius of this size: the distance kept, "
         "tool radius and margin together, must be well above 1e-9 of the longest edge and "

@@ -19,8 +19,9 @@ using HalfSpaceBuffer = Buffer<HalfSpace>;
 /// The region of the tip's increments in which the solved motions of a cycle may end.
 enum class EndRegion : std::uint8_t {
   target_ball,   // the ball whose diameter is the target: all projections of the target (Thales)
-  motion_sphere  // wherever the motion need not be a projection: joints, rows, a retreat, guides
-                 // that lead back, rules that return nothing else; or by StepOptions::query
+  motion_sphere  // the ball about the tip of radius RuleInput::longest, wherever the motion need
+                 // not be a projection: joints, rows, a retreat, guides that lead back, rules that
+                 // return nothing else; or by StepOptions::query
 };
 
 /// The input of a rule in a cycle.
@@ -31,7 +32,8 @@ struct RuleInput {
   Vec3 accepted;              // a motion that planes must go on allowing; zero before there is one,
                               // as planes allow zero motion anyway [length]
   double radius;              // of the motion sphere [length]
-  double longest;             // no motion is longer: at most longest_motion() [length]
+  double longest;             // no motion is longer: at most longest_motion(), and in a recovery
+                              // twice the retreat [length]
   double clearance;           // required from the mesh: tool radius and margin [length], >= 0
   double recovery;            // the longest retreat of a tip that is too close, in a cycle [length]
   double rounding;            // bound of the tip's error after earlier steps [length]
@@ -89,8 +91,8 @@ class ActivationRule {
   /// the index's own walk (SpatialIndex::walk_along_motions). Precondition: prepare.
   virtual bool makes_queries() const noexcept { return true; }
 
-  /// Returns the region in which motions end if there are neither joints nor rows of the caller's
-  /// own, so that they are projections of the target.
+  /// Returns the region in which the cycle must keep the ends of motions if there are neither
+  /// joints nor rows of the caller's own, so that they are projections of the target.
   virtual EndRegion end_region() const noexcept { return EndRegion::motion_sphere; }
 
   /// Returns the ball that touches all triangles that matter: by default the ball of
@@ -107,6 +109,7 @@ class ActivationRule {
 
   /// Judges a trial motion: by default it is accepted if it satisfies the planes, which no solver
   /// is trusted to ensure. A lazy rule appends a plane that the trial violates, if there is one.
+  /// Precondition: the trial ends in the searched region; triangles beyond were not searched.
   virtual Judgement judge(const RuleInput& input, const Vec3& trial,
                           HalfSpaceBuffer& planes) noexcept;
 

@@ -65,8 +65,10 @@ class CertifiedRule final : public ActivationRule {
     std::uint32_t facet = MotionWalk::no_note;  // its index in facets_; no_note: no contact
     bool is_too_close = false;  // a triangle is too close to the tip: contacts mean nothing
     bool nothing_near = false;  // neither this trial nor one like it comes near anything
+
+    bool has_contact() const noexcept { return facet != MotionWalk::no_note; }
   };
-  class FirstContact;
+  class ContactSearch;
 
   void forget_facets(double level) noexcept;
   Passage walk_along(const Vec3& trial, std::span<const HalfSpace> planes,
@@ -81,7 +83,7 @@ class CertifiedRule final : public ActivationRule {
 
   // Of this cycle.
   std::unique_ptr<CertifiedTerms> terms_;
-  /// The walk along the target without planes, if open() made it: judge() returns it for the first
+  /// The walk along the target without planes, if open() made it: judge() uses it for the first
   /// trial, which is the target.
   std::optional<Passage> at_target_;
   /// The facets that were examined. The walk's notes are indices in here, so the walk begins again

@@ -16,9 +16,9 @@ inline double support(const Triangle& corners, const Vec3& n) noexcept {
 /// A triangle prepared for proofs: relative to the tip, its corners in lexicographic order, so that
 /// nothing depends on how it is wound, rotated or numbered, nor on the distance of the origin.
 ///
-/// Proofs rest on Lemma 2 of docs/certified-step.md: the distance of the point t z to a triangle is
-/// convex in t, and each unit vector n bounds it from below by n . (t z) - support(n), with
-/// equality at the t where n points from the triangle's closest point to t z.
+/// Proofs rest on Lemma 2 of docs/certified-step.md: the distance of the point t z of a motion z to
+/// a triangle is convex in t, and each unit vector n bounds it from below by n . (t z) -
+/// support(n), with equality at the t where n points from the triangle's closest point to t z.
 class Facet {
  public:
   /// The facet's closest point to a point, as a proof of the distance.

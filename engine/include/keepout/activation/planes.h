@@ -7,8 +7,8 @@
 
 namespace keepout {
 
-/// The most planes that a rule adds in a cycle. A cycle needs few, and about a hundred under the
-/// tip of a cone of 400 faces; more than that is an endless loop.
+/// The most planes that a rule adds in one search of a cycle. A search needs few, and about a
+/// hundred under the tip of a cone of 400 faces; more than that is an endless loop.
 inline constexpr std::size_t most_cutting_planes = 192;
 
 /// Returns the plane {n, p} of Li et al. (2020), eq. 2, with a clearance: it allows all motions

@@ -16,7 +16,9 @@ inline constexpr double region_beyond = 8.0;        ///< the searched region bey
 inline constexpr double proof_slack = 1.0 / 64.0;   ///< of a proof of clearance
 inline constexpr double contact_slack = 1.0 / 8.0;  ///< of a contact: small beside demand_below
 
-// For the core of an instrument's body.
+// For the core of an instrument's body, beside lost_below.
+inline constexpr double plane_rounding = 2.0;   ///< loss of a proof by a plane
+inline constexpr double due_gain = 1.0 / 8.0;   ///< least gain where rounding has left too little
 inline constexpr double moved_beyond = 4.0;     ///< a larger loss is not rounding: it was moved
 inline constexpr double crossing_within = 3.0;  ///< it may have crossed the surface
 inline constexpr double core_touching_within = 7.0;  ///< its side is certain beyond six

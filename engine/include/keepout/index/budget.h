@@ -12,9 +12,10 @@ namespace keepout {
 
 /// The work that a control cycle may do, counted in work units ("looks" in names of options), so
 /// that it is the same on every processor. It also depends on what the caches of an index remember
-/// of earlier cycles (Frontier). A unit is the examination of sixteen boxes or triangles in single
-/// precision, of one triangle in double, or of sixteen planes. (Not counted: the nodes that a
-/// traversal cache opens, Frontier::cover, at most 32 each time, at most twice when a walk begins.)
+/// of earlier cycles (Frontier). A unit is about the time of an examination of sixteen boxes or
+/// triangles in single precision, of one triangle in double, or of sixteen planes; the constants
+/// work_of_* count what takes longer. (Not counted: the nodes that a traversal cache opens,
+/// Frontier::cover, at most 32 each time, at most twice when a walk begins.)
 ///
 /// Each part spends its units, before or after the work, and stops once all are spent. Triangles
 /// that were not examined are then unknown, so no motion is accepted that could depend on them.

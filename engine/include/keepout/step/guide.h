@@ -86,7 +86,8 @@ class Guide {
 /// farther out than its band.
 enum class Relaxation : std::uint8_t {
   none,     // only the task was compromised
-  guides,   // guides do not pull back points outside their regions: see GuideState::relaxed
+  guides,   // guides do not pull back points outside their regions (see GuideState::relaxed), or
+            // let points use all of the band of a guide
   recovery  // besides, the tip or bodies recover clearance more slowly than options.recovery
 };
 

@@ -34,7 +34,7 @@ class ExtraRows {
   Eigen::Index count_;
 };
 
-/// The request to one control cycle. (A motion of the tip itself is a Vec3.)
+/// Not a motion of the tip, which is a Vec3, but the request for one: the input of a control cycle.
 struct Motion {
   Vec3 tip = unset;      // commanded tip, in the frame of the mesh [length]
   Vec3 desired = unset;  // desired increment [length]

@@ -12,14 +12,14 @@ namespace keepout {
 
 /// Finds the first contact that speaks against a trial, among the triangles that the walk shows:
 /// rule 5 of docs/certified-step.md. Adds the triangles that it examines to the facets of the rule.
-class CertifiedRule::FirstContact final : public TriangleVisitor {
+class CertifiedRule::ContactSearch final : public TriangleVisitor {
  public:
   /// Writes to `passage`, all but nothing_near. A triangle nearer to the tip than `too_close` ends
   /// the search for contacts: visit() returns 0, and the walk then shows only triangles that may be
   /// within the level at the start of the motion. So the facets get all triangles nearer than
   /// `too_close`.
-  FirstContact(CertifiedRule& rule, const Vec3& trial, std::span<const HalfSpace> planes,
-               double too_close, Passage& passage) noexcept
+  ContactSearch(CertifiedRule& rule, const Vec3& trial, std::span<const HalfSpace> planes,
+                double too_close, Passage& passage) noexcept
       : terms_(*rule.terms_),
         facets_(rule.facets_),
         budget_(rule.budget()),
@@ -70,8 +70,11 @@ class CertifiedRule::FirstContact final : public TriangleVisitor {
     if (terms_.is_clear_at_once(facet, trial_)) return;
     budget_.spend(work_of_contact);
     // The time of contact is cheaper to find than a proof of clearance, and most triangles that
-    // come this far are met. It is a lower bound (Lemma 6): after the end of the trial it proves
-    // the facet clear, rule 5 (d); after the contact with another facet it does not matter.
+    // come this far are met. It is a lower bound (Lemma 6), so a facet whose contact is later than
+    // that with another facet does not matter. latest() is beyond the end until there is a contact:
+    // up to then a time after the end, which is a proof by rule 5 (d), still goes to stays_clear().
+    // If that finds no proof, the facet objects to the end of the trial, with free_fraction 1: that
+    // costs motion, not safety.
     const Contact contact = terms_.contact(facet, trial_, latest());
     if (!is_sooner(contact, facet)) return;
     if (!terms_.is_surely_too_close(contact, facet, trial_)) {
@@ -86,9 +89,8 @@ class CertifiedRule::FirstContact final : public TriangleVisitor {
   /// corners.
   bool is_sooner(const Contact& contact, const Facet& facet) const noexcept {
     const Contact& first = passage_.contact;
-    return contact.time < first.time ||
-           (contact.time == first.time && passage_.facet != MotionWalk::no_note &&
-            facet.before(facets_[passage_.facet]));
+    return contact.time < first.time || (contact.time == first.time && passage_.has_contact() &&
+                                         facet.before(facets_[passage_.facet]));
   }
 
   const CertifiedTerms& terms_;
@@ -135,13 +137,18 @@ Ball CertifiedRule::region(const RuleInput& input) const noexcept {
 
 bool CertifiedRule::makes_queries() const noexcept { return !index().walks(); }
 
+/// Sets the levels, and begins the walk, which shows triangles trial by trial: none is gathered
+/// yet.
 bool CertifiedRule::gather(const RuleInput& input) noexcept {
   facets_.clear();
   *terms_ = CertifiedTerms::keeping(input.clearance, tolerance(input));
+  // A motion that ends in the ball over the target is no longer than its diameter.
   const double longest = std::min(input.longest, 2.0 * searched_ends(input).radius * (1.0 + 1e-9));
   return walk_->begin({input.tip, region(input), terms_->plane_level, longest});
 }
 
+/// Called twice in a recovery (Cycle::run): the same tip gives the same levels and walls, and the
+/// second target is not used.
 Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
   at_target_.reset();
   walls_.clear();
@@ -151,13 +158,13 @@ Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
 
   // The walk shows the triangles near the tip first. If the tip has its clearance, the walk also
   // finds what speaks against the target, which is the first trial.
-  const double least = input.clearance - lost_below * tau;
-  const Passage passage = walk_along(input.target, {}, least);
+  const double too_close = input.clearance - lost_below * tau;
+  const Passage passage = walk_along(input.target, {}, too_close);
   if (budget().is_spent()) return {budget().failure()};
-  // Now facets_ has all triangles nearer than `least`.
+  // Now facets_ has all triangles nearer than `too_close`.
   const Facet* closest = nearest([](const Facet&) { return true; });
   const std::optional<double> distance = known_distance(closest, input.clearance, tau);
-  if (closest == nullptr || closest->distance() >= least) {
+  if (closest == nullptr || closest->distance() >= too_close) {
     at_target_ = passage;
     return {.distance = distance};
   }
@@ -170,7 +177,7 @@ Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
   const double lift = std::max(std::min(input.recovery, missing), tau);
   const Vec3 target = retreat_target(input, closest->towards_tip(), lift);
   *terms_ = CertifiedTerms::recovering(closest->distance(), lift, tau);
-  choose_walls(*closest, least);
+  choose_walls(*closest, too_close);
   forget_facets(terms_->plane_level);
   return {Status::recovering, target, distance};
 }
@@ -182,12 +189,12 @@ void CertifiedRule::forget_facets(double level) noexcept {
   walk_->begin_again(level);
 }
 
-/// Walks along a trial to the first contact that speaks against it; see FirstContact.
+/// Walks along a trial to the first contact that speaks against it; see ContactSearch.
 CertifiedRule::Passage CertifiedRule::walk_along(const Vec3& trial,
                                                  std::span<const HalfSpace> planes,
                                                  double too_close) noexcept {
   Passage passage;
-  FirstContact visitor(*this, trial, planes, too_close, passage);
+  ContactSearch visitor(*this, trial, planes, too_close, passage);
   passage.nothing_near = walk_->walk(trial, visitor);
   return passage;
 }
@@ -248,16 +255,19 @@ Judgement CertifiedRule::judge(const RuleInput& input, const Vec3& trial,
     return {Verdict::accepted};
   }
   const bool is_known = at_target_ && planes.empty() && trial == input.target;
-  const Passage passage = is_known ? *at_target_ : walk_along(trial, planes.view(), 0.0);
+  // No triangle ends the search for contacts: open() has dealt with the distance of the tip.
+  constexpr double too_close = 0.0;
+  const Passage passage = is_known ? *at_target_ : walk_along(trial, planes.view(), too_close);
   // If the budget is spent, triangles may have been left out, and nothing may be concluded.
   if (budget().is_spent()) return {Verdict::blocked, 0.0};
-  if (passage.facet == MotionWalk::no_note) return {Verdict::accepted};
+  if (!passage.has_contact()) return {Verdict::accepted};
   const HalfSpace& plane = passage.contact.plane;
   const double free_fraction = std::clamp(passage.contact.time, 0.0, 1.0);
   if (has_plane(plane.source, planes.view()) || planes.size() >= most_cutting_planes) {
     return {Verdict::blocked, free_fraction};
   }
   planes.push(terms_->plane_for(facets_[passage.facet], input, trial, plane));
+  // With the first objection. A single wall gets its plane by an objection of its own.
   if (walls_.size() > 1) add_planes_of_walls(planes);
   return {Verdict::objected, free_fraction};
 }

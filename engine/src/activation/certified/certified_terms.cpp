@@ -17,7 +17,8 @@ namespace {
 constexpr double idle_slack = 1e-6;
 
 /// A turn of a plane, n = old + theta (wanted - old), normalized. The normals that allow a motion
-/// are a convex cone, so the turns that do are an interval from theta 0 (Lemma 7).
+/// are a convex cone, so the turns that do are an interval from theta 0 (Lemma 7, whose levels l_0
+/// and l_1 are the `least` of both ends).
 class Turn {
  public:
   Turn(const HalfSpace& plane, const Vec3& change, const Triangle& corners, double plane_level,
@@ -45,14 +46,14 @@ class Turn {
       deepest_ = depth > most ? c : deepest_;
       most = std::max(depth, most);
     }
-    const auto left = [&](const End& end) {
+    const auto spare = [&](const End& end) {
       return end.along_old + theta * end.along_change - most - end.least * length_;
     };
-    const double at_0 = left(ends_[0]);
-    const double at_end = left(ends_[1]);
+    const double at_0 = spare(ends_[0]);
+    const double at_end = spare(ends_[1]);
     tight_ = at_end < at_0 ? 1 : 0;
-    left_ = std::min(at_end, at_0);
-    return !(left_ < 0.0);
+    spare_ = std::min(at_end, at_0);
+    return !(spare_ < 0.0);
   }
 
   /// Returns the unit normal at the last theta.
@@ -63,7 +64,7 @@ class Turn {
   /// for half of the slack, so that it arrives.
   double next(double theta) const noexcept {
     const End& end = ends_[tight_];
-    const double missing = left_ - 0.5 * slack_ * length_;
+    const double missing = spare_ - 0.5 * slack_ * length_;
     const double slope =
         end.along_change - deepens_[deepest_] - end.least * change_.dot(blend_) / length_;
     if (!(slope < 0.0)) return 0.0;
@@ -87,7 +88,7 @@ class Turn {
   // Of the last theta.
   Vec3 blend_;
   double length_ = 0;  // |blend|
-  double left_ = 0;    // distance beyond the least one, times the length of the blend
+  double spare_ = 0;   // distance beyond the least one, times the length of the blend
   std::size_t tight_ = 0;
   std::size_t deepest_ = 0;
 };

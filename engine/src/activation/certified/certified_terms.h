@@ -54,17 +54,20 @@ struct CertifiedTerms {
   double floor(const Facet& facet) const noexcept { return std::min(most_floor, present(facet)); }
 
   /// Returns the present distance of a facet, the most that is demanded of a trial: as computed
-  /// when keeping; when recovering, as proven, with the compensation. [length]
+  /// when keeping; when recovering, as proven, with the compensation. (Proven is minus the support
+  /// of the normal: Lemma 2 at the tip, from where corners are counted.) [length]
   double present(const Facet& facet) const noexcept {
     return is_recovering ? slack_compensation - facet.at_tip().support : facet.distance();
   }
 
   /// Relaxes planes that contradict each other: divides the lift by eight, and in the end drops it.
+  /// When keeping there is no lift, and offsets above 0, of some tolerances at most, become 0.
   /// Returns true if any plane changed.
   bool relax(HalfSpaceBuffer& planes) noexcept;
 
   /// Returns true if a present plane proves that the trial stays clear of a triangle, given by its
-  /// corners relative to the tip: rule 5 (a).
+  /// corners relative to the tip: rule 5 (a), at most_demand, as the triangle's own distance is not
+  /// known yet.
   bool is_covered(const Triangle& corners, const Vec3& trial,
                   std::span<const HalfSpace> planes) const noexcept;
 

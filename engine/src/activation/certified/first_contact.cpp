@@ -18,7 +18,7 @@ HalfSpace plane_of(const Facet::Nearest& nearest, const Facet& facet, double lev
 }
 
 /// Returns the time until a motion along z comes within `level` of a point, where `away` leads from
-/// the point to the start; 0 if it does not.
+/// the point to the start; 0, which is no leap, if it does not.
 double time_until(const Vec3& away, const Vec3& z, double level) noexcept {
   // |away + t z| = level, the earlier of the two.
   const double falling = -away.dot(z);
@@ -81,7 +81,7 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
   for (int i = 0; i < most_newton_steps; ++i) {
     const Line line = line_of(nearest, z, level);
     if (!(line.slope < 0.0)) break;
-    const double last = time;
+    const double last = time;  // where `nearest` was taken; `time` is the next
     time = -line.at_0 / line.slope;
     // Never earlier than before, whatever rounding does: a time later than `latest` stays later.
     if (i > 0) time = std::max(time, last);

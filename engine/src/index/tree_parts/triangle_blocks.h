@@ -16,8 +16,8 @@ struct LeafFrame {
   /// Their origin: the mesh's own if its coordinates are floats already, as those of STL files are;
   /// else the center of its triangles. [length]
   Vec3 origin = Vec3::Zero();
-  /// The largest difference of a corner in a leaf from the mesh's, in each coordinate; 0 if they
-  /// are the same numbers. [length]
+  /// The largest difference of a corner in a leaf from the mesh's, in each coordinate; 0 only if
+  /// they are the same numbers, with the mesh's own origin. [length]
   double error = 0.0;
 
   /// Whether the coordinates are the mesh's own.

@@ -19,7 +19,8 @@ struct InstrumentConstraintSettings {
   std::string solver = "active_set";  // see solver_backends()
   InstrumentOptions options = {};     // that stay the same from cycle to cycle
   InstrumentCapacity capacity = {};   // for the largest cycle
-  /// As MotionConstraintSettings::warn. Empty: nobody is told.
+  /// Called while building with what does no harm but should be known: the index could not be kept,
+  /// or the mesh is so large beside the margin that steps are slow. May be empty.
   std::function<void(const std::string&)> warn = {};
 };
 

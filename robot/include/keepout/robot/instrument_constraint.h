@@ -65,9 +65,10 @@ class InstrumentConstraint {
 
   /// Adds a mesh from the next step on, and returns its number; the first has 0.
   /// `margin`: beside this mesh, above the band; 0: that of the options [length]. Forgets the last
-  /// cycle, like forget(). The work budget of a cycle stays the same. Throws Error, and changes
-  /// nothing, for more meshes than InstrumentCapacity::most_meshes and like the constructor.
-  /// Allocates: not for the control path.
+  /// cycle, like forget(). All meshes share the work budget of a cycle, which is by default that of
+  /// the slowest index: see InstrumentCapacity::looks. Throws Error, and changes nothing, for more
+  /// meshes than InstrumentCapacity::most_meshes and like the constructor. Allocates: not for the
+  /// control path.
   std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        double margin = 0.0);
 

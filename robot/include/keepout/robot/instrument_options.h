@@ -88,14 +88,15 @@ struct InstrumentCapacity {
 
   std::size_t triangles = std::size_t{1} << 14;  // near one body
   std::size_t planes = 128;                      // rows of a cycle
-  std::size_t looks = 0;                         // work units of a cycle
+  /// Work units of a cycle, for all meshes; 0: the largest of the defaults of their indices.
+  std::size_t looks = 0;
 };
 
 /// The table of these options.
 inline constexpr std::array instrument_capacity_options{
-    option<&InstrumentCapacity::triangles>("max_triangles", "", {0, 4294967296.0},
+    option<&InstrumentCapacity::triangles>("max_triangles", "", {1, 4294967296.0},
                                            "Capacity for the triangles of one mesh near one body."),
-    option<&InstrumentCapacity::planes>("max_planes", "", {0, 1 << 30},
+    option<&InstrumentCapacity::planes>("max_planes", "", {1, 1 << 16},
                                         "Capacity for the rows of a cycle, joint limits apart."),
     option<&InstrumentCapacity::looks>(
         "max_looks", "", {0, static_cast<double>(Budget::unlimited)},

@@ -23,21 +23,22 @@ struct DegradedClearance {
 struct InstrumentStep {
   Status status = Status::invalid_input;   // the outcome of the cycle
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
-  /// The fraction of the motion that was found, which may be one for a part of the command: 1 with
-  /// status fallback means all of that part.
+  /// The fraction of the motion found that `increment` is. With status fallback that motion may be
+  /// for a part of the command only, and 1 means all of that part.
   double share = 0.0;
   int rounds = 0;             // how many solved trial motions were judged
   std::size_t rows = 0;       // constraints that limit the motion, joint limits apart
   std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
   /// The distance of the nearest body from a mesh at the start of the cycle; below 0 if the body
-  /// reaches through the surface. Empty if no body is within the margin and the larger of band and
-  /// slowing_within, or if the work budget ended first. [length]
+  /// reaches through the surface. Empty if no body is within margin + max(band, slowing_within), or
+  /// if the work budget ended first. [length]
   std::optional<double> distance = std::nullopt;
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // the number of the mesh
   /// The least level of all pairs of a body and a mesh: 1 if each maintains its certified clearance
   /// (InstrumentConstraint: F), below 1 if a mesh approaches faster than a body can retreat, and 0
   /// if no clearance could be certified for a body, or if a mesh moves and there is no motion.
+  /// Without a motion beside still meshes it says nothing, and may be 1.
   double level = 1.0;
   /// The pairs of a body and a mesh whose level is below 1; empty if the cycle did not start.
   std::span<const DegradedClearance> degraded = {};

@@ -89,7 +89,7 @@ void EnterBoxes(const NodeBlock& node, const FloatTip& tip, const float* motion,
     clip(boxes.low.x, boxes.high.x, inverse[0]);
     clip(boxes.low.y, boxes.high.y, inverse[1]);
     clip(boxes.low.z, boxes.high.z, inverse[2]);
-    hn::Store(hn::Mul(enter, hn::Set(d, 0.999999f)), d, entries.time + lane);
+    hn::Store(hn::Mul(enter, hn::Set(d, never_late)), d, entries.time + lane);
     entries.reached |= bits(d, hn::Le(enter, leave), lane);
   }
 }

@@ -6,6 +6,7 @@
 
 #include "../tree.h"
 #include "keepout/geometry/shapes.h"
+#include "keepout/index/motion_walk.h"
 
 namespace keepout {
 
@@ -34,13 +35,21 @@ struct FloatLevels {
   float box_level;  // level and rounding, for boxes [length]
 };
 
+// What single precision adds to the level of a walk, as a fraction of the level and of the longest
+// motion. Both are larger than the rounding of the lanes, below 1e-6 of these lengths, and others
+// rely on the rest: known_distance() of the certified rule needs more than 5e-7 of the level, and
+// MotionWalk::walk() more than `alike` of the motion.
+constexpr double slack_of_level = 2e-6;
+constexpr double slack_of_motion = 3e-6;
+static_assert(slack_of_level >= 1e-6 + 5e-7 && slack_of_motion >= 1e-6 + MotionWalk::alike);
+
 /// Returns the levels of a walk. `longest`: no motion is longer. `tip`: from the origin of the
 /// tree's frame. `error`: of the coordinates in leaves. [length]
 inline FloatLevels float_levels(double level, double longest, const Vec3& tip,
                                 double error) noexcept {
   // The rest that the two floats of the tip leave, and the error of the leaf's coordinates.
   const double fixed = 1e-13 * tip.lpNorm<1>() + 4.0 * error;
-  const double slack = 2e-6 * level + 3e-6 * longest + fixed;
+  const double slack = slack_of_level * level + slack_of_motion * longest + fixed;
   const double box_level = level * (1.0 + 2e-6) + 4e-6 * longest + fixed;
   constexpr double up = 1.0 + 1e-6;
   return {static_cast<float>(level * up), 1.5e-6f, static_cast<float>(slack * up),
@@ -59,7 +68,8 @@ struct ProofBlock {
 };
 
 /// The time at which a motion may first come within the level of the triangles in each of sixteen
-/// boxes: a fraction of the motion, never late; 0 if it begins there, beyond 1 if it never does.
+/// boxes: a fraction of the motion, never late; 0 if it begins there. Without a meaning for boxes
+/// that are not reached.
 struct BoxEntries {
   alignas(64) float time[NodeBlock::lanes];
   std::uint32_t reached;  // a bit for each box that is reached

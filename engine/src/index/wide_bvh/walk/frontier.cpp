@@ -80,6 +80,7 @@ void Frontier::cover(const WideBvh::Tree& tree, const Ball& ball) noexcept {
   };
   open(0);
   while (first < last) {
+    // Sixteen more boxes fit here, and in blocks_ together with all that wait.
     const bool fits = size_ + (last - first) + NodeBlock::lanes <= most_boxes &&
                       last + NodeBlock::lanes <= waiting.size() && opened < most_opened;
     const Place box = waiting[first++];

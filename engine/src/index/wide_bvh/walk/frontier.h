@@ -17,6 +17,9 @@ namespace keepout {
 /// changes the work units that a walk spends, so it changes an answer only where the budget ends.
 class Frontier {
  public:
+  static constexpr std::size_t most_blocks = 4;
+  static constexpr std::size_t most_boxes = most_blocks * NodeBlock::lanes;
+
   /// Returns true if all triangles in the ball are under the boxes.
   bool covers(const Ball& ball) const noexcept {
     return (ball.center - covered_.center).norm() + ball.radius <= covered_.radius;
@@ -50,9 +53,6 @@ class Frontier {
   bool is_opened() const noexcept { return is_opened_; }
 
  private:
-  static constexpr std::size_t most_blocks = 4;
-  static constexpr std::size_t most_boxes = most_blocks * NodeBlock::lanes;
-
   /// Where a box is in the tree.
   struct Place {
     std::uint32_t node;

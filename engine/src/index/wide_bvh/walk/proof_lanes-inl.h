@@ -82,11 +82,14 @@ HWY_INLINE M holds(FloatTag d, const Proof& proof, V along) {
   return hn::And(hn::Ge(proof.clear, zero), hn::Ge(hn::Add(proof.clear, along), zero));
 }
 
+// Makes a time early by more than the rounding of its quotient.
+constexpr float never_late = 0.999999f;
+
 /// Returns the time at which a motion that comes nearer along the normal may reach the level; -1e30
-/// if the tip may be within it. `along`: n . z.
+/// if the tip may be within it, or if the motion does not come nearer. `along`: n . z.
 HWY_INLINE V entry(FloatTag d, const Proof& proof, V along) {
   const V zero = hn::Zero(d);
-  const V time = hn::Mul(hn::Div(proof.clear, hn::Neg(along)), hn::Set(d, 0.999999f));
+  const V time = hn::Mul(hn::Div(proof.clear, hn::Neg(along)), hn::Set(d, never_late));
   const M falls = hn::And(hn::Ge(proof.clear, zero), hn::Lt(along, zero));
   return hn::IfThenElse(falls, time, hn::Set(d, -1e30f));
 }

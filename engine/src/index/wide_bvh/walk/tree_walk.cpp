@@ -8,7 +8,7 @@ namespace keepout {
 namespace {
 
 constexpr std::size_t most_waiting = 4096;
-constexpr std::size_t most_deferred = 1024;
+constexpr std::size_t most_deferred = 1024;  // numbers below suspects_bit, as those of nodes are
 
 // In work units, about as long as each takes: see Budget.
 constexpr std::size_t work_of_boxes = 1;
@@ -68,15 +68,16 @@ void TreeWalk::begin_again(double level) noexcept {
 ///     boxes left unopened   a quarter, and a new cover
 ///     no boxes              double, and a motion more
 ///     fewer than 12         half as much again, and a tenth of a motion more
+///     12 to 24              as before
 ///     more than 24          0.7 of it
 ///
 /// Steps are the same whatever the padding is, unless the work budget ends first.
 void TreeWalk::locate(const Start& start) noexcept {
   if (frontier_.covers(start.region)) return;
-  const double motion = start.longest;
+  const double longest = start.longest;
   // After a jump, as between the states of a planner, a larger cover would not serve the next
   // cycle.
-  const bool serves_more = padding_ > motion && frontier_.is_near(start.region);
+  const bool serves_more = padding_ > longest && frontier_.is_near(start.region);
   const auto cover = [&](double padding) {
     frontier_.cover(tree_, {start.region.center, start.region.radius + padding});
   };
@@ -84,16 +85,16 @@ void TreeWalk::locate(const Start& start) noexcept {
   if (serves_more && !frontier_.is_opened()) {
     // Large boxes are left unopened, which every cycle to come would have to open.
     padding_ *= 0.25;
-    cover(padding_ > motion ? padding_ : 0.0);
+    cover(padding_ > longest ? padding_ : 0.0);
     return;
   }
-  if (padding_ > motion && !serves_more) return;  // no experience with this padding
+  if (padding_ > longest && !serves_more) return;  // no experience with this padding
   constexpr std::size_t few = 12;
   constexpr std::size_t many = 24;
   if (frontier_.size() == 0) {
-    padding_ = 2.0 * padding_ + motion;
+    padding_ = 2.0 * padding_ + longest;
   } else if (frontier_.size() < few) {
-    padding_ = 1.5 * padding_ + 0.1 * motion;
+    padding_ = 1.5 * padding_ + 0.1 * longest;
   } else if (frontier_.size() > many) {
     padding_ *= 0.7;
   }
@@ -155,7 +156,7 @@ void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
     const std::uint32_t child = node.child[lane];
-    if (!node.is_used(lane)) break;
+    if (!node.is_used(lane)) break;  // child 0 would be the root again, and the walk without end
     if ((child & NodeBlock::leaf_bit) != 0) prefetch_leaf(child & ~NodeBlock::leaf_bit);
     const float time = entries.time[lane];
     // If the motion begins in a box, the tip may be too close already: it is opened now, however
@@ -229,6 +230,7 @@ void TreeWalk::sharpen(Deferred& deferred) noexcept {
   const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // not before it, when rounded
   budget_.spend(work_of_sharpening);
   // Starts at most_sharpenings for long motions only.
+  static_assert(most_sharpenings > 1);
   const bool is_first_of_long_motion = deferred.sharpenings_left == most_sharpenings;
   --deferred.sharpenings_left;
   if (is_first_of_long_motion) {

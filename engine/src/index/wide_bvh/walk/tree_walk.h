@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <vector>
 
 #include "../tree.h"
@@ -18,6 +19,17 @@ namespace keepout {
 /// leave out triangles that are surely clear. The walk remembers boxes and proofs from motion to
 /// motion and from cycle to cycle, which saves time; steps are the same without them, unless the
 /// work budget ends first.
+///
+/// Its words, in the order in which a motion meets them:
+///
+///     frontier    the boxes at which the motions of some cycles begin, within a padded region
+///     entries     when the motion enters the boxes of a node
+///     begun       boxes in which the motion starts, opened at once
+///     waiting     boxes and deferred suspects that it may meet later, the earliest first
+///     suspects    triangles of a leaf that it is not proved to stay clear of
+///     deferred    suspects that are still to be visited
+///     sharpen     find better proofs, which make suspects clear or later; delay: only later
+///     visit       show a triangle to the visitor, whose number for it is the note
 class TreeWalk final : public MotionWalk {
  public:
   /// Both must outlive this. Precondition: the tree is not refit.
@@ -105,9 +117,11 @@ class TreeWalk final : public MotionWalk {
   TriangleVisitor* visitor_ = nullptr;
   double latest_ = 0.0;  // contacts after this fraction of the motion do not matter
   std::array<float, 3> motion_{};
-  // Boxes that it begins in, to be opened now. Those of the frontier, and fifteen more a level,
-  // fit.
+  // Boxes that it begins in, to be opened now, the last one first: those of the frontier, and
+  // fifteen more a level.
   std::array<std::uint32_t, 16 * NodeBlock::lanes> begun_{};
+  static_assert(std::tuple_size_v<decltype(begun_)> >=
+                Frontier::most_boxes + (NodeBlock::lanes - 1) * WideBvh::most_levels);
   std::size_t begun_size_ = 0;
   std::vector<Waiting> waiting_;  // a heap, the earliest first
   std::size_t waiting_size_ = 0;
