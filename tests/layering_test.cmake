@@ -54,7 +54,7 @@ foreach(part engine solvers control robot factory)
   forbid(${part} "${include}(urdf_[a-z]+/|tinyxml|keepout/urdf/)" "the library reads no description of robots")
 endforeach()
 
-# What is under the GPL stays in its own folder, which is a module.
+# Code that includes headers under the GPL stays in its own folder, which is a module.
 foreach(part engine solvers control robot factory fixtures oracle adapters/include adapters/src
         adapters/bullet adapters/ccd adapters/embree adapters/fcl adapters/ompl adapters/urdf)
   forbid(${part} "${include}CGAL/"
@@ -117,7 +117,7 @@ foreach(folder IN LISTS folders)
   forbid(apps/keepout/${folder} "${include}\"(commands\\.h|\\.\\./|(${others}|bench|compare|plan)/)" "of the command, ${folder} knows only: ${known_to_${folder}}")
 endforeach()
 
-# What compares stands on the command, and the command does not know it.
+# Comparisons include the command, and the command includes no comparison.
 set(known_to_bench compare simulate)
 set(known_to_compare)
 set(known_to_plan verify)

@@ -34,7 +34,10 @@ constexpr PeerPart peers[] = {
     {"bullet_quantized", needs_bullet, "bullet"},
     {"bullet", needs_bullet, "bullet"},
     {"bullet_callback", needs_bullet, "bullet"},
-    {"embree", "Embree 3 (install libembree-dev, configure with KEEPOUT_WITH_EMBREE=ON)", "embree"},
+    {"embree",
+     "Embree 3 (install keepout-modules; in the sources, install libembree-dev and set "
+     "KEEPOUT_WITH_EMBREE=ON)",
+     "embree"},
     {"cgal", "CGAL (install libcgal-dev, configure with KEEPOUT_WITH_CGAL=ON; under the GPL)",
      "cgal"},
 };

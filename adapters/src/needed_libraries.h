@@ -5,12 +5,14 @@
 
 namespace keepout {
 
-// What absent parts need.
+// The libraries that parts need, for the message that a part is absent.
 inline constexpr std::string_view needs_fcl =
-    "FCL (install libfcl-dev, configure with KEEPOUT_WITH_FCL=ON)";
+    "FCL (install keepout-modules; in the sources, install libfcl-dev and set KEEPOUT_WITH_FCL=ON)";
 inline constexpr std::string_view needs_bullet =
-    "Bullet (install libbullet-dev and pkg-config, configure with KEEPOUT_WITH_BULLET=ON)";
+    "Bullet (install keepout-modules; in the sources, install libbullet-dev and pkg-config and set "
+    "KEEPOUT_WITH_BULLET=ON)";
 inline constexpr std::string_view needs_ccd =
-    "libccd (install libccd-dev, configure with KEEPOUT_WITH_CCD=ON)";
+    "libccd (install keepout-modules; in the sources, install libccd-dev and set "
+    "KEEPOUT_WITH_CCD=ON)";
 
 }  // namespace keepout

@@ -151,15 +151,15 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       "brute force and to our own solver as it is timed");
   command.add_flag("--list", options.list, "Say what there is to measure, and stop");
   const auto add_list = [&](const char* name, std::vector<std::string>& list,
-                            std::vector<std::string> known, const char* text) {
-    command.add_option(name, list, text)
-        ->delimiter(',')
-        ->type_name("NAMES")
-        ->check(one_of(std::move(known)));
+                            const CLI::Validator& known, const char* text) {
+    command.add_option(name, list, text)->delimiter(',')->type_name("NAMES")->check(known);
   };
-  add_list("--index", options.selection.indices, index_names(), "Indices to measure");
-  add_list("--activation", options.selection.activations, names(activation_rules()), "Rules to measure");
-  add_list("--solver", options.selection.solvers, solver_names(), "Solvers to measure");
+  add_list("--index", options.selection.indices, one_of_parts(index_names(), index_backends),
+           "Indices to measure");
+  add_list("--activation", options.selection.activations, one_of(names(activation_rules())),
+           "Rules to measure");
+  add_list("--solver", options.selection.solvers, one_of_parts(solver_names(), solver_backends),
+           "Solvers to measure");
   command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
       ->delimiter(',')
       ->type_name("NAMES");

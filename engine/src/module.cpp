@@ -69,9 +69,9 @@ void* load(const char* module) {
   }
   const auto* const version = static_cast<const char*>(dlsym(handle, "keepout_module_version"));
   if (version == nullptr || std::string_view(version) != KEEPOUT_VERSION) {
-    throw Error("the module " + file.string() + " is of keepout " +
-                (version == nullptr ? "of unknown version" : version) + ", and this is keepout " +
-                KEEPOUT_VERSION + "; install both of one version");
+    throw Error("the module " + file.string() + " is of " +
+                (version == nullptr ? "no keepout" : "keepout " + std::string(version)) +
+                ", and this is keepout " + KEEPOUT_VERSION + "; install both of one version");
   }
   return handle;
 }
@@ -84,9 +84,11 @@ const void* table_in_module(const char* module, const char* table) {
   static std::mutex mutex;
   static std::map<std::string, void*, std::less<> > loaded;
   const std::scoped_lock lock(mutex);
-  auto found = loaded.find(std::string_view(module));
-  if (found == loaded.end()) found = loaded.emplace(module, load(module)).first;
-  return found->second == nullptr ? nullptr : dlsym(found->second, table);
+  const auto found = loaded.find(std::string_view(module));
+  void* const handle = found == loaded.end() ? load(module) : found->second;
+  if (handle == nullptr) return nullptr;  // it may come: the folder is searched again next time
+  loaded.emplace(module, handle);
+  return dlsym(handle, table);
 }
 
 #endif

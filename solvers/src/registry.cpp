@@ -13,7 +13,8 @@ constexpr SolverBackend ours[] = {
      1e-9, nullptr}};
 
 constexpr std::string_view needs_nlopt =
-    "NLopt (install libnlopt-dev, configure with KEEPOUT_WITH_NLOPT=ON)";
+    "NLopt (install keepout-modules; in the sources, install libnlopt-dev and set "
+    "KEEPOUT_WITH_NLOPT=ON)";
 constexpr PeerPart peers[] = {{"nlopt_slsqp", needs_nlopt, "nlopt"},
                               {"nlopt_cobyla", needs_nlopt, "nlopt"},
                               {"nlopt_mma", needs_nlopt, "nlopt"}};

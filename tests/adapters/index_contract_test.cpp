@@ -5,8 +5,8 @@
 #include <future>
 #include <set>
 
-#include "keepout/adapters/index_registry.h"
 #include "index_module.h"
+#include "keepout/adapters/index_registry.h"
 #include "messages.h"
 
 namespace keepout {

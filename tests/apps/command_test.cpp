@@ -167,6 +167,24 @@ TEST_F(Command, AClosedLoopFollowsItsGoalsUpToTheSurface) {
   EXPECT_LT((tip - Vec3(3, 4, 50.25)).norm(), 1e-9);
 }
 
+TEST_F(Command, APartWhoseModuleIsAbsentOrBrokenSaysWhatToDo) {
+  folder_.write("poses.txt", "0 0 60 1 2 -3\n");
+  folder_.write("bullet.so", "no shared object");
+  const auto with = [&](const std::string& part) {
+    return folder_.run("replay cube.stl --poses poses.txt --out s.csv " + part,
+                       "KEEPOUT_MODULES=.");
+  };
+  for (const char* part : {"--index fcl_obbrss", "--solver nlopt_mma"}) {
+    const Outcome refused = with(part);
+    EXPECT_NE(refused.status, 0) << part;
+    EXPECT_CONTAINS(refused.output, "install keepout-modules") << part;
+  }
+  const Outcome broken = with("--index bullet");
+  EXPECT_NE(broken.status, 0);
+  EXPECT_CONTAINS(broken.output, "bullet.so cannot be loaded");
+  EXPECT_EQ(with("--index wide_bvh").status, 0) << "what needs no module";
+}
+
 TEST_F(Command, EveryIndexAndRuleCanBeChosen) {
   folder_.write("poses.txt", "3 4 51 1 -2 -3\n");
   for (const char* choice : {"--index brute_force", "--index pd_tree", "--activation all_faces",

@@ -43,7 +43,7 @@ for index in fcl_obbrss bullet embree; do
     fail "the command does not find the module of $index"
   ! KEEPOUT_MODULES=/nowhere usr/bin/keepout replay "$here/cube.obj" --poses poses.txt --out steps.csv \
     --index $index > said 2>&1 || fail "there is $index without its module"
-  grep -q "install lib" said || fail "without the module of $index it says: $(cat said)"
+  grep -q "install keepout-modules" said || fail "without the module of $index it says: $(cat said)"
 done
 
 for library in usr/lib/*/*.so.*; do

@@ -201,12 +201,14 @@ void add_spaces(CLI::App& command, LoadOptions& load) {
 }
 
 void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {
-  add_name(command, "--index", settings.index, index_names(), "Spatial index that finds triangles");
+  add_part(command, "--index", settings.index, index_names(), index_backends,
+           "Spatial index that finds triangles");
   command
       .add_option("--index-cache", settings.index_cache,
                   "Keep what --index wide_bvh builds in this folder, for the next run")
       ->type_name("FOLDER");
-  add_name(command, "--solver", settings.solver, solver_names(), "Solver of the step problem");
+  add_part(command, "--solver", settings.solver, solver_names(), solver_backends,
+           "Solver of the step problem");
   for (const auto& option : step_options) add_option_of(command, option, settings.options);
   for (const auto& option : motion_settings) {
     if (option.kind != OptionKind::part) add_option_of(command, option, settings);
@@ -235,7 +237,8 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings) {
                   std::string(convex_tool_forms))
           ->type_name("TOOL")
           ->excludes(command.get_option("--tool-radius"));
-  add_name(command, "--narrow-phase", settings.narrow_phase, narrow_phase_names(),
+  add_part(command, "--narrow-phase", settings.narrow_phase, narrow_phase_names(),
+           narrow_phase_backends,
            "What proposes the planes of --tool; each is proven, whatever it proposes")
       ->needs(tool);
 }

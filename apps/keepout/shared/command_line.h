@@ -14,6 +14,7 @@
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
+#include "keepout/registry.h"
 #include "keepout/step/guide.h"
 
 namespace keepout::app {
@@ -50,6 +51,22 @@ CLI::Validator one_of(std::span<const std::string_view> names) {
     values.emplace_back(name, static_cast<Enum>(values.size()));
   }
   return one_of(values);
+}
+
+/// Accepts the names of the parts that can be had. For a part whose module is absent, the message
+/// says what it needs. `backends` returns the registry of these parts.
+template <class Backends>
+CLI::Validator one_of_parts(std::vector<std::string> names, Backends backends) {
+  const CLI::Validator known = one_of(std::move(names));
+  const auto check = [known, backends](std::string& text) {
+    const std::string problem = known(text);
+    if (problem.empty()) return problem;
+    for (const PeerPart& part : backends().absent()) {
+      if (part.name == text) return "'" + text + "' needs " + std::string(part.needs);
+    }
+    return problem;
+  };
+  return {check, known.get_description()};
 }
 
 /// Above it, whole numbers are not read back as they were written.
@@ -116,6 +133,16 @@ CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& v
                       std::vector<std::string> names, const std::string& description);
 
 // What several commands take.
+
+/// Adds an option that chooses an index, a solver or a narrow phase by name: see one_of_parts.
+template <class Backends>
+CLI::Option* add_part(CLI::App& command, const std::string& name, std::string& value,
+                      std::vector<std::string> names, Backends backends,
+                      const std::string& description) {
+  return command.add_option(name, value, description)
+      ->check(one_of_parts(std::move(names), backends))
+      ->capture_default_str();
+}
 
 /// The mesh: a file or a fixture.
 void add_mesh(CLI::App& command, std::filesystem::path& mesh);

@@ -16,10 +16,10 @@
 namespace keepout::app {
 namespace {
 
-// What main returns, and `keepout --help` says. 0 and 1 are EXIT_SUCCESS and EXIT_FAILURE.
+// The exit status after a wrong command line. `keepout --help` names it.
 constexpr int exit_usage = 2;
 
-/// What ./run does besides, without this command.
+/// A command of ./run that is no command of this program.
 constexpr const char* also_run =
     "\nThe experiments of the paper, done again: ./run experiments, and with --full all of them.\n";
 

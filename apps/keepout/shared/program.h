@@ -17,7 +17,7 @@ class App;
 
 namespace keepout::app {
 
-/// What a program knows of how it was called.
+/// The way in which a user called a program.
 struct Call {
   std::string program;  // as the user calls it: "keepout" or "./run"
   std::string command;  // the whole command line, for records

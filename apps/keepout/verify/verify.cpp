@@ -151,7 +151,8 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       ->default_str("1/1")
       ->excludes(named)
       ->excludes(chosen);
-  add_name(command, "--index", options.index, index_names(), "Index that finds triangles");
+  add_part(command, "--index", options.index, index_names(), index_backends,
+           "Index that finds triangles");
   const std::vector<CLI::Option*> of_a_run = command.get_options([&](const CLI::Option* option) {
     return option != command.get_help_ptr() && option != command.get_help_all_ptr();
   });
