@@ -8,7 +8,6 @@
 #include <ostream>
 
 #include "bench/benchmark.h"
-#include "bench/benchmark_verdict.h"
 #include "compare/compare.h"
 #include "compare/comparison.h"
 #include "keepout/activation/registry.h"
@@ -67,7 +66,6 @@ Json record_of(const Benchmark& benchmark, const Comparison& comparison) {
                   .complete = benchmark.rows.size() >= benchmark.planned && comparison.complete,
                   .subject = "Search trees, activation rules and solvers, on the same motions",
                   .headline = headline(benchmark),
-                  .account = {account(benchmark)},
                   .machine = benchmark.machine,
                   .settings = {{"seed", std::to_string(benchmark.seed)}}});
   record["benchmark"] = json_of(benchmark);
@@ -158,7 +156,8 @@ void add_bench(CLI::App& app, BenchOptions& options) {
         ->check(one_of(std::move(known)));
   };
   add_list("--index", options.selection.indices, index_names(), "Indices to measure");
-  add_list("--activation", options.selection.activations, names(activation_rules()), "Rules to measure");
+  add_list("--activation", options.selection.activations, names(activation_rules()),
+           "Rules to measure");
   add_list("--solver", options.selection.solvers, solver_names(), "Solvers to measure");
   command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
       ->delimiter(',')
@@ -252,7 +251,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   outputs.reset();
   outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
   write_record(*outputs, record, files, notes);
-  print_verdict(out, benchmark);
+  print_headline(out, benchmark);
   out << "report: " << files.page->string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
   std::vector<std::string> kept{files.page->string()};

@@ -61,11 +61,52 @@ export function benchmarkSections(from: string, comparisonFrom: string): HTMLEle
   const isPart = valueAt("/keepout_record") !== "bench";
   return [
     ...(isPart ? [show(make("h2", { class: "part" }), `${from}/headline`)] : []),
-    ...(isPart ? paragraphs(`${from}/account`, "account") : []),
+    ...(isPart ? paragraphs(`${from}/account`, "account") : []), // of older records
+    ...conditions(from),
     ...new BenchmarkPlots(from, rows).sections(),
     ...comparison,
     benchmarkTable(from, rows),
     benchmarkMethod(from, rows),
+  ];
+}
+
+const reasons = [
+  ["not_finished", "not measured before the stop"],
+  ["not_timed", "not timed, for the reason in the table"],
+  ["reach_nothing", "no triangle in reach for most motions"],
+  ["unanswered", "no answer to more than 1 % of the steps"],
+] as const;
+
+/** Under which conditions the headline holds. Older records have it in their account. */
+function conditions(from: string): HTMLElement[] {
+  const ranking = `${from}/ranking`;
+  if (!valueAt(ranking)) return [];
+  const row = (which: string) => `${from}/rows/${valueAt(`${ranking}/${which}`)}`;
+  const [others, cores] = [`${from}/others_cores`, `${from}/machine/cores`];
+  const isBusy = Number(valueAt(others)) > 0.05 * Number(valueAt(cores));
+  return [
+    make(
+      "p",
+      { class: "account" },
+      "Median of ",
+      shown(`${row("fastest")}/queries`, grouped),
+      " steps of the fastest combination, ",
+      shown(`${row("slowest")}/queries`, grouped),
+      " of the slowest; motion sphere: ",
+      shown(`${row("fastest")}/radius`, inUnit("mm", trimmed)),
+      "; cores that other processes kept busy: ",
+      shown(others, (busy) => rounded(busy, 2)),
+      " of ",
+      shown(cores),
+      isBusy ? ", so times are longer, and vary more, than on an idle machine." : ".",
+      ...reasons
+        .filter(([key]) => valueAt(`${ranking}/${key}`))
+        .flatMap(([key, why]) => [
+          " Rows left out: ",
+          shown(`${ranking}/${key}`, grouped),
+          `, ${why}.`,
+        ]),
+    ),
   ];
 }
 
