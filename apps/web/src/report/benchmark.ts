@@ -92,13 +92,13 @@ function conditions(from: string): HTMLElement[] {
       shown(`${row("fastest")}/queries`, grouped),
       " steps of the fastest combination, ",
       shown(`${row("slowest")}/queries`, grouped),
-      " of the slowest; motion sphere: ",
+      " of the slowest. Motion sphere: ",
       shown(`${row("fastest")}/radius`, inUnit("mm", trimmed)),
-      "; cores that other processes kept busy: ",
+      ". Cores that other processes kept busy: ",
       shown(others, (busy) => rounded(busy, 2)),
       " of ",
       shown(cores),
-      isBusy ? ", so times are longer, and vary more, than on an idle machine." : ".",
+      isBusy ? ". Times are longer, and vary more, than on an idle machine." : ".",
       ...reasons
         .filter(([key]) => valueAt(`${ranking}/${key}`))
         .flatMap(([key, why]) => [
