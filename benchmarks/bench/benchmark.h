@@ -54,7 +54,7 @@ struct BenchmarkRow {
   std::uint64_t hash = 0;                     // of all steps: equal if they are equal, bit for bit
   std::vector<std::uint64_t> first_hashes{};  // of the first 1, 2, 4, 8, ... of them
   bool verified = false;                      // what is not, is not timed
-  std::string remark = {};                    // why it was not timed, or anything else worth saying
+  std::string remark = {};                    // why it was not timed, or is not ranked
 };
 
 struct Benchmark {
@@ -84,16 +84,19 @@ struct Pair {
 inline constexpr std::array pairs{Pair{"wide_bvh", "active_set"},
                                   Pair{"fcl_obbrss", "nlopt_slsqp"}};
 
-/// Returns the numbers of the fastest and of the slowest row that the headline compares (null:
-/// there is none), and how many rows it may not compare for each reason.
-Json ranking_of(const Benchmark& benchmark);
+/// The rows that the headline compares, of those timed without a remark: on the largest mesh, with
+/// the largest sphere there, under one rule. Null if there is none.
+struct Ranking {
+  const BenchmarkRow* fastest = nullptr;
+  const BenchmarkRow* slowest = nullptr;
+};
+Ranking ranking_of(const Benchmark& benchmark);
 
 /// Returns how many groups of rows that differ only in the index made the same steps, as far as
 /// their motions are the same, and how many rows are not compared.
 Json step_groups_of(const Benchmark& benchmark);
 
-/// Returns a sentence with the times of the fastest and of the slowest row on the largest mesh,
-/// with the largest sphere there.
+/// Returns a sentence with the times of the fastest and of the slowest row.
 std::string headline(const Benchmark& benchmark);
 
 /// The record of it, as docs/records.md describes it.

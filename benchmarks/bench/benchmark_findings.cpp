@@ -15,14 +15,6 @@ namespace {
 
 using Rows = std::vector<const BenchmarkRow*>;  // in their order
 
-/// True if at least half of the queries find a triangle. Otherwise the median is the time of
-/// finding nothing.
-bool reaches(const BenchmarkRow& row) { return row.reaching_share >= 0.5; }
-
-/// True if at most one step in a hundred has no answer. Otherwise a solver that gives up looks
-/// fast.
-bool answers(const BenchmarkRow& row) { return row.unsolved_share <= 0.01; }
-
 /// Returns all conditions of a row but its index and solver. The largest mesh with the largest
 /// sphere sorts last.
 auto conditions(const BenchmarkRow& row) {
@@ -36,7 +28,7 @@ double median(const BenchmarkRow* row) { return row->step->p50; }
 Rows compared(const Benchmark& benchmark) {
   Rows rows;
   for (const BenchmarkRow& row : benchmark.rows) {
-    if (row.step && row.step->p50 > 0.0 && reaches(row) && answers(row)) rows.push_back(&row);
+    if (row.step && row.step->p50 > 0.0 && row.remark.empty()) rows.push_back(&row);
   }
   if (rows.empty()) return rows;
   const auto largest = std::ranges::max(
@@ -58,25 +50,11 @@ std::uint64_t hash_over(const BenchmarkRow& row, std::size_t steps) {
 
 }  // namespace
 
-Json ranking_of(const Benchmark& benchmark) {
-  const auto& all = benchmark.rows;
-  const auto number = [&](const BenchmarkRow* row) { return row - all.data(); };
-  const auto count = [&](const auto& is_left_out) {
-    return std::ranges::count_if(all, is_left_out);
-  };
-  Json ranking = {
-      {"fastest", nullptr},
-      {"slowest", nullptr},
-      {"not_finished", benchmark.planned - std::min(all.size(), benchmark.planned)},
-      {"not_timed", count([](const auto& row) { return !row.step; })},
-      {"reach_nothing", count([](const auto& row) { return row.step && !reaches(row); })},
-      {"unanswered", count([](const auto& row) { return row.step && !answers(row); })}};
-  if (const Rows rows = compared(benchmark); !rows.empty()) {
-    const auto [fastest, slowest] = std::ranges::minmax(rows, {}, median);
-    ranking["fastest"] = number(fastest);
-    ranking["slowest"] = number(slowest);
-  }
-  return ranking;
+Ranking ranking_of(const Benchmark& benchmark) {
+  const Rows rows = compared(benchmark);
+  if (rows.empty()) return {};
+  const auto [fastest, slowest] = std::ranges::minmax(rows, {}, median);
+  return {fastest, slowest};
 }
 
 Json step_groups_of(const Benchmark& benchmark) {
@@ -120,9 +98,8 @@ Json step_groups_of(const Benchmark& benchmark) {
 }
 
 std::string headline(const Benchmark& benchmark) {
-  const Rows rows = compared(benchmark);
-  if (rows.empty()) return "No combination was timed with triangles in reach and 99 % answers.";
-  const auto [fastest, slowest] = std::ranges::minmax(rows, {}, median);
+  const auto [fastest, slowest] = ranking_of(benchmark);
+  if (fastest == nullptr) return "No combination was timed that can be ranked.";
   const auto time = [](const BenchmarkRow* row) {
     return time_text(median(row)) + " with " + row->index + " and " + row->solver;
   };

@@ -125,6 +125,10 @@ void print_table_row(std::ostream& out, const BenchmarkRow& row) {
 }
 
 Json json_of(const Benchmark& benchmark) {
+  const auto [fastest, slowest] = ranking_of(benchmark);
+  const auto number = [&](const BenchmarkRow* row) {
+    return row == nullptr ? Json() : Json(row - benchmark.rows.data());
+  };
   Json published = Json::array(), compared = Json::array();
   for (const auto& [triangles, vertices, khz] : published_rates) {
     published.push_back({{"triangles", triangles}, {"vertices", vertices}, {"khz", khz}});
@@ -142,7 +146,8 @@ Json json_of(const Benchmark& benchmark) {
           {"remarks", benchmark.remarks},
           {"published", std::move(published)},
           {"pairs", std::move(compared)},
-          {"ranking", ranking_of(benchmark)},
+          {"fastest", number(fastest)},
+          {"slowest", number(slowest)},
           {"step_groups", step_groups_of(benchmark)},
           {"rows", benchmark.rows}};
 }

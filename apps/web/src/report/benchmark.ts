@@ -70,18 +70,10 @@ export function benchmarkSections(from: string, comparisonFrom: string): HTMLEle
   ];
 }
 
-const reasons = [
-  ["not_finished", "not measured before the stop"],
-  ["not_timed", "not timed, for the reason in the table"],
-  ["reach_nothing", "no triangle in reach for most motions"],
-  ["unanswered", "no answer to more than 1 % of the steps"],
-] as const;
-
 /** Under which conditions the headline holds. Older records have it in their account. */
 function conditions(from: string): HTMLElement[] {
-  const ranking = `${from}/ranking`;
-  if (!valueAt(ranking)) return [];
-  const row = (which: string) => `${from}/rows/${valueAt(`${ranking}/${which}`)}`;
+  if (valueAt(`${from}/fastest`) === undefined) return [];
+  const row = (which: string) => `${from}/rows/${valueAt(`${from}/${which}`)}`;
   const [others, cores] = [`${from}/others_cores`, `${from}/machine/cores`];
   const isBusy = Number(valueAt(others)) > 0.05 * Number(valueAt(cores));
   return [
@@ -99,13 +91,6 @@ function conditions(from: string): HTMLElement[] {
       " of ",
       shown(cores),
       isBusy ? ". Times are longer, and vary more, than on an idle machine." : ".",
-      ...reasons
-        .filter(([key]) => valueAt(`${ranking}/${key}`))
-        .flatMap(([key, why]) => [
-          " Rows left out: ",
-          shown(`${ranking}/${key}`, grouped),
-          `, ${why}.`,
-        ]),
     ),
   ];
 }
