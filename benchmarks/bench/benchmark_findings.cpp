@@ -23,14 +23,19 @@ auto conditions(const BenchmarkRow& row) {
 
 double median(const BenchmarkRow* row) { return row->step->p50; }
 
-/// Returns the rows that the headline may compare, all under the conditions that sort last: those
-/// of both pairs, or all rows if a pair is missing.
-Rows compared(const Benchmark& benchmark) {
+/// Returns the hash over all steps of a row, or over the first of them, a power of two.
+std::uint64_t hash_over(const BenchmarkRow& row, std::size_t steps) {
+  return row.queries == steps ? row.hash : row.first_hashes[std::bit_width(steps) - 1];
+}
+
+}  // namespace
+
+Ranking ranking_of(const Benchmark& benchmark) {
   Rows rows;
   for (const BenchmarkRow& row : benchmark.rows) {
     if (row.step && row.step->p50 > 0.0 && row.remark.empty()) rows.push_back(&row);
   }
-  if (rows.empty()) return rows;
+  if (rows.empty()) return {};
   const auto largest = std::ranges::max(
       rows, [](const auto* a, const auto* b) { return conditions(*a) < conditions(*b); });
   std::erase_if(rows, [&](const auto* row) { return conditions(*row) != conditions(*largest); });
@@ -40,20 +45,8 @@ Rows compared(const Benchmark& benchmark) {
       return row->index == pair.index && row->solver == pair.solver;
     });
   });
-  return both.size() == pairs.size() ? both : rows;
-}
-
-/// Returns the hash over all steps of a row, or over the first of them, a power of two.
-std::uint64_t hash_over(const BenchmarkRow& row, std::size_t steps) {
-  return row.queries == steps ? row.hash : row.first_hashes[std::bit_width(steps) - 1];
-}
-
-}  // namespace
-
-Ranking ranking_of(const Benchmark& benchmark) {
-  const Rows rows = compared(benchmark);
-  if (rows.empty()) return {};
-  const auto [fastest, slowest] = std::ranges::minmax(rows, {}, median);
+  const auto [fastest, slowest] =
+      std::ranges::minmax(both.size() == pairs.size() ? both : rows, {}, median);
   return {fastest, slowest};
 }
 
