@@ -8,7 +8,6 @@
 #include <ostream>
 
 #include "bench/benchmark.h"
-#include "bench/benchmark_verdict.h"
 #include "compare/compare.h"
 #include "compare/comparison.h"
 #include "keepout/activation/registry.h"
@@ -67,7 +66,6 @@ Json record_of(const Benchmark& benchmark, const Comparison& comparison) {
                   .complete = benchmark.rows.size() >= benchmark.planned && comparison.complete,
                   .subject = "Search trees, activation rules and solvers, on the same motions",
                   .headline = headline(benchmark),
-                  .account = {account(benchmark)},
                   .machine = benchmark.machine,
                   .settings = {{"seed", std::to_string(benchmark.seed)}}});
   record["benchmark"] = json_of(benchmark);
@@ -252,7 +250,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   outputs.reset();
   outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
   write_record(*outputs, record, files, notes);
-  print_verdict(out, benchmark);
+  print_headline(out, benchmark);
   out << "report: " << files.page->string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
   std::vector<std::string> kept{files.page->string()};

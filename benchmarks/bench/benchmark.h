@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
@@ -53,7 +54,7 @@ struct BenchmarkRow {
   std::uint64_t hash = 0;                     // of all steps: equal if they are equal, bit for bit
   std::vector<std::uint64_t> first_hashes{};  // of the first 1, 2, 4, 8, ... of them
   bool verified = false;                      // what is not, is not timed
-  std::string remark = {};                    // why it was not timed, or anything else worth saying
+  std::string remark = {};                    // why it was not timed, or is not ranked
 };
 
 struct Benchmark {
@@ -69,13 +70,36 @@ struct Benchmark {
 };
 
 /// What is printed for a terminal: where it ran and what the columns mean; line by line as the rows
-/// come in; and what was found in the end.
+/// come in; and, in the end, the headline and how busy other processes kept the machine.
 void print_machine(std::ostream& out, const Machine& machine);
 void print_table_head(std::ostream& out);
 void print_table_row(std::ostream& out, const BenchmarkRow& row);
-void print_verdict(std::ostream& out, const Benchmark& benchmark);
+void print_headline(std::ostream& out, const Benchmark& benchmark);
 
-/// As docs/records.md has it: the figures, and what is found in them.
+/// A pair of an index and a solver. The headline compares these two if both were timed.
+struct Pair {
+  const char* index;
+  const char* solver;
+};
+inline constexpr std::array pairs{Pair{"wide_bvh", "active_set"},
+                                  Pair{"fcl_obbrss", "nlopt_slsqp"}};
+
+/// The rows that the headline compares, of those timed without a remark: on the largest mesh, with
+/// the largest sphere there, under one rule. Null if there is none.
+struct Ranking {
+  const BenchmarkRow* fastest = nullptr;
+  const BenchmarkRow* slowest = nullptr;
+};
+Ranking ranking_of(const Benchmark& benchmark);
+
+/// Returns how many groups of rows that differ only in the index made the same steps, as far as
+/// their motions are the same, and how many rows are not compared.
+Json step_groups_of(const Benchmark& benchmark);
+
+/// Returns a sentence with the times of the fastest and of the slowest row.
+std::string headline(const Benchmark& benchmark);
+
+/// The record of it, as docs/records.md describes it.
 Json json_of(const Benchmark& benchmark);
 
 /// The rows, one a line, below a line of names; what was not measured is empty. Each says where it

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "bench/benchmark.h"
-#include "bench/benchmark_verdict.h"
 #include "record/flat_rows.h"
 #include "record/json_parts.h"
 #include "shared/number_text.h"
@@ -87,11 +86,15 @@ void print_machine(std::ostream& out, const Machine& machine) {
          "itself\n";
 }
 
-void print_verdict(std::ostream& out, const Benchmark& benchmark) {
+void print_headline(std::ostream& out, const Benchmark& benchmark) {
   for (const auto& [name, remark] : benchmark.remarks) {
     out << '\n' << name << ": " << remark;
   }
-  out << '\n' << headline(benchmark) << '\n' << account(benchmark) << '\n';
+  out << '\n' << headline(benchmark) << '\n';
+  if (benchmark.others_cores) {
+    out << "cores that other processes kept busy: " << rounded(*benchmark.others_cores, 2) << " of "
+        << benchmark.machine.cores << '\n';
+  }
 }
 
 void print_table_head(std::ostream& out) {
@@ -122,15 +125,18 @@ void print_table_row(std::ostream& out, const BenchmarkRow& row) {
 }
 
 Json json_of(const Benchmark& benchmark) {
-  Json published = Json::array(), pairs = Json::array();
+  const auto [fastest, slowest] = ranking_of(benchmark);
+  const auto number = [&](const BenchmarkRow* row) {
+    return row == nullptr ? Json() : Json(row - benchmark.rows.data());
+  };
+  Json published = Json::array(), compared = Json::array();
   for (const auto& [triangles, vertices, khz] : published_rates) {
     published.push_back({{"triangles", triangles}, {"vertices", vertices}, {"khz", khz}});
   }
-  for (const auto& [index, solver] : {our_pair, peer_pair}) {
-    pairs.push_back({{"index", index}, {"solver", solver}});
+  for (const auto& [index, solver] : pairs) {
+    compared.push_back({{"index", index}, {"solver", solver}});
   }
   return {{"headline", headline(benchmark)},
-          {"account", account(benchmark)},
           {"complete", benchmark.rows.size() >= benchmark.planned},
           {"seed", benchmark.seed},
           {"machine", benchmark.machine},
@@ -139,8 +145,10 @@ Json json_of(const Benchmark& benchmark) {
           {"parts", benchmark.parts},
           {"remarks", benchmark.remarks},
           {"published", std::move(published)},
-          {"pairs", std::move(pairs)},
-          {"same_steps", same_steps(benchmark)},
+          {"pairs", std::move(compared)},
+          {"fastest", number(fastest)},
+          {"slowest", number(slowest)},
+          {"step_groups", step_groups_of(benchmark)},
           {"rows", benchmark.rows}};
 }
 

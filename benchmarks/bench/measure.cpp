@@ -162,6 +162,12 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
   if (constraint.makes_queries()) row.step_query = timing_of(times.step_query);
   row.activate = timing_of(times.activate);
   row.solve = timing_of(times.solve);
+  // A median of finding nothing says nothing, and a solver that gives up early only looks fast.
+  if (row.reaching_share < 0.5) {
+    row.remark = "not ranked: no triangle is in reach of more than half of the motions";
+  } else if (row.unsolved_share > 0.01) {
+    row.remark = "not ranked: more than 1 % of the steps have no answer";
+  }
 }
 
 }  // namespace keepout::app

@@ -90,7 +90,6 @@ int compare(const CompareOptions& options, std::ostream& out) {
   const Comparison comparison =
       compare_parts(label_of(subject), mesh, options.extent, [&stop] { return stop.has_come(); });
   print(out, comparison);
-  const std::vector<std::string> paragraphs = verdict(comparison);
   const CompareExtent& extent = options.extent;
   Json record = new_record(
       {.kind = "compare",
@@ -99,7 +98,7 @@ int compare(const CompareOptions& options, std::ostream& out) {
        .subject =
            "Parts that can take each other's place, held to each other and to the truth, on " +
            label_of(subject) + " (" + counted(mesh->triangle_count(), "triangle") + ")",
-       .headline = paragraphs.empty() ? "Nothing was compared." : paragraphs.back(),
+       .headline = headline(comparison),
        .machine = this_machine(),
        .settings = {{"poses under each rule", std::to_string(extent.poses)},
                     {"problems", std::to_string(extent.problems)},

@@ -33,8 +33,8 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
 /// Adds `keepout compare` and its options to the command line.
 void add_compare(CLI::App& app, CompareOptions& options);
 
-/// Compares, and prints tables and a verdict. Throws Error. For the exit status: nonzero when parts
-/// disagree by more than they may, and exit_interrupted when a signal came first.
+/// Compares, and prints tables and a headline. Throws Error. For the exit status: nonzero when
+/// parts disagree by more than they may, and exit_interrupted when a signal came first.
 int compare(const CompareOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

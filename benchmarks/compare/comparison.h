@@ -81,26 +81,17 @@ struct Comparison {
   std::vector<NarrowPhaseAgreement> narrow_phases;
 };
 
-/// Tables for a terminal, and the verdict. Parts that were not compared are left out.
-void print(std::ostream& out, const Comparison& comparison);
-
-/// All of it, the verdicts included, as docs/records.md has it; null where nothing was compared.
-Json json_of(const Comparison& comparison);
-
-// What a comparison came to, in words, all of it computed from the rows. Of rows that there are:
-// each function but the first two needs one.
-
-/// No index may differ in any bit, no solver be wrong; the narrow phases are not ours.
+/// Returns true if no index differs in any bit and no solver is wrong. The narrow phases are not
+/// keepout's, and may differ.
 bool agree(const Comparison& comparison);
 
-/// A paragraph for each kind of part that was compared, then whether those agree that must.
-std::vector<std::string> verdict(const Comparison& comparison);
+/// Returns a sentence on whether the parts agree, with the numbers of those that do not.
+std::string headline(const Comparison& comparison);
 
-/// On queries and steps, and on where equal steps are no finding, as they could not differ.
-std::string index_verdict(const std::vector<IndexAgreement>& rows);
-/// On answers, and on why some solvers got fewer problems.
-std::string solver_verdict(const std::vector<SolverAgreement>& rows);
-/// On distances.
-std::string narrow_phase_verdict(const std::vector<NarrowPhaseAgreement>& rows);
+/// Tables for a terminal, and the headline. Parts that were not compared are left out.
+void print(std::ostream& out, const Comparison& comparison);
+
+/// The record of it, as docs/records.md describes it; null where nothing was compared.
+Json json_of(const Comparison& comparison);
 
 }  // namespace keepout::app

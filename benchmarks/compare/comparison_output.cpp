@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <ostream>
 #include <string>
 
@@ -72,7 +73,40 @@ void print_outcomes(std::ostream& out, const std::vector<SolverAgreement>& solve
   }
 }
 
+std::size_t sum(const auto& rows, auto count) {
+  std::size_t result = 0;
+  for (const auto& row : rows) result += row.*count;
+  return result;
+}
+
 }  // namespace
+
+bool agree(const Comparison& comparison) {
+  return std::ranges::all_of(comparison.indices,
+                             [](const Index& row) {
+                               return row.missed == 0 && row.invented == 0 &&
+                                      row.plane_angle == 0.0 && row.steps_that_differ == 0;
+                             }) &&
+         sum(comparison.solvers, &Solved::wrong) == 0;
+}
+
+std::string headline(const Comparison& comparison) {
+  const auto& [is_complete, indices, solvers, narrow_phases] = comparison;
+  const std::string extent = is_complete ? "" : "Interrupted. ";
+  if (indices.empty()) return extent + "Nothing was compared.";
+  if (agree(comparison)) {
+    return extent + "All indices made brute force's steps in " +
+           counted(sum(indices, &Index::poses), "comparison") + ", and no solver was wrong on " +
+           counted(sum(solvers, &Solved::problems), "problem") + ".";
+  }
+  const double angle = std::ranges::max(indices, {}, &Index::plane_angle).plane_angle;
+  return extent + "Parts disagree, please report it: " +
+         counted(sum(indices, &Index::missed), "missed triangle") + ", " +
+         counted(sum(indices, &Index::invented), "invented triangle") + ", " +
+         counted(sum(indices, &Index::steps_that_differ), "different step") + ", planes up to " +
+         small(angle) + " rad apart, " + counted(sum(solvers, &Solved::wrong), "wrong answer") +
+         ".";
+}
 
 void print(std::ostream& out, const Comparison& comparison) {
   if (!comparison.indices.empty()) {
@@ -90,23 +124,20 @@ void print(std::ostream& out, const Comparison& comparison) {
         << ", on either side\n";
     print_rows(out, narrow_phase_columns, comparison.narrow_phases);
   }
-  out << "\nVerdict\n";
-  for (const std::string& paragraph : verdict(comparison)) out << "  " << paragraph << '\n';
+  out << '\n' << headline(comparison) << '\n';
 }
 
 Json json_of(const Comparison& comparison) {
-  const auto part = [](const auto& columns, const auto& rows, const auto& in_words) -> Json {
-    if (rows.empty()) return nullptr;
-    return {{"verdict", in_words(rows)}, {"rows", json_of(columns, rows)}};
+  const auto part = [](const auto& columns, const auto& rows) {
+    return rows.empty() ? Json() : Json{{"rows", json_of(columns, rows)}};
   };
   const auto& [complete, indices, solvers, narrow_phases] = comparison;
   if (indices.empty() && solvers.empty() && narrow_phases.empty()) return nullptr;
   return {{"complete", complete},
           {"agree", agree(comparison)},
-          {"verdict", verdict(comparison)},
-          {"indices", part(index_columns, indices, index_verdict)},
-          {"solvers", part(solver_columns, solvers, solver_verdict)},
-          {"narrow_phases", part(narrow_phase_columns, narrow_phases, narrow_phase_verdict)}};
+          {"indices", part(index_columns, indices)},
+          {"solvers", part(solver_columns, solvers)},
+          {"narrow_phases", part(narrow_phase_columns, narrow_phases)}};
 }
 
 }  // namespace keepout::app

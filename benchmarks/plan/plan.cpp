@@ -97,7 +97,6 @@ int plan(const PlanOptions& options, std::ostream& out) {
   if (auto* const csv = outputs.stream("--csv")) print_csv(*csv, flat(all));
   write_record(outputs, record, options.files, std::cerr);
   print_wrapped(out, record["subject"]);
-  print_wrapped(out, record["account"]);
   out << '\n';
   print_summaries(out, all);
   if (stop.has_come()) {

@@ -134,41 +134,32 @@ std::string headline_of(const Json& runs, bool is_instrument) {
                         : "come nearer to the anatomy than allowed, or enter it.");
 }
 
-/// Returns subject, account and settings of a plan for a tip.
-RecordHead head_of_a_tip(const PlanOptions& options) {
+/// Returns what the head of a record says of the options.
+RecordHead head_of(const PlanOptions& options) {
+  const bool is_instrument = !options.robot.empty();
+  const std::string each = is_instrument ? "each run" : "each problem";
+  const std::string kept = is_instrument ? "margin" : "clearance";
   const std::string seconds = trimmed(options.seconds) + " s";
-  const std::string clearance = trimmed(options.clearance()) + " mm";
-  return {.kind = "plan",
-          .subject = "Plans through anatomy, judged by an exact oracle: " + options.planner + ", " +
-                     seconds + " for each problem, clearance " + clearance + ", seed " +
-                     std::to_string(options.seed) + (options.simplify ? ", simplified" : ""),
-          .account = {"The sliding checker has a planner of its own, SlidingConnect. Valid is a "
-                      "path whose whole way keeps the clearance."},
-          .settings = {{"planner", options.planner},
-                       {"time for each problem", seconds},
-                       {"clearance", clearance},
-                       {"motion sphere radius", trimmed(options.radius) + " mm"},
-                       {"problems of each mesh", std::to_string(options.problems)}}};
-}
-
-RecordHead head_of_an_instrument(const PlanOptions& options) {
-  const std::string seconds = trimmed(options.seconds) + " s";
-  const std::string margin = trimmed(options.margin) + " mm";
-  return {
-      .kind = "plan_robot",
-      .subject = "Plans for a whole instrument, " + options.robot +
-                 ", judged by an independent oracle: " + options.planner + ", " + seconds +
-                 " for each run, margin " + margin,
-      .account = {"Too close, in the mesh, unproven: motions between neighbours on the paths that "
-                  "were found. The oracle looks at them every 0.05 mm; unproven are those that "
-                  "keepout does not prove in pieces of 1 mm. Valid: paths without a motion that is "
-                  "too close."},
-      .settings = {{"robot", options.robot},
-                   {"planner", options.planner},
-                   {"time for each run", seconds},
-                   {"margin", margin},
-                   {"problems of each mesh", std::to_string(options.problems)},
-                   {"runs of each problem", std::to_string(options.seeds)}}};
+  const std::string length = trimmed(is_instrument ? options.margin : options.clearance()) + " mm";
+  Json settings = {{"planner", options.planner},
+                   {"time for " + each, seconds},
+                   {kept, length},
+                   {"problems of each mesh", std::to_string(options.problems)}};
+  if (is_instrument) {
+    settings["robot"] = options.robot;
+    settings["runs of each problem"] = std::to_string(options.seeds);
+  } else {
+    settings["motion sphere radius"] = trimmed(options.radius) + " mm";
+  }
+  settings["seed"] = std::to_string(options.seed);
+  return {.kind = is_instrument ? "plan_robot" : "plan",
+          .command = options.command,
+          .subject =
+              "Plans for " + (is_instrument ? "a whole instrument, " + options.robot : "a tip") +
+              ", judged by an independent oracle: " + options.planner + ", " + seconds + " for " +
+              each + ", " + kept + " " + length + (options.simplify ? ", simplified" : ""),
+          .machine = this_machine(),
+          .settings = std::move(settings)};
 }
 
 }  // namespace
@@ -204,12 +195,9 @@ std::vector<Checker> checkers_of(const PlanOptions& options) {
 Json record_of(const PlanOptions& options, std::span<const std::unique_ptr<Planning>> plannings,
                Json runs, bool complete) {
   const bool is_instrument = !options.robot.empty();
-  RecordHead head = is_instrument ? head_of_an_instrument(options) : head_of_a_tip(options);
-  head.command = options.command;
+  RecordHead head = head_of(options);
   head.complete = complete;
   head.headline = headline_of(runs, is_instrument);
-  head.machine = this_machine();
-  head.settings["seed"] = std::to_string(options.seed);
   Json record = new_record(head);
   if (is_instrument) {
     record["robot"] = options.robot;

@@ -142,6 +142,8 @@ const ownWords = [
   "1 %",
   "1 kHz",
   "0.000001 mm",
+  "0.05 mm",
+  "1 mm",
   "Li et al. 2020",
   "i7-8700",
 ];
@@ -386,6 +388,49 @@ test("the table of all rows is filtered by words", { skip: !bench }, async () =>
   assert.equal(rows.length, expected.length);
   assert.ok(rows.every((row) => row.includes("wide_bvh") && row.includes("certified")));
   await tab.close();
+});
+
+test("findings are told, of records without their numbers too", {
+  skip: given || !bench,
+}, async () => {
+  const told = async (tab) =>
+    new Set(
+      await tab.$$eval(".account [data-from], .account[data-from], .lead [data-from]", (all) =>
+        all.map(({ dataset }) => dataset.from),
+      ),
+    );
+  const { fastest, slowest, step_groups, rows } = bench.record.benchmark;
+  assert.ok(rows[fastest].step_us.p50 <= rows[slowest].step_us.p50);
+  const counts = ["same", "groups", "fewest_steps", "most_steps", "single", "not_verified"];
+  assert.ok(step_groups.groups > 0);
+  const expected = [
+    ...[fastest, slowest].map((row) => `/benchmark/rows/${row}/queries`),
+    ...counts.map((count) => `/benchmark/step_groups/${count}`),
+    "/benchmark/others_cores",
+  ];
+  const tab = await opened(bench.file, large);
+  const seen = await told(tab);
+  assert.deepEqual(
+    expected.filter((from) => !seen.has(from)),
+    [],
+  );
+  await tab.close();
+
+  // As it was written before there were such numbers.
+  const older = structuredClone(bench.record);
+  older.account = ["Medians of 7 steps."];
+  delete older.benchmark.fastest;
+  delete older.benchmark.slowest;
+  delete older.benchmark.step_groups;
+  Object.assign(older.benchmark, { account: older.account[0], same_steps: "In 7 of 7 groups." });
+  older.comparison.verdict = ["All parts agree that must."];
+  older.comparison.indices.verdict = "Of 7 queries, none differs.";
+  writeFileSync(join(folder, "older.json"), JSON.stringify(older));
+  const old = await opened(run("older", "report", join(folder, "older.json")), large);
+  await assertNumbers(old, older, "body");
+  assert.ok((await told(old)).has("/account/0"));
+  assert.deepEqual(old.faults, []);
+  await old.close();
 });
 
 /** How much the pixels of each picture differ from each other. */

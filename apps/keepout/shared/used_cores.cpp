@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <ctime>
 #include <fstream>
-
-#include "shared/number_text.h"
+#include <string>
 
 namespace keepout::app {
 namespace {
@@ -48,21 +47,6 @@ std::optional<double> UsedCores::others() const {
   if (!all || !all_start_) return std::nullopt;
   // The system counts in hundredths of a second.
   return std::max(0.0, (*all - *all_start_ - (own_time() - own_start_)) / seconds());
-}
-
-bool is_busy(const std::optional<double>& others, unsigned cores) {
-  // What an idle system does by itself is less.
-  return others && *others > 0.05 * cores;
-}
-
-std::string others_text(const std::optional<double>& others, unsigned cores) {
-  if (!others) return {};
-  return is_busy(others, cores) ? "The machine was busy: other processes kept " +
-                                      rounded(*others, 2) + " of its " + counted(cores, "core") +
-                                      " at work meanwhile, so that times are longer, and "
-                                      "differ by more, than on an idle one."
-                                : "Other processes kept " + rounded(*others, 2) + " of its " +
-                                      counted(cores, "core") + " at work meanwhile.";
 }
 
 }  // namespace keepout::app

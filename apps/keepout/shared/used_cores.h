@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <optional>
-#include <string>
 
 namespace keepout::app {
 
@@ -26,11 +25,5 @@ class UsedCores {
   double own_start_;                 // [s]
   std::optional<double> all_start_;  // [s]
 };
-
-/// Whether others kept so many of the machine's cores at work that it bears on times.
-bool is_busy(const std::optional<double>& others, unsigned cores);
-
-/// A sentence on what others did to the times, or that they did nothing; empty where nobody knows.
-std::string others_text(const std::optional<double>& others, unsigned cores);
 
 }  // namespace keepout::app

@@ -162,6 +162,7 @@ TEST_P(Measure, CountsWhatASolverLeavesUnanswered) {
   EXPECT_TRUE(row.step);
   EXPECT_GT(row.unsolved_share, 0.005);
   EXPECT_LT(row.unsolved_share, 0.2);
+  EXPECT_EQ(row.remark.empty(), row.unsolved_share <= 0.01) << row.unsolved_share;
 }
 
 TEST_P(Measure, TakesAnyBitForADifferenceWhereNoneIsAllowed) {

@@ -42,10 +42,7 @@ TEST_F(CompareCommand, HoldsEveryIndexToBruteForceAndSaysWhatItCameTo) {
   EXPECT_EQ(searched, (std::set<std::string>{"pd_tree", "wide_bvh"}))
       << "that is the form that users run";
   EXPECT_EQ(comparison["agree"], true);
-  for (const json& paragraph : comparison["verdict"]) {
-    EXPECT_CONTAINS(outcome.output, paragraph.get<std::string>()) << paragraph;
-  }
-  EXPECT_CONTAINS(outcome.output, "indices give brute force's steps, bit for bit");
+  EXPECT_CONTAINS(outcome.output, read("c.json")["headline"].get<std::string>());
 }
 
 TEST_F(CompareCommand, WritesWhereItRanAndHowToDoItAgain) {
@@ -68,10 +65,10 @@ TEST_F(CompareCommand, KeepsWhatIsFinishedWhenItIsInterrupted) {
       folder.run("compare cube.stl --poses 6 --problems 200000 --pairs 10 --json c.json",
                  "timeout --foreground --preserve-status --signal=INT 6");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
-  EXPECT_CONTAINS(outcome.output, "Interrupted: ");
-  EXPECT_CONTAINS(outcome.output, "So far all parts agree that must.");
+  EXPECT_CONTAINS(outcome.output, "Interrupted");
   const json comparison = read("c.json")["comparison"];
   EXPECT_EQ(comparison["complete"], false);
+  EXPECT_EQ(comparison["agree"], true);
   EXPECT_FALSE(comparison["indices"].empty()) << "they were finished";
   EXPECT_TRUE(comparison["narrow_phases"].empty());
 }

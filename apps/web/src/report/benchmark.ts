@@ -61,11 +61,37 @@ export function benchmarkSections(from: string, comparisonFrom: string): HTMLEle
   const isPart = valueAt("/keepout_record") !== "bench";
   return [
     ...(isPart ? [show(make("h2", { class: "part" }), `${from}/headline`)] : []),
-    ...(isPart ? paragraphs(`${from}/account`, "account") : []),
+    ...(isPart ? paragraphs(`${from}/account`, "account") : []), // of older records
+    ...conditions(from),
     ...new BenchmarkPlots(from, rows).sections(),
     ...comparison,
     benchmarkTable(from, rows),
     benchmarkMethod(from, rows),
+  ];
+}
+
+/** Under which conditions the headline holds. Older records have it in their account. */
+function conditions(from: string): HTMLElement[] {
+  if (valueAt(`${from}/fastest`) === undefined) return [];
+  const row = (which: string) => `${from}/rows/${valueAt(`${from}/${which}`)}`;
+  const [others, cores] = [`${from}/others_cores`, `${from}/machine/cores`];
+  const isBusy = Number(valueAt(others)) > 0.05 * Number(valueAt(cores));
+  return [
+    make(
+      "p",
+      { class: "account" },
+      "Median of ",
+      shown(`${row("fastest")}/queries`, grouped),
+      " steps of the fastest combination, ",
+      shown(`${row("slowest")}/queries`, grouped),
+      " of the slowest. Motion sphere: ",
+      shown(`${row("fastest")}/radius`, inUnit("mm", trimmed)),
+      ". Cores that other processes kept busy: ",
+      shown(others, (busy) => rounded(busy, 2)),
+      " of ",
+      shown(cores),
+      isBusy ? ". Times are longer, and vary more, than on an idle machine." : ".",
+    ),
   ];
 }
 

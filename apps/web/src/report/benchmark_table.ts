@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { grouped } from "../page/elements.ts";
 import type { BenchmarkRow } from "./benchmark.ts";
 import { valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { type Format, mean, percent, rounded, show } from "./shown.ts";
+import { type Format, mean, percent, rounded, shown } from "./shown.ts";
 import { type Column, column, named, rowFilter, scrolled, table } from "./table.ts";
 
 /** Nothing for what an index of no cost has. */
@@ -44,6 +45,29 @@ const only: readonly Column[] = [column("query 99 % [µs]", "/query_us/p99", rou
 export const columnsOf = (...wanted: readonly string[]): Column[] =>
   [...columns, ...only].filter(({ from }) => wanted.includes(from));
 
+/** In how many groups of rows all indices made the same steps. Older records do not have the counts. */
+function sameSteps(groups: string): HTMLElement[] {
+  if (!valueAt(`${groups}/groups`)) return [];
+  const count = (key: string) => shown(`${groups}/${key}`, grouped);
+  return [
+    lead(
+      "Rows that differ only in the index made the same steps, bit for bit, in ",
+      count("same"),
+      " of ",
+      count("groups"),
+      " groups. Compared were the first ",
+      count("fewest_steps"),
+      " to ",
+      count("most_steps"),
+      " steps that such rows have in common. Left out: ",
+      count("single"),
+      " rows without another index, ",
+      count("not_verified"),
+      " rows not verified.",
+    ),
+  ];
+}
+
 /** Every row of a benchmark, the largest mesh first, then the largest sphere, then the fastest. */
 export function benchmarkTable(from: string, rows: readonly BenchmarkRow[]): HTMLElement {
   const meshes = [...new Set(rows.map(({ mesh }) => mesh))];
@@ -67,7 +91,7 @@ export function benchmarkTable(from: string, rows: readonly BenchmarkRow[]): HTM
     lead(
       "Mesh by mesh, the largest size first, then the largest sphere, then the fastest step, until another heading is pressed. Times are medians unless they say otherwise; counts are means. Rows with the same hash made the same steps, bit for bit.",
     ),
-    ...(valueAt(`${from}/same_steps`) ? [show(lead(), `${from}/same_steps`)] : []),
+    ...sameSteps(`${from}/step_groups`),
     rowFilter(content),
     scrolled(content, "scroll windowed"),
   );

@@ -70,7 +70,7 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     lead(
       "All paths found under each checker. ",
       make("b", {}, "Red"),
-      ": nearer to the mesh than allowed, or through it.",
+      ": nearer to the mesh than allowed, or through it. A path is valid if all of it keeps the clearance. The sliding checker has a planner of its own, SlidingConnect.",
     ),
     scrolled(
       table(

@@ -39,7 +39,13 @@ export function robotPlanningSections(): HTMLElement[] {
     column("length [mm]", "/length_mm", rounded),
   ];
   return [
-    section("Under each checker", scrolled(table(entries("/summaries"), summaries))),
+    section(
+      "Under each checker",
+      lead(
+        "Motions are those between neighbors on the paths that were found. The oracle examines them every 0.05 mm. Unproven are those that keepout does not prove in pieces of 1 mm. A path is valid if no motion is too close.",
+      ),
+      scrolled(table(entries("/summaries"), summaries)),
+    ),
     section(
       "The runs",
       lead("What is empty was not solved. No clearance: it never came as near as the margin."),
