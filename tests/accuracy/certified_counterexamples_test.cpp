@@ -5,7 +5,7 @@
 #include "accuracy/segment_crossing.h"
 #include "keepout/fixtures/counterexamples.h"
 
-namespace keepout::test {
+namespace keepout::test::certified_counterexamples {
 namespace {
 
 constexpr std::string_view on_the_mesh = "CE4_on_a_ridge";
@@ -117,4 +117,4 @@ TEST(CertifiedCounterexamples, OnlyOneTipIsOnItsMesh) {
 }
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::certified_counterexamples

@@ -5,7 +5,7 @@
 #include "keepout/adapters/index_registry.h"
 #include "keepout/index/query.h"
 
-namespace keepout::test {
+namespace keepout::test::certified_determinism {
 namespace {
 
 constexpr double margin = 0.3;
@@ -226,4 +226,4 @@ TEST_P(CertifiedDeterminism, TheOriginHardlyMatters) {
 INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedDeterminism, testing::ValuesIn(shapes()), by_name);
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::certified_determinism

@@ -5,7 +5,7 @@
 
 #include "accuracy/certified_loop.h"
 
-namespace keepout::test {
+namespace keepout::test::certified_joints {
 namespace {
 
 constexpr double radius = 1.0, margin = 0.25;
@@ -230,4 +230,4 @@ TEST(CertifiedCapacity, OfTooFewPlanesIsAStatusOrASafeMotion) {
 }
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::certified_joints

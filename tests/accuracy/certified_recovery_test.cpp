@@ -5,7 +5,7 @@
 
 #include "accuracy/certified_loop.h"
 
-namespace keepout::test {
+namespace keepout::test::certified_recovery {
 namespace {
 
 enum class Forbidden { inside, outside, nowhere };
@@ -286,4 +286,4 @@ TEST(LeastRetreat, IsATolerance) {
 }
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::certified_recovery

@@ -5,7 +5,7 @@
 
 #include "accuracy/certified_loop.h"
 
-namespace keepout::test {
+namespace keepout::test::certified_sliding {
 namespace {
 
 struct Plate {
@@ -145,4 +145,4 @@ TEST_P(CertifiedRetreat, IsNeverSlowed) {
 INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedRetreat, testing::ValuesIn(shapes()), by_name);
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::certified_sliding

@@ -4,7 +4,7 @@
 #include "accuracy/certified_loop.h"
 #include "guards.h"
 
-namespace keepout::test {
+namespace keepout::test::certified_solver {
 namespace {
 
 constexpr double radius = 1.0, margin = 0.25;
@@ -159,4 +159,4 @@ TEST_P(CertifiedSolver, NoLieMakesAMotionUnsafe) {
 INSTANTIATE_TEST_SUITE_P(Shapes, CertifiedSolver, testing::ValuesIn(shapes()), by_name);
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::certified_solver

@@ -10,7 +10,7 @@
 #include "keepout/error.h"
 #include "keepout/index/wide_bvh.h"
 
-namespace keepout::test {
+namespace keepout::test::moving_anatomy {
 namespace {
 
 constexpr double margin = 0.5;
@@ -239,4 +239,4 @@ TEST(MovingAnatomy, AnotherMeshAltogetherMayBeFollowed) {
 }
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::moving_anatomy

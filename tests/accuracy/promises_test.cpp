@@ -14,7 +14,7 @@
 #include "keepout/index/wide_bvh.h"
 #include "messages.h"
 
-namespace keepout::test {
+namespace keepout::test::promises {
 namespace {
 
 /// The same surface in another unit.
@@ -362,4 +362,4 @@ TEST(SignOfZero, IsPlusWhateverItWasInWhatGoesIn) {
 }
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::promises

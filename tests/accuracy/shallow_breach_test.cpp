@@ -5,7 +5,7 @@
 #include "accuracy/certified_loop.h"
 #include "keepout/index/query.h"
 
-namespace keepout::test {
+namespace keepout::test::shallow_breach {
 namespace {
 
 Vec3 towards_surface(Loop& loop, const Vec3& tip) {
@@ -142,4 +142,4 @@ TEST(ShallowBreach, BesideADesiredMotionThatIsFreeIsSeen) {
 }
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::shallow_breach

@@ -6,7 +6,7 @@
 
 #include "accuracy/certified_loop.h"
 
-namespace keepout::test {
+namespace keepout::test::step_limits {
 namespace {
 
 /// A random question near a shape, with guides, rows and joints or without.
@@ -202,4 +202,4 @@ TEST_F(StepLimits, SayOfATruncatedRecoveryThatItIsOne) {
 }
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::step_limits

@@ -7,7 +7,7 @@
 #include "keepout/robot/instrument_constraint.h"
 #include "keepout/solvers/active_set.h"
 
-namespace keepout::test {
+namespace keepout::test::work_budget {
 namespace {
 
 /// Counts the triangles that a walk shows, and is otherwise the walk of a tree.
@@ -311,4 +311,4 @@ TEST(SpentBudget, NoStepIsUnsafeWhereMoreTrianglesAreNearThanFitInMemory) {
 }
 
 }  // namespace
-}  // namespace keepout::test
+}  // namespace keepout::test::work_budget

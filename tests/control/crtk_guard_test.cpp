@@ -9,7 +9,7 @@
 #include "keepout/index/wide_bvh.h"
 #include "trials.h"
 
-namespace keepout {
+namespace keepout::test::crtk_guard {
 namespace {
 constexpr double accuracy = 1e-9;  // [m]
 
@@ -238,4 +238,4 @@ TEST(CycleStatus, EachHasANameAndAReasonOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace keepout
+}  // namespace keepout::test::crtk_guard

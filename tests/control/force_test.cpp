@@ -8,7 +8,7 @@
 #include "keepout/error.h"
 #include "trials.h"
 
-namespace keepout {
+namespace keepout::test::force {
 namespace {
 
 TEST(SpringDamper, TheForceIsTheStiffnessTimesTheStretchAndSaturates) {
@@ -158,4 +158,4 @@ TEST(Passivity, TheEnergiesAddUpToRounding) {
 }
 
 }  // namespace
-}  // namespace keepout
+}  // namespace keepout::test::force

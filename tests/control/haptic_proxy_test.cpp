@@ -6,7 +6,7 @@
 #include "keepout/index/wide_bvh.h"
 #include "trials.h"
 
-namespace keepout {
+namespace keepout::test::haptic_proxy {
 namespace {
 constexpr double accuracy = 1e-6;  // of a limited step [mm]
 
@@ -376,4 +376,4 @@ TEST(HapticProxy, OptionsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace keepout
+}  // namespace keepout::test::haptic_proxy

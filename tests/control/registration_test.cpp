@@ -7,7 +7,7 @@
 #include "messages.h"
 #include "trials.h"
 
-namespace keepout {
+namespace keepout::test::registration {
 namespace {
 
 constexpr RegistrationUnits metres_to_millimetres{.transform = LengthUnit::millimetre,
@@ -163,4 +163,4 @@ TEST(Pose, IsValidOnlyWithAFinitePositionAndARotation) {
 }
 
 }  // namespace
-}  // namespace keepout
+}  // namespace keepout::test::registration

@@ -12,7 +12,7 @@
 #include "messages.h"
 #include "trials.h"
 
-namespace keepout {
+namespace keepout::test::rigid_fit {
 namespace {
 
 using Points = std::vector<Vec3>;
@@ -307,4 +307,4 @@ TEST(TargetError, IsThatOfManyDraws) {
 }
 
 }  // namespace
-}  // namespace keepout
+}  // namespace keepout::test::rigid_fit

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""`cmake --install` takes nothing that ./run has not built: products_test.py BUILD
+"""Tests that the target `products` builds what `cmake --install` copies: products_test.py BUILD
 
-Every library and program that a plain `cmake --install BUILD` copies must be made by the target
-`products`, which is all that ./run builds.
+Fails if a plain `cmake --install BUILD` would copy a library or program that the target does not build.
 """
 
 import pathlib
@@ -42,8 +41,8 @@ def main():
         sys.exit(f"only {len(taken)} files are installed: has the form of the scripts changed?")
     missing = sorted(str(path.relative_to(build)) for path in taken - made)
     if missing:
-        sys.exit("installed, but not made by ./run: " + ", ".join(missing))
-    print(f"{len(taken)} libraries and programs are installed, and ./run makes them all")
+        sys.exit("installed, but not built by the target products: " + ", ".join(missing))
+    print(f"{len(taken)} libraries and programs are installed, and the target products builds them all")
 
 
 if __name__ == "__main__":

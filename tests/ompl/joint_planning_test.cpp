@@ -17,7 +17,7 @@
 #include "states.h"
 #include "trials.h"
 
-namespace keepout {
+namespace keepout::test::joint_planning {
 namespace {
 
 constexpr double kept = 0.198;     // margin less band
@@ -263,4 +263,4 @@ TEST(JointPlanning, APlannerFindsAPathThatTheJudgePasses) {
 }
 
 }  // namespace
-}  // namespace keepout
+}  // namespace keepout::test::joint_planning

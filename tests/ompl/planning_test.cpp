@@ -16,7 +16,7 @@
 #include "states.h"
 #include "trials.h"
 
-namespace keepout {
+namespace keepout::test::planning {
 namespace {
 
 constexpr double margin = 0.5;
@@ -279,4 +279,4 @@ TEST(Planning, AStartThatIsNotFreeEndsThePlanner) {
 }
 
 }  // namespace
-}  // namespace keepout
+}  // namespace keepout::test::planning

@@ -14,7 +14,7 @@
 #include "meshes.h"
 #include "trials.h"
 
-namespace keepout {
+namespace keepout::test::projecting_steer {
 namespace {
 
 constexpr double margin = 0.5;
@@ -157,4 +157,4 @@ TEST(GuardPool, MakesOneAtOnceAndNoMoreThanItMay) {
 }
 
 }  // namespace
-}  // namespace keepout
+}  // namespace keepout::test::projecting_steer
