@@ -30,9 +30,9 @@ const { buildSync } = createRequire(join(repository, "apps/web/package.json"))("
 const engine = join(scratch, "keepout.mjs");
 const source = join(repository, "apps/web/src/engine/keepout.ts");
 buildSync({ entryPoints: [source], outfile: engine, bundle: true, format: "esm" });
-const { Keepout } = await import(pathToFileURL(engine));
+const { loadKeepout, Tool } = await import(pathToFileURL(engine));
 const { default: instantiate } = await import(pathToFileURL(join(buildFolder, "keepout.mjs")));
-const keepout = await Keepout.load(instantiate, readFileSync(join(buildFolder, "keepout.wasm")));
+const keepout = await loadKeepout(instantiate, readFileSync(join(buildFolder, "keepout.wasm")));
 
 const statuses = keepout.statuses("tip");
 
@@ -176,12 +176,10 @@ function native(mesh, rule, loop, poses) {
 
 /** What a cycle told, in the order of native(), all planes included. */
 function toldBy(rule, tool, cycle, tip) {
-  const { HEAPF64, HEAPU32 } = keepout.module;
   const { distance, motion, planeCount } = cycle;
   const numbers = [...tip, ...motion, comparable(rule, cycle.triangles), distance];
-  const begin = HEAPU32[tool.last / 4 + 264]; // as struct Cycle of apps/web/engine/tool.h lies there
-  for (let plane = begin; plane < begin + 40 * planeCount; plane += 40) {
-    numbers.push(HEAPU32[plane / 4 + 8], ...HEAPF64.subarray(plane / 8, plane / 8 + 4));
+  for (const { triangle, normal, offset } of tool.made.planes()) {
+    numbers.push(triangle, ...normal, offset);
   }
   return { status: statuses[cycle.status].name, planes: planeCount, numbers };
 }
@@ -219,7 +217,7 @@ for (const name of ["skull", "aneurysm", "airway"]) {
   const random = seeded(triangles.length);
   const loops = { open: openPoses(triangles, random), closed: closedPoses(triangles, random) };
   for (const rule of ["all_faces", "paper", "certified"]) {
-    const tool = keepout.tool(anatomy, { ...settings, rule }, null);
+    const tool = new Tool(keepout, anatomy, { ...settings, rule }, null);
     for (const [loop, poses] of Object.entries(loops)) {
       const expected = native(mesh, rule, loop, poses);
       const different = differences(expected, byModule(tool, rule, loop, poses));
@@ -234,14 +232,14 @@ for (const name of ["skull", "aneurysm", "airway"]) {
       total.different += different;
       if (!isAwake) {
         const margin = settings.margin * (1 + 1e-12);
-        const other = keepout.tool(anatomy, { ...settings, rule, margin }, null);
+        const other = new Tool(keepout, anatomy, { ...settings, rule, margin }, null);
         isAwake = differences(expected, byModule(other, rule, loop, poses)) > 0;
-        other.discard();
+        other.made.delete();
       }
     }
-    tool.discard();
+    tool.made.delete();
   }
-  anatomy.discard();
+  anatomy.delete();
 }
 console.log(
   `in all: ${total.steps} steps, ${total.limited} limited, ${total.planes} planes, ${total.different} different`,

@@ -1,233 +1,273 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The exports of keepout to a web page: the page makes anatomy of a surface, a file or a shape, and
-// tools on anatomy, with the parts and in the way of the command. No export throws: one that fails
-// to make an object or a text returns null, and keepout_failure says why. Texts stay valid until
-// the next call that returns one; all are UTF-8.
+// The interface of keepout to a web page, bound by Embind: the page makes anatomy of a surface, a
+// file or a shape, and tools on anatomy, with the parts and in the way of the command. A function
+// that fails throws a JavaScript Error. src/engine/keepout.ts declares the same for TypeScript.
+#include <emscripten/bind.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <exception>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <new>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "anatomy.h"
-#include "json_text.h"
+#include "keepout/error.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/mesh/load_mesh.h"
+#include "keepout/status.h"
 #include "shared/findings.h"
 #include "tool.h"
 
 namespace {
 
+using emscripten::typed_memory_view;
+using emscripten::val;
 using keepout::Vec3;
-using keepout::web::json;
-using keepout::web::json_list;
 
-std::string failure;  // reason why the last call that returned null failed
-std::string text;     // the last one that was handed out
-
-/// Returns what make() returns; `otherwise`, with a message, where it throws.
-template <class Make, class Result>
-Result made(const Make& make, Result otherwise) noexcept {
+/// Returns what make() returns. Throws a JavaScript Error with the message of what make() throws.
+auto or_error(const auto& make) {
+  std::string message;
   try {
     return make();
   } catch (const std::bad_alloc&) {
-    failure = "there is not enough memory for it";
+    message = "there is not enough memory for it";
   } catch (const std::exception& error) {
-    failure = error.what();
+    message = error.what();
   }
-  return otherwise;
+  val::global("Error").new_(message).throw_();
 }
 
-Anatomy* made_anatomy(const auto& make) noexcept {
-  return made([&] { return new Anatomy(make()); }, static_cast<Anatomy*>(nullptr));
+/// Returns what measure() returns, and NaN if it throws.
+double or_unknown(const auto& measure) noexcept {
+  try {
+    return measure();
+  } catch (const std::exception&) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
-Tool* made_tool(const auto& make) noexcept {
-  return made([&] { return make().release(); }, static_cast<Tool*>(nullptr));
+/// Returns a JavaScript value.
+template <class T>
+val value(const T& of) {
+  if constexpr (std::is_convertible_v<const T&, std::string_view>) {
+    return val(std::string(std::string_view(of)));
+  } else {
+    return val(of);
+  }
 }
 
-const char* made_text(const auto& make) noexcept {
-  return made(
-      [&] {
-        text = make();
-        return text.c_str();
-      },
-      static_cast<const char*>(nullptr));
+/// Returns a JavaScript array of what `item` makes of each.
+val list(const auto& range, const auto& item) {
+  val all = val::array();
+  for (const auto& each : range) all.call<void>("push", item(each));
+  return all;
+}
+val list(const auto& range) {
+  return list(range, [](const auto& each) { return value(each); });
+}
+
+/// Returns a JavaScript object with these members.
+val object(std::initializer_list<std::pair<const char*, val>> members) {
+  val made = val::object();
+  for (const auto& [name, member] : members) made.set(name, member);
+  return made;
+}
+
+/// Anatomy of a surface whose equal vertices are one already: vertices (n, 3) in mm, and corners
+/// (m, 3), as typed arrays. They are copied.
+Anatomy* anatomy_of_surface(const val& vertices, const val& corners) {
+  return or_error([&] {
+    const auto coordinates = emscripten::convertJSArrayToNumberVector<double>(vertices);
+    const auto numbers = emscripten::convertJSArrayToNumberVector<keepout::VertexId>(corners);
+    keepout::Surface surface;
+    surface.vertices.reserve(coordinates.size() / 3);
+    for (std::size_t i = 0; i < coordinates.size(); i += 3) {
+      surface.vertices.emplace_back(coordinates.data() + i);
+    }
+    surface.triangles.reserve(numbers.size() / 3);
+    for (std::size_t i = 0; i < numbers.size(); i += 3) {
+      surface.triangles.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+    }
+    return new Anatomy(std::move(surface));
+  });
+}
+
+/// Anatomy of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ or OFF, in mm.
+Anatomy* anatomy_of_file(const std::string& name, const std::string& bytes) {
+  return or_error([&] {
+    // The file system is in memory.
+    std::FILE* const file = std::fopen(name.c_str(), "wb");
+    if (file == nullptr) throw keepout::Error(name + " is no name of a file");
+    const bool is_whole = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+    const std::unique_ptr<const char, int (*)(const char*)> removal(name.c_str(), std::remove);
+    if (std::fclose(file) != 0 || !is_whole) throw std::bad_alloc();
+    return new Anatomy(keepout::load_mesh(name, {.check = keepout::MeshCheck::none}));
+  });
+}
+
+/// Anatomy of a generated shape: shapes() has the names.
+Anatomy* anatomy_of_shape(const std::string& name) {
+  return or_error([&] { return new Anatomy(keepout::make_shape(name)); });
+}
+
+/// Returns the coordinates (n, 3) [mm] and the corners (m, 3) of a mesh as views, which stay valid
+/// until the engine's memory grows.
+val surface(const Anatomy& anatomy) {
+  static_assert(sizeof(Vec3) == 24 && sizeof(keepout::Corners) == 12);
+  const keepout::Mesh& mesh = *anatomy.mesh;
+  return object(
+      {{"vertices", val(typed_memory_view(3 * mesh.vertex_count(), mesh.vertices()[0].data()))},
+       {"corners", val(typed_memory_view(3 * mesh.triangle_count(), mesh.triangles()[0].data()))}});
+}
+
+/// Returns the facts of the mesh: watertight, size, the warnings of its file, and the findings of
+/// `keepout inspect` but for self-intersections, the worst first.
+val findings(const Anatomy& anatomy) {
+  return or_error([&] {
+    const keepout::MeshFindings mesh = examine(*anatomy.mesh);
+    const auto told = [](const keepout::app::Finding& finding) {
+      return object({{"text", value(text_of(finding))}, {"advice", value(finding.advice)}});
+    };
+    return object({{"watertight", value(mesh.is_watertight())},
+                   {"size", list(mesh.bounds.size())},
+                   {"warnings", list(anatomy.warnings)},
+                   {"findings", list(keepout::app::findings_of(mesh, std::nullopt), told)}});
+  });
+}
+
+/// See Anatomy::clearance().
+double clearance(Anatomy& anatomy, double x, double y, double z) {
+  return or_unknown([&] { return anatomy.clearance({x, y, z}); });
+}
+
+/// See make_tool().
+Tool* tool_on(Anatomy& anatomy, const val& settings) {
+  return or_error([&] { return make_tool(anatomy, settings).release(); });
+}
+
+/// Returns the numbers of a position, the allowance for curvature [mm], the period of a cycle [s],
+/// and name and radius [mm] of each body.
+val facts(const Tool& tool) {
+  const auto body = [](const keepout::Body& each) {
+    return object({{"name", value(each.name)}, {"radius", value(each.radius)}});
+  };
+  return object({{"positions", value(tool.positions)},
+                 {"asked", value(tool.asked)},
+                 {"band", value(tool.band)},
+                 {"period", value(tool.period)},
+                 {"bodies", list(tool.bodies, body)}});
+}
+
+/// Returns the numbers of the last cycle as they lie in memory, a view until the next call.
+val last(const Tool& tool) {
+  static_assert(sizeof(Cycle) == 8 * (39 + 6 * keepout::Instrument::most_bodies));
+  return val(typed_memory_view(39 + 6 * tool.bodies.size(), tool.cycle.positions));
+}
+
+/// See Tool::place().
+val place(Tool& tool, const val& positions) {
+  tool.cycle = {};
+  tool.place(emscripten::convertJSArrayToNumberVector<double>(positions));
+  return last(tool);
+}
+
+/// See Tool::follow(). The orientation of the hand is a quaternion i, j, k, w.
+val follow(Tool& tool, double x, double y, double z, double i, double j, double k, double w) {
+  tool.follow({x, y, z}, {w, i, j, k});
+  return last(tool);
+}
+
+/// See Tool::step().
+val step(Tool& tool, double x, double y, double z, double u, double v, double w) {
+  tool.step({x, y, z}, {u, v, w});
+  return last(tool);
+}
+
+/// See Tool::clearance().
+double body_clearance(Tool& tool, std::size_t body) {
+  return or_unknown([&] { return tool.clearance(body); });
+}
+
+/// Returns all planes of the last step of a tip, from the tip before it.
+val planes(const Tool& tool) {
+  val all = val::array();
+  for (std::uint32_t i = 0; i < tool.planes.size(); ++i) {
+    const keepout::HalfSpace& plane = tool.planes[i];
+    const bool is_active = std::ranges::find(tool.active, i) != tool.active.end();
+    all.call<void>("push", object({{"normal", list(plane.normal)},
+                                   {"offset", value(plane.offset)},
+                                   {"triangle", value(plane.source)},
+                                   {"isActive", value(is_active)}}));
+  }
+  return all;
+}
+
+/// Returns all statuses by number: name, and reason, one line on what it means and what to do about
+/// it. `subject`: "tip" or "instrument".
+val statuses(const std::string& subject) {
+  const auto of = subject == "tip" ? keepout::Subject::tip : keepout::Subject::instrument;
+  val all = val::array();
+  for (int i = 0; name(static_cast<keepout::Status>(i)) != "unknown"; ++i) {
+    const auto status = static_cast<keepout::Status>(i);
+    all.call<void>("push",
+                   object({{"name", value(name(status))}, {"reason", value(reason(status, of))}}));
+  }
+  return all;
+}
+
+/// Returns the names of the generated shapes.
+val shapes() {
+  return list(keepout::shapes(), [](const keepout::Shape& shape) { return value(shape.name); });
+}
+
+/// Returns the counterexamples to the rule of Li et al. (2020).
+val counterexamples() {
+  const auto row = [](const auto& numbers) { return list(numbers); };
+  return list(keepout::counterexamples(), [&](const keepout::Counterexample& example) {
+    return object({{"name", value(example.name)},
+                   {"vertices", list(example.surface.vertices, row)},
+                   {"triangles", list(example.surface.triangles, row)},
+                   {"tip", list(example.tip)},
+                   {"desired", list(example.desired)},
+                   {"radius", value(example.radius)}});
+  });
 }
 
 }  // namespace
 
-/// The vertices (vertex_count, 3) [mm] and the corners (triangle_count, 3) of a mesh, as they lie
-/// in memory.
-struct Surface {
-  const double* vertices;
-  std::size_t vertex_count;
-  const std::uint32_t* corners;
-  std::size_t triangle_count;
-};
-
-extern "C" {
-
-/// Why the last call that returned null failed, and what to do about it.
-const char* keepout_failure() { return failure.c_str(); }
-
-/// Anatomy of a surface whose equal vertices are one already: vertices (vertex_count, 3) in mm,
-/// corners (triangle_count, 3). It is copied.
-Anatomy* keepout_anatomy_of_surface(const double* vertices, std::uint32_t vertex_count,
-                                    const std::uint32_t* corners, std::uint32_t triangle_count) {
-  return made_anatomy([&] {
-    keepout::Surface surface;
-    surface.vertices.reserve(vertex_count);
-    for (std::size_t v = 0; v < vertex_count; ++v) surface.vertices.emplace_back(vertices + 3 * v);
-    surface.triangles.reserve(triangle_count);
-    for (std::size_t t = 0; t < triangle_count; ++t) {
-      const std::uint32_t* const c = corners + 3 * t;
-      surface.triangles.push_back({c[0], c[1], c[2]});
-    }
-    return surface;
-  });
+EMSCRIPTEN_BINDINGS(keepout) {
+  using emscripten::allow_raw_pointers;
+  using emscripten::class_;
+  using emscripten::function;
+  class_<Anatomy>("Anatomy")
+      .function("surface", &surface)
+      .function("findings", &findings)
+      .function("clearance", &clearance);
+  class_<Tool>("Tool")
+      .function("facts", &facts)
+      .function("place", &place)
+      .function("follow", &follow)
+      .function("step", &step)
+      .function("clearance", &body_clearance)
+      .function("planes", &planes);
+  function("anatomyOfSurface", &anatomy_of_surface, allow_raw_pointers());
+  function("anatomyOfFile", &anatomy_of_file, allow_raw_pointers());
+  function("anatomyOfShape", &anatomy_of_shape, allow_raw_pointers());
+  function("makeTool", &tool_on, allow_raw_pointers());
+  function("statuses", &statuses);
+  function("shapes", &shapes);
+  function("counterexamples", &counterexamples);
 }
-
-/// Anatomy of a file of the file system in memory: STL, PLY, OBJ or OFF, in mm.
-Anatomy* keepout_anatomy_of_file(const char* path) {
-  return made_anatomy(
-      [&] { return keepout::load_mesh(path, {.check = keepout::MeshCheck::none}); });
-}
-
-/// Anatomy of a generated shape: keepout_shapes() has the names.
-Anatomy* keepout_anatomy_of_shape(const char* name) {
-  return made_anatomy([&] { return keepout::make_shape(name); });
-}
-
-/// Frees anatomy. The caller must discard the tools on it first.
-void keepout_discard_anatomy(Anatomy* anatomy) { delete anatomy; }
-
-/// Returns the surface of anatomy, which stays valid until the next call.
-const Surface* keepout_surface(const Anatomy* anatomy) {
-  static_assert(sizeof(Vec3) == 24 && sizeof(keepout::Corners) == 12);
-  static Surface surface;
-  const keepout::Mesh& mesh = *anatomy->mesh;
-  surface = {mesh.vertices().data()->data(), mesh.vertex_count(), mesh.triangles().data()->data(),
-             mesh.triangle_count()};
-  return &surface;
-}
-
-/// What is to be known of the mesh, as JSON: watertight, size, the warnings of its file, and the
-/// findings of `keepout inspect` but for self-intersections, the worst first. Null on failure.
-const char* keepout_findings(const Anatomy* anatomy) {
-  return made_text([&] {
-    const keepout::MeshFindings mesh = examine(*anatomy->mesh);
-    const auto findings = keepout::app::findings_of(mesh, std::nullopt);
-    const auto object = [](const keepout::app::Finding& finding) {
-      return R"({"key":)" + json(finding.key) + R"(,"count":)" + json(finding.count) +
-             R"(,"text":)" + json(text_of(finding)) + R"(,"advice":)" + json(finding.advice) + '}';
-    };
-    return std::string(R"({"watertight":)") + (mesh.is_watertight() ? "true" : "false") +
-           R"(,"size":)" + json_list(mesh.bounds.size()) + R"(,"warnings":)" +
-           json_list(anatomy->warnings) + R"(,"findings":)" + json_list(findings, object) + '}';
-  });
-}
-
-/// Returns the distance from a place to the nearest triangle, below 0 inside a watertight mesh, NaN
-/// where it is not known. [mm]
-double keepout_clearance(Anatomy* anatomy, double x, double y, double z) {
-  return made(
-      [&] {
-        return anatomy->clearance({x, y, z});
-      },
-      std::numeric_limits<double>::quiet_NaN());
-}
-
-/// See make_tip().
-Tool* keepout_make_tip(Anatomy* anatomy, const char* rule, const TipSettings* settings) {
-  return made_tool([&] { return make_tip(*anatomy, rule, *settings); });
-}
-
-/// See make_instrument().
-Tool* keepout_make_instrument(Anatomy* anatomy, const char* robot,
-                              const InstrumentSettings* settings) {
-  return made_tool([&] { return make_instrument(*anatomy, robot, *settings); });
-}
-
-/// Frees a tool.
-void keepout_discard_tool(Tool* tool) { delete tool; }
-
-/// Returns the facts of a tool as JSON: numbers of a position, band [mm], period [s], and name and
-/// radius [mm] of each body.
-const char* keepout_tool_facts(const Tool* tool) { return tool->facts.c_str(); }
-
-/// See Tool::place().
-const Cycle* keepout_place(Tool* tool, const double* positions) {
-  tool->cycle = {};
-  tool->place(positions);
-  return &tool->cycle;
-}
-
-/// See Tool::follow().
-const Cycle* keepout_follow(Tool* tool, const double* hand) {
-  tool->follow(hand);
-  return &tool->cycle;
-}
-
-/// See Tool::step().
-const Cycle* keepout_step(Tool* tool, const double* asked) {
-  tool->step(asked);
-  return &tool->cycle;
-}
-
-/// See Tool::clearance(); NaN if there is no memory for it.
-double keepout_body_clearance(Tool* tool, std::uint32_t body) {
-  return made([&] { return tool->clearance(body); }, std::numeric_limits<double>::quiet_NaN());
-}
-
-/// Returns all statuses by number, as a JSON list of objects: name, and reason, one line on what it
-/// means and what to do about it. `subject`: 0 a tip, 1 an instrument.
-const char* keepout_statuses(std::uint32_t subject) {
-  return made_text([&] {
-    std::vector<keepout::Status> all;
-    for (keepout::Status next{}; name(next) != "unknown";) {
-      all.push_back(next);
-      next = static_cast<keepout::Status>(all.size());
-    }
-    return json_list(all, [&](keepout::Status status) {
-      return R"({"name":)" + json(name(status)) + R"(,"reason":)" +
-             json(reason(status, static_cast<keepout::Subject>(subject))) + '}';
-    });
-  });
-}
-
-/// The names of the generated shapes, as a JSON list.
-const char* keepout_shapes() {
-  return made_text([] {
-    return json_list(keepout::shapes(),
-                     [](const keepout::Shape& shape) { return json(shape.name); });
-  });
-}
-
-/// The counterexamples to the paper's rule, as a JSON list of objects: name, vertices, triangles,
-/// tip, desired, radius.
-const char* keepout_counterexamples() {
-  return made_text([] {
-    const auto lists = [](const auto& rows) {
-      return json_list(rows, [](const auto& row) { return json_list(row); });
-    };
-    return json_list(keepout::counterexamples(), [&](const keepout::Counterexample& example) {
-      return R"({"name":)" + json(example.name) + R"(,"vertices":)" +
-             lists(example.surface.vertices) + R"(,"triangles":)" +
-             lists(example.surface.triangles) + R"(,"tip":)" + json_list(example.tip) +
-             R"(,"desired":)" + json_list(example.desired) + R"(,"radius":)" +
-             json(example.radius) + '}';
-    });
-  });
-}
-
-}  // extern "C"

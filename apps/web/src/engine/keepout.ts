@@ -1,56 +1,48 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * keepout itself, compiled to WebAssembly: apps/web/engine/exports.cpp says what each export does.
- * Lengths are in mm, forces in N, coordinates in the frame of the mesh.
+ * keepout itself, compiled to WebAssembly: apps/web/engine/exports.cpp says what each function does.
+ * Lengths are in mm, forces in N, coordinates in the frame of the mesh. A function that fails throws
+ * an Error with keepout's own message.
  */
-import { type Port, type Subject, spring, Tool, type ToolSettings } from "./tool.ts";
 
 export type Vec3 = readonly [x: number, y: number, z: number];
 
-/** What emscripten's module offers of which anything here makes use. */
-export interface Module {
-  readonly HEAPU8: Uint8Array;
-  readonly HEAPU32: Uint32Array;
-  readonly HEAPF64: Float64Array;
-  readonly FS: {
-    writeFile(path: string, bytes: Uint8Array): void;
-    unlink(path: string): void;
-  };
-  _malloc(bytes: number): number;
-  _free(address: number): void;
-  _keepout_failure(): number;
-  _keepout_shapes(): number;
-  _keepout_counterexamples(): number;
-  _keepout_statuses(subject: number): number;
-  _keepout_anatomy_of_surface(
-    vertices: number,
-    vertexCount: number,
-    corners: number,
-    triangleCount: number,
-  ): number;
-  _keepout_anatomy_of_file(path: number): number;
-  _keepout_anatomy_of_shape(name: number): number;
-  _keepout_discard_anatomy(anatomy: number): void;
-  _keepout_surface(anatomy: number): number;
-  _keepout_findings(anatomy: number): number;
-  _keepout_clearance(anatomy: number, x: number, y: number, z: number): number;
-  _keepout_make_tip(anatomy: number, rule: number, settings: number): number;
-  _keepout_make_instrument(anatomy: number, robot: number, settings: number): number;
-  _keepout_discard_tool(tool: number): void;
-  _keepout_tool_facts(tool: number): number;
-  _keepout_place(tool: number, positions: number): number;
-  _keepout_follow(tool: number, hand: number): number;
-  _keepout_step(tool: number, asked: number): number;
-  _keepout_body_clearance(tool: number, body: number): number;
+/** The engine, as emscripten makes it of build/wasm/keepout.mjs. */
+export interface Keepout {
+  /** Names of generated meshes. */
+  shapes(): string[];
+  /** Returns all statuses by number, with their reasons for a tip or an instrument. */
+  statuses(subject: Subject): StatusWords[];
+  counterexamples(): Counterexample[];
+  /** Of a surface that is welded already: (n, 3) coordinates and (m, 3) numbers of vertices. */
+  anatomyOfSurface(vertices: Float64Array, corners: Uint32Array): Anatomy;
+  /** Of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ or OFF. */
+  anatomyOfFile(name: string, bytes: Uint8Array): Anatomy;
+  anatomyOfShape(name: string): Anatomy;
+  makeTool(anatomy: Anatomy, settings: ToolSettings & Spring & { port: Port | null }): EngineTool;
 }
 
-/** What emscripten's loader makes a module of: build/wasm/keepout.mjs. */
+/** What emscripten's loader makes an engine of: build/wasm/keepout.mjs. */
 export type ModuleFactory = (options: {
   wasmBinary: Uint8Array;
   locateFile: (name: string) => string;
-}) => Promise<Module>;
+}) => Promise<Keepout>;
 
-/** What `keepout inspect` would say of a mesh. */
+/** Loads the engine from its binary: no file is looked for. */
+export const loadKeepout = (make: ModuleFactory, wasmBinary: Uint8Array): Promise<Keepout> =>
+  make({ wasmBinary, locateFile: (name) => name });
+
+/** A mesh and its index, which all tools on it share: they are deleted before it. */
+export interface Anatomy {
+  /** Coordinates (n, 3) [mm] and numbers of vertices (m, 3): views until the engine's memory grows. */
+  surface(): { vertices: Float64Array; corners: Uint32Array };
+  findings(): Findings;
+  /** To the surface; below 0 inside a watertight mesh. [mm] */
+  clearance(...place: Vec3): number;
+  delete(): void;
+}
+
+/** Findings of `keepout inspect` about a mesh. */
 export interface Findings {
   readonly watertight: boolean;
   readonly size: Vec3;
@@ -58,7 +50,7 @@ export interface Findings {
   readonly findings: readonly { readonly text: string; readonly advice: string }[];
 }
 
-/** A small mesh, and a motion on which the paper's rule fails. */
+/** A small mesh, and a motion on which the rule of Li et al. (2020) fails. */
 export interface Counterexample {
   readonly name: string;
   readonly vertices: readonly Vec3[];
@@ -68,155 +60,165 @@ export interface Counterexample {
   readonly radius: number;
 }
 
-/** The engine, ready to be asked. What it refuses is thrown, in its own words. */
-export class Keepout {
-  /** Names of generated meshes. */
-  readonly shapes: readonly string[];
-
-  private constructor(readonly module: Module) {
-    this.shapes = this.json(module._keepout_shapes());
-  }
-
-  static async load(make: ModuleFactory, wasmBinary: Uint8Array): Promise<Keepout> {
-    // Nothing is looked for: the binary is here.
-    return new Keepout(await make({ wasmBinary, locateFile: (name) => name }));
-  }
-
-  /** Returns all statuses by number, with their reasons for a tip or an instrument. */
-  statuses(subject: Subject): { name: string; reason: string }[] {
-    return this.json(this.module._keepout_statuses(subject === "tip" ? 0 : 1));
-  }
-
-  counterexamples(): Counterexample[] {
-    return this.json(this.module._keepout_counterexamples());
-  }
-
-  /** Of a surface that is welded already: (n, 3) coordinates and (m, 3) numbers of vertices. */
-  anatomyOfSurface(vertices: Float64Array, corners: Uint32Array): Anatomy {
-    return this.withCopy(vertices, (from) =>
-      this.withCopy(corners, (to) =>
-        this.anatomy(
-          this.module._keepout_anatomy_of_surface(
-            from,
-            vertices.length / 3,
-            to,
-            corners.length / 3,
-          ),
-        ),
-      ),
-    );
-  }
-
-  /** Of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ or OFF. */
-  anatomyOfFile(name: string, bytes: Uint8Array): Anatomy {
-    this.module.FS.writeFile(name, bytes);
-    try {
-      return this.withText(name, (text) =>
-        this.anatomy(this.module._keepout_anatomy_of_file(text)),
-      );
-    } finally {
-      this.module.FS.unlink(name);
-    }
-  }
-
-  /** Of a generated mesh. */
-  anatomyOfShape(name: string): Anatomy {
-    return this.withText(name, (text) => this.anatomy(this.module._keepout_anatomy_of_shape(text)));
-  }
-
-  /** Makes an instrument at a port, or the ball of a tip if there is no port. */
-  tool(anatomy: Anatomy, settings: ToolSettings, port: Port | null): Tool {
-    const { rule, radius, toolRadius, margin, maxStep } = settings;
-    const [kind, name, numbers] =
-      port === null
-        ? ([
-            "tip",
-            rule,
-            [radius, toolRadius, margin, maxStep, spring.stiffness, spring.largestForce],
-          ] as const)
-        : (["instrument", port.robot, [...port.base, margin, maxStep]] as const);
-    const address = this.withText(name, (text) =>
-      this.withNumbers(numbers, (place) =>
-        this.module[`_keepout_make_${kind}`](anatomy.address, text, place),
-      ),
-    );
-    return new Tool(this, this.given(address), kind);
-  }
-
-  /** What the JSON at an address says. */
-  json<T>(address: number): T {
-    return JSON.parse(this.text(this.given(address)));
-  }
-
-  /** The text at an address, up to its end. */
-  private text(address: number): string {
-    const heap = this.module.HEAPU8;
-    return new TextDecoder().decode(heap.slice(address, heap.indexOf(0, address)));
-  }
-
-  private anatomy(address: number): Anatomy {
-    return new Anatomy(this, this.given(address));
-  }
-
-  /** An address; what is none is a failure, which the engine has words for. */
-  given(address: number): number {
-    if (address === 0) throw new Error(this.text(this.module._keepout_failure()));
-    return address;
-  }
-
-  /** Runs what needs a text in the engine's memory. */
-  private withText<T>(text: string, use: (address: number) => T): T {
-    return this.withCopy(new TextEncoder().encode(`${text}\0`), use);
-  }
-
-  /** Runs what needs numbers in the engine's memory. */
-  withNumbers<T>(numbers: readonly number[], use: (address: number) => T): T {
-    return this.withCopy(Float64Array.from(numbers), use);
-  }
-
-  private withCopy<T>(of: ArrayBufferView, use: (address: number) => T): T {
-    const place = this.module._malloc(of.byteLength);
-    if (place === 0) throw new Error("there is not enough memory for it");
-    try {
-      this.module.HEAPU8.set(new Uint8Array(of.buffer, of.byteOffset, of.byteLength), place);
-      return use(place);
-    } finally {
-      this.module._free(place);
-    }
-  }
+/** A status in words. */
+export interface StatusWords {
+  readonly name: string;
+  readonly reason: string;
 }
 
-/** A mesh and its index, which all guards on it share. */
-export class Anatomy {
-  constructor(
-    private readonly keepout: Keepout,
-    readonly address: number,
-  ) {}
+/** The ball of a tip, or a whole instrument. */
+export type Subject = "tip" | "instrument";
 
-  /** Coordinates (n, 3) [mm] and numbers of vertices (m, 3): views until the engine's memory grows. */
-  get surface(): { vertices: Float64Array; corners: Uint32Array } {
-    const { HEAPU32, HEAPF64, _keepout_surface } = this.keepout.module;
-    const at = _keepout_surface(this.address) / 4;
-    const [vertices, vertexCount, corners, triangleCount] = HEAPU32.subarray(
-      at,
-      at + 4,
-    ) as unknown as readonly [number, number, number, number];
+/** The rule that keeps a tip out; with "none" it goes wherever the hand leads. */
+export type Rule = "none" | "all_faces" | "paper" | "certified";
+
+/** Settings of a tool; rule and both radii are of a tip only. */
+export interface ToolSettings {
+  readonly rule: Rule;
+  /** Of the motion sphere: the longest motion of the tip in a cycle. [mm] */
+  readonly radius: number;
+  /** Of the ball around the tip. [mm] */
+  readonly toolRadius: number;
+  /** Distance to keep beyond that. [mm] */
+  readonly margin: number;
+  /** The longest motion that a cycle asks for. [mm] */
+  readonly maxStep: number;
+}
+
+/** The robot of an instrument, and its link 0: place, and rows of the rotation (12). */
+export interface Port {
+  readonly robot: string;
+  readonly base: readonly number[];
+}
+
+interface Spring {
+  readonly stiffness: number; // [N/mm]
+  readonly largestForce: number; // [N]
+}
+
+/** The spring between hand and tip. */
+export const spring: Spring = { stiffness: 1, largestForce: 4 };
+
+/** A place and an orientation. */
+export interface Frame {
+  readonly place: Vec3; // [mm]
+  readonly turn: readonly [x: number, y: number, z: number, w: number]; // a unit quaternion
+}
+
+/** The orientation of the hand that leads a tip. */
+export const unturned: Frame["turn"] = [0, 0, 0, 1];
+
+/** Facts of a tool that stay the same. */
+export interface ToolFacts {
+  /** Numbers of a position: three of a tip, one for each joint of an instrument. */
+  readonly positions: number;
+  /** Numbers of Cycle.asked. */
+  readonly asked: number;
+  /** Allowance for curvature, taken from the margin. [mm] */
+  readonly band: number;
+  /** Of a cycle. [s] */
+  readonly period: number;
+  readonly bodies: readonly { readonly name: string; readonly radius: number }[];
+}
+
+/** A half-space {u : normal . u >= offset} of allowed increments, and the triangle it is of. */
+export interface Plane {
+  readonly normal: Vec3;
+  readonly offset: number;
+  readonly triangle: number;
+  readonly isActive: boolean;
+}
+
+/** Result of a control cycle. */
+export interface Cycle {
+  /** Of the tip or the joints, after the cycle. [mm or rad] */
+  readonly positions: readonly number[];
+  /** Increment in the cycle. */
+  readonly motion: readonly number[];
+  /** Of a tip: the hand's place (3). Of an instrument: motion and rotation of the flange (6). */
+  readonly asked: readonly number[];
+  /** The frame that the hand leads, after the cycle. */
+  readonly flange: Frame;
+  /** On the hand of a tip. [N] */
+  readonly force: Vec3;
+  /** From the tip or the nearest body before the cycle to the surface; NaN: not known. [mm] */
+  readonly distance: number;
+  /** Both ends of each body's axis, after the cycle: (bodies, 6). [mm] */
+  readonly cores: readonly number[];
+  readonly status: number;
+  /** Planes or rows that limit the motion. */
+  readonly held: number;
+  /** Trial motions of an instrument that were judged. */
+  readonly rounds: number;
+  /** The number of the nearest body; -1: not known. */
+  readonly nearest: number;
+  /** Triangles that the step of a tip rests on. */
+  readonly triangles: number;
+  readonly planeCount: number;
+}
+
+/** A tool of the engine, which gives cycles as numbers: struct Cycle of apps/web/engine/tool.h. */
+interface EngineTool {
+  facts(): ToolFacts;
+  place(positions: readonly number[]): Float64Array;
+  follow(...hand: readonly number[]): Float64Array;
+  step(...asked: readonly number[]): Float64Array;
+  /** From the surface of a body to the mesh. [mm] */
+  clearance(body: number): number;
+  /** All planes of the last step of a tip, from where it was before. */
+  planes(): Plane[];
+  delete(): void;
+}
+
+/** A tool that keepout constrains beside an anatomy: an instrument at a port, else the ball of a tip. */
+export class Tool {
+  readonly facts: ToolFacts;
+  readonly subject: Subject;
+  /** The tool of the engine, whose owner deletes it. */
+  readonly made: EngineTool;
+
+  constructor(keepout: Keepout, anatomy: Anatomy, settings: ToolSettings, port: Port | null) {
+    this.made = keepout.makeTool(anatomy, { ...settings, ...spring, port });
+    this.facts = this.made.facts();
+    this.subject = port === null ? "tip" : "instrument";
+  }
+
+  /** Puts the tip or the joints there, and forgets the past. */
+  place(positions: readonly number[]): Cycle {
+    return this.cycle(this.made.place(positions));
+  }
+
+  /** One control cycle towards the hand; of a tip as `keepout replay --closed-loop`. */
+  follow({ place, turn }: Frame): Cycle {
+    return this.cycle(this.made.follow(...place, ...turn));
+  }
+
+  /** One step (6): of a tip from a place by an increment, of an instrument by a twist of the flange. */
+  step(asked: readonly number[]): Cycle {
+    return this.cycle(this.made.step(...asked));
+  }
+
+  private cycle(view: Float64Array): Cycle {
+    const numbers = [...view] as const;
+    const some = (from: number, count: number) => numbers.slice(from, from + count);
+    const one = (at: number) => numbers[at] as number;
     return {
-      vertices: HEAPF64.subarray(vertices / 8, vertices / 8 + 3 * vertexCount),
-      corners: HEAPU32.subarray(corners / 4, corners / 4 + 3 * triangleCount),
+      positions: some(0, this.facts.positions),
+      motion: some(8, this.facts.positions),
+      asked: some(16, this.facts.asked),
+      flange: {
+        place: some(22, 3) as unknown as Vec3,
+        turn: some(25, 4) as unknown as Frame["turn"],
+      },
+      force: some(29, 3) as unknown as Vec3,
+      distance: one(32),
+      status: one(33),
+      held: one(34),
+      rounds: one(35),
+      nearest: one(36),
+      triangles: one(37),
+      planeCount: one(38),
+      cores: numbers.slice(39),
     };
-  }
-
-  findings(): Findings {
-    return this.keepout.json(this.keepout.module._keepout_findings(this.address));
-  }
-
-  /** To the surface; below 0 inside a watertight mesh. [mm] */
-  clearance(place: Vec3): number {
-    return this.keepout.module._keepout_clearance(this.address, ...place);
-  }
-
-  discard(): void {
-    this.keepout.module._keepout_discard_anatomy(this.address);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Cycle, Frame, Tool, ToolSettings } from "../engine/tool.ts";
+import type { Cycle, Frame, Tool, ToolSettings } from "../engine/keepout.ts";
 import { type PathFormat, PathRecord, pathFormat } from "./path_record.ts";
 
 /** How long the hand takes to come by 63 % to where the pointer has jumped. [cycles] */
@@ -45,7 +45,7 @@ export class ControlLoop {
   /** Goes on from here with other settings; if the engine refuses them, throws, and nothing changes. */
   use(settings: ToolSettings): void {
     const tool = this.make(settings);
-    this.tool.discard();
+    this.discard();
     this.tool = tool;
     this.settings_ = settings;
     const { replay } = this;
@@ -104,7 +104,7 @@ export class ControlLoop {
   }
 
   discard(): void {
-    this.tool.discard();
+    this.tool.made.delete();
   }
 }
 

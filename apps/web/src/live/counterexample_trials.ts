@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Keepout, Vec3 } from "../engine/keepout.ts";
+import { type Keepout, Tool, type Vec3 } from "../engine/keepout.ts";
 import type { FromWorker } from "./protocol.ts";
 
 /** Those of docs/activation.md that are shown: one of each kind of failure. */
@@ -22,12 +22,12 @@ export function runCounterexamples(
       const ends = (["paper", "certified"] as const).map((rule): Vec3 => {
         const { radius, tip, desired } = example;
         const settings = { rule, radius, toolRadius: 0, margin, maxStep: radius };
-        const tool = keepout.tool(anatomy, settings, null);
+        const tool = new Tool(keepout, anatomy, settings, null);
         const { motion } = tool.step([...tip, ...desired]);
-        tool.discard();
+        tool.made.delete();
         return tip.map((value, i) => value + (motion[i] as number)) as unknown as Vec3;
       });
-      anatomy.discard();
+      anatomy.delete();
       return { example, ends };
     });
   return { margin, examples };

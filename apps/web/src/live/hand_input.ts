@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Vec3 } from "../engine/keepout.ts";
+import { Quaternion, Vector3 } from "three";
+import { type Frame, unturned, type Vec3 } from "../engine/keepout.ts";
 import type { Scene } from "./scene.ts";
 
 /** How near a pointer must be to take hold, or on the ball. [px] */
@@ -40,7 +41,7 @@ const turns: Readonly<Record<string, Vec3>> = {
  * is turned by letters, by the wheel with Shift, and by a second finger.
  */
 export class HandInput {
-  private hand: Vec3 = [0, 0, 0];
+  private hand: Frame = { place: [0, 0, 0], turn: unturned };
   private pointer: number | null = null;
   private grip: { dx: number; dy: number } = { dx: 0, dy: 0 };
   private finger = { x: 0, y: 0 }; // where a second one is [px]
@@ -49,15 +50,12 @@ export class HandInput {
   private isSlow = false;
   private keyClock = 0;
 
-  /**
-   * `hold`: told where the hand is, or null when it lets go. `turn`: told how the hand turns, about
-   * an axis of the mesh's frame, as long as the angle [rad]; without it, it does not.
-   */
+  /** `canTurn`: true if the hand turns. `hold`: called with the hand, or null when it lets go. */
   constructor(
     private readonly scene: Scene,
     private readonly view: HTMLElement,
-    private readonly hold: (place: Vec3 | null) => void,
-    private readonly turn?: (rotation: Vec3) => void,
+    private readonly canTurn: boolean,
+    private readonly hold: (hand: Frame | null) => void,
   ) {
     // Before the camera's own controls see it.
     const options = { capture: true, passive: false };
@@ -75,7 +73,7 @@ export class HandInput {
   }
 
   /** Where the hand is while nothing leads it. */
-  rest(hand: Vec3): void {
+  rest(hand: Frame): void {
     if (!this.isHeld) this.hand = hand;
   }
 
@@ -88,18 +86,19 @@ export class HandInput {
   }
 
   private take(event: PointerEvent): void {
-    if (this.pointer !== null && this.turn) {
+    if (this.pointer !== null && this.canTurn) {
       event.stopPropagation();
       this.finger = { x: event.clientX, y: event.clientY };
     }
     if (event.button !== 0 || this.pointer !== null) return;
     const at = this.inView(event);
-    const hand = this.scene.project(this.hand);
+    const { place } = this.hand;
+    const hand = this.scene.project(place);
     const dx = hand.x - at.x;
     const dy = hand.y - at.y;
     const pixels = Math.hypot(dx * 0.5 * this.view.clientWidth, dy * 0.5 * this.view.clientHeight);
     const near = event.pointerType === "mouse" ? reach.mouse : reach.touch;
-    if (pixels > Math.max(near, this.scene.ballRadius(this.hand))) return;
+    if (pixels > Math.max(near, this.scene.ballRadius(place))) return;
     event.stopPropagation();
     event.preventDefault();
     this.view.focus({ preventScroll: true, focusVisible: false } as FocusOptions);
@@ -107,7 +106,7 @@ export class HandInput {
     this.view.classList.add("dragging");
     this.pointer = event.pointerId;
     this.grip = { dx, dy };
-    this.go(this.hand);
+    this.go({});
   }
 
   private lead(event: PointerEvent): void {
@@ -120,7 +119,8 @@ export class HandInput {
       return;
     }
     const at = this.inView(event);
-    this.go(this.scene.unproject(at.x + this.grip.dx, at.y + this.grip.dy, this.hand));
+    const { dx, dy } = this.grip;
+    this.go({ place: this.scene.unproject(at.x + dx, at.y + dy, this.hand.place) });
   }
 
   private letGo(event: PointerEvent): void {
@@ -140,7 +140,7 @@ export class HandInput {
     event.preventDefault();
     // With Shift, some browsers say that the wheel went across.
     const pixels = event.deltaY || event.deltaX;
-    if (event.shiftKey && this.turn) this.turnBy([0, 0, pixelTurn * pixels]);
+    if (event.shiftKey && this.canTurn) this.turnBy([0, 0, pixelTurn * pixels]);
     else this.move([0, 0, -wheelDepth * pixels]);
   }
 
@@ -149,7 +149,7 @@ export class HandInput {
     this.isSlow = event.shiftKey;
     if (event.key === "Escape") this.release();
     const key = keyOf(event);
-    if (ways[key] === undefined && (turns[key] === undefined || !this.turn)) return;
+    if (ways[key] === undefined && (turns[key] === undefined || !this.canTurn)) return;
     event.preventDefault();
     if (this.keys.size === 0) {
       this.keyClock = performance.now();
@@ -176,17 +176,24 @@ export class HandInput {
 
   private move(way: Vec3): void {
     const across = this.scene.across(...way);
-    this.go(this.hand.map((value, i) => value + (across[i] as number)) as unknown as Vec3);
+    const place = this.hand.place.map((value, i) => value + (across[i] as number));
+    this.go({ place: place as unknown as Vec3 });
   }
 
+  /** Turns the hand by angles about the axes of the view. [rad] */
   private turnBy(angles: Vec3): void {
-    if (angles.some((angle) => angle !== 0)) this.turn?.(this.scene.across(...angles));
+    if (!this.canTurn || angles.every((angle) => angle === 0)) return;
+    const about = new Vector3(...this.scene.across(...angles));
+    const angle = about.length();
+    const turn = new Quaternion().setFromAxisAngle(about.divideScalar(angle), angle);
+    turn.multiply(new Quaternion(...this.hand.turn));
+    this.go({ turn: turn.toArray() as Frame["turn"] });
   }
 
-  private go(hand: Vec3): void {
-    this.hand = hand;
+  private go(part: Partial<Frame>): void {
+    this.hand = { ...this.hand, ...part };
     this.isHeld = true;
-    this.hold(hand);
+    this.hold(this.hand);
   }
 
   /** From -1 to 1 both ways. */

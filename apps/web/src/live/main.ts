@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The page of `keepout live`, for the ball of a tip or for an instrument: puts its parts together. */
-import { Quaternion, Vector3 } from "three";
-import type { Vec3 } from "../engine/keepout.ts";
-import {
-  type Frame,
-  type Rule,
-  type ToolFacts,
-  type ToolSettings,
-  unturned,
-} from "../engine/tool.ts";
+import type { Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
 import { grouped, saveFile } from "../page/elements.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
 import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
 import { HandInput } from "./hand_input.ts";
-import { InstrumentScene } from "./instrument_scene.ts";
 import { type Choice, MeshList, meshOf, nameOf } from "./mesh_list.ts";
 import { element, embeddedText, isTip, made, page, roomBetweenCards, toast } from "./page.ts";
 import {
@@ -29,7 +20,7 @@ import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
 import { SettingsPanel } from "./settings_panel.ts";
-import { TipScene } from "./tip_scene.ts";
+import { ToolScene } from "./tool_scene.ts";
 
 // The page has the elements for both tools.
 for (const part of document.querySelectorAll<HTMLElement>("[data-tool]")) {
@@ -73,45 +64,15 @@ meshes.choose();
 
 const view = element("view", HTMLElement);
 const room = () => roomBetweenCards(view);
-const tipScene = isTip ? made(() => new TipScene(view, room, placeGrip)) : null;
-const scene = tipScene ?? made(() => new InstrumentScene(view, room, placeGrip));
+const scene = made(() => new ToolScene(view, room, placeGrip, isTip));
 const chart = new ClearanceChart(element("chart", HTMLElement));
-/** Where the hand holds the tool, and how the hand is turned; null: it does not hold it. */
-let held: Vec3 | null = null;
-let turn = new Quaternion();
-const input = new HandInput(
-  scene,
-  view,
-  (place) => {
-    grip.classList.remove("new");
-    if (place !== null && held === null) turn = new Quaternion(...(state?.hand.turn ?? unturned));
-    held = place;
-    tellHand();
-  },
-  isTip ? undefined : turnBy,
-);
-
-/** Turns the hand about an axis as long as the angle. [rad] */
-function turnBy(rotation: Vec3): void {
-  const about = new Vector3(...rotation);
-  const angle = about.length();
-  turn.premultiply(new Quaternion().setFromAxisAngle(about.divideScalar(angle), angle));
-  tellHand();
-}
+const input = new HandInput(scene, view, !isTip, (hand) => {
+  grip.classList.remove("new");
+  tell({ kind: "hand", hand });
+});
 
 function tell(message: ToWorker): void {
   worker.postMessage(message);
-}
-
-function tellHand(): void {
-  const hand = held === null ? null : { place: held, turn: turn.toArray() as Frame["turn"] };
-  tell({ kind: "hand", hand });
-}
-
-/** The hand is taken away from whatever leads it; it stays where it is, as the tool does. */
-function drop(): void {
-  input.drop();
-  held = null;
 }
 
 const handlers: Handlers<FromWorker> = {
@@ -123,7 +84,7 @@ const handlers: Handlers<FromWorker> = {
     }
   },
   surface(surface) {
-    drop();
+    input.drop();
     scene.show(surface);
     chart.clear();
     state = null;
@@ -155,7 +116,7 @@ const handlers: Handlers<FromWorker> = {
   },
   counterexamples: (message) => failures?.open(message),
   settings(message) {
-    drop();
+    input.drop();
     settings = message.settings;
     showSettings();
   },
@@ -177,8 +138,8 @@ function endLoading(): void {
 /** An instrument begins where the command has placed it, a tip beside the anatomy. */
 function begin(): void {
   const start = meshOf(shown)?.start?.positions;
-  const positions = start ?? tipScene?.placeBeside(settings.toolRadius + settings.margin);
-  if (positions !== undefined) tell({ kind: "place", positions });
+  const positions = start ?? scene.placeBeside(settings.toolRadius + settings.margin);
+  tell({ kind: "place", positions });
 }
 
 function show(now: State): void {
@@ -188,7 +149,7 @@ function show(now: State): void {
     placeGrip();
     grip.hidden = false;
   }
-  input.rest(now.hand.place);
+  input.rest(now.hand);
   scene.update(now);
   chart.add(now.time, now.handClearance, Math.min(...now.clearances));
   readings?.show(now, settings, facts, scene.frames);
@@ -263,7 +224,7 @@ function adopt(header: PathHeader | null): void {
 }
 
 function replay(lines: Float64Array): void {
-  drop();
+  input.drop();
   tell({ kind: "replay", lines });
 }
 
@@ -311,14 +272,14 @@ function showSettings(): void {
 }
 
 function change(part: Partial<ToolSettings>): void {
-  drop();
+  input.drop();
   settings = { ...settings, ...part };
   showSettings();
   tell({ kind: "settings", settings });
 }
 
 element("again", HTMLButtonElement).onclick = () => {
-  drop();
+  input.drop();
   begin();
 };
 for (const use of ["save", "replay"] as const) {
@@ -333,20 +294,20 @@ if (!isTip) {
     "Page Up and Page Down into it and out of it; A, D, W, S, Q and E turn it; with Shift slowly; " +
     "Escape lets go.";
 }
-const failures = tipScene === null ? null : addTipControls(tipScene);
+const failures = isTip ? addTipControls() : null;
 showSettings();
 
 /** Adds files, double-clicks and counterexamples, which a page of an instrument lacks. */
-function addTipControls(tip: TipScene): CounterexampleView {
+function addTipControls(): CounterexampleView {
   takeFiles((file) => void openFile(file));
   element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
 
   // The tool is put where the anatomy is double-clicked.
   view.addEventListener("dblclick", (event) => {
     const { x, y } = input.inView(event);
-    const place = tip.placeBefore(x, y, settings.toolRadius + settings.margin);
+    const place = scene.placeBefore(x, y, settings.toolRadius + settings.margin);
     if (place === null) return;
-    drop();
+    input.drop();
     tell({ kind: "place", positions: place });
   });
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What is drawn of hand, tool and planes. */
+/** What is drawn of hand, tool and planes beside their bodies. */
 import * as three from "three";
 
 export const colors = {
@@ -7,93 +7,11 @@ export const colors = {
   tool: "#2f7df6",
   plane: "#0fb5a3",
   bone: "#e9dfce",
+  steel: "#8d9db5",
 } as const;
 
 /** Points of a trail: some seconds. */
 const trailLength = 240;
-
-/** A body that shows through what hides it, faintly. */
-export class Body {
-  protected readonly solid: three.Mesh<three.BufferGeometry, three.MeshStandardMaterial>;
-  protected readonly ghost: three.Mesh<three.BufferGeometry, three.MeshBasicMaterial>;
-
-  constructor(color: string, opacity: number, geometry?: three.BufferGeometry) {
-    // Both are drawn as what is transparent, in an order of their own.
-    const faint = { color, transparent: true };
-    const depthWrite = opacity === 1;
-    this.solid = new three.Mesh(
-      geometry,
-      new three.MeshStandardMaterial({ ...faint, opacity, roughness: 0.35, depthWrite }),
-    );
-    const through = { opacity: 0.3, depthTest: false, depthWrite: false };
-    this.ghost = new three.Mesh(geometry, new three.MeshBasicMaterial({ ...faint, ...through }));
-  }
-
-  get parts(): readonly three.Mesh[] {
-    return [this.solid, this.ghost];
-  }
-}
-
-/** The ball of a tip, or of its hand. */
-export class Ball extends Body {
-  constructor(color: string, opacity: number) {
-    super(color, opacity, new three.SphereGeometry(1, 40, 24));
-  }
-
-  place(at: three.Vector3, radius: number): void {
-    for (const part of this.parts) {
-      part.position.copy(at);
-      part.scale.setScalar(radius);
-    }
-  }
-}
-
-/** A capsule of an instrument. */
-export class Capsule extends Body {
-  private length = -1; // of what the geometry was made for [mm]
-
-  constructor(
-    private readonly radius: number,
-    color: string,
-    opacity: number,
-  ) {
-    super(color, opacity);
-    // The visible part is drawn over the part behind the surface.
-    this.ghost.renderOrder = 1;
-    this.solid.renderOrder = 2;
-  }
-
-  show(isVisible: boolean): void {
-    for (const part of this.parts) part.visible = isVisible;
-  }
-
-  paint(color: string): void {
-    this.solid.material.color.set(color);
-    this.ghost.material.color.set(color);
-  }
-
-  /** Its axis goes from here to there. */
-  place(from: three.Vector3, to: three.Vector3): void {
-    const way = to.clone().sub(from);
-    const length = way.length();
-    if (Math.abs(length - this.length) > 1e-3) {
-      this.length = length;
-      this.solid.geometry.dispose();
-      this.solid.geometry = new three.CapsuleGeometry(this.radius, length, 10, 28);
-      this.ghost.geometry = this.solid.geometry;
-    }
-    for (const part of this.parts) {
-      part.position.copy(from).addScaledVector(way, 0.5);
-      part.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), way.clone().normalize());
-    }
-  }
-
-  dispose(): void {
-    this.solid.geometry.dispose();
-    this.solid.material.dispose();
-    this.ghost.material.dispose();
-  }
-}
 
 /** Where a point was lately. */
 export class Trail {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Rule, ToolFacts, ToolSettings } from "../engine/tool.ts";
+import type { Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
 import type { EmbeddedMesh } from "./protocol.ts";
 
 /** What a path of a tip was made with; stands in its file as JSON, after "# path: ". */

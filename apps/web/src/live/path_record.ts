@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { type Cycle, type Frame, type Tool, unturned } from "../engine/tool.ts";
+import { type Cycle, type Frame, type Tool, unturned } from "../engine/keepout.ts";
 
 /** How a path has the cycles of a tool, a line of numbers each, and how a cycle is done again. */
 export interface PathFormat {

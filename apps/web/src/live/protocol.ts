@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** Messages between the page and its worker, in which keepout runs. */
-import type { Counterexample, Findings, Vec3 } from "../engine/keepout.ts";
 import type {
+  Counterexample,
   Cycle,
+  Findings,
   Frame,
   Plane,
   Port,
+  StatusWords,
   Subject,
   ToolFacts,
   ToolSettings,
-} from "../engine/tool.ts";
+  Vec3,
+} from "../engine/keepout.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
 import type { PackedSurface } from "../page/embedded_surface.ts";
 import type { CycleClock } from "./cycle_clock.ts";
@@ -80,12 +83,6 @@ export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "ra
   /** All cycles since the anatomy was loaded, and those in which something limited the motion. */
   readonly cycles: number;
   readonly limited: number;
-}
-
-/** A status in words. */
-export interface StatusWords {
-  readonly name: string;
-  readonly reason: string;
 }
 
 export type FromWorker =

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { MathUtils, Quaternion } from "three";
-import { spring, type ToolFacts, type ToolSettings } from "../engine/tool.ts";
+import { type StatusWords, spring, type ToolFacts, type ToolSettings } from "../engine/keepout.ts";
 import { grouped, make } from "../page/elements.ts";
 import { element, isTip, millimetres, set } from "./page.ts";
-import type { State, StatusWords } from "./protocol.ts";
+import type { State } from "./protocol.ts";
 
 /** How each status is to be taken: the colour of its chip. */
 const moods: Readonly<Record<string, "free" | "limited">> = {

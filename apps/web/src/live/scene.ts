@@ -2,7 +2,6 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../engine/keepout.ts";
-import type { ToolFacts } from "../engine/tool.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
 import { makeGraphics, surfaceGeometry } from "../page/graphics.ts";
 import { StillPicture } from "../page/still_picture.ts";
@@ -90,9 +89,6 @@ export abstract class Scene {
     this.resize();
   }
 
-  /** Another tool, which has these facts. */
-  abstract equip(facts: ToolFacts): void;
-
   /** What is to be seen from now on. */
   update(moment: State): void {
     const { place } = moment.flange;
@@ -151,7 +147,7 @@ export abstract class Scene {
   protected abstract arrange(moment: State): void;
 
   /** Shows no tool until the next update. */
-  protected clear(): void {
+  private clear(): void {
     this.moment = null;
     this.moving.visible = false;
     this.trail.clear();

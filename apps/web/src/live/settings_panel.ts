@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Rule, ToolSettings } from "../engine/tool.ts";
+import type { Rule, ToolSettings } from "../engine/keepout.ts";
 import { element } from "./page.ts";
 
 /** Rule and lengths of a tool, as far as the page has controls for them. */

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** Where keepout runs: apart from the page, so that cycles do not wait for drawing. */
 import makeModule from "keepout-module";
-import { type Anatomy, Keepout } from "../engine/keepout.ts";
-import type { Port, Subject, Tool, ToolSettings } from "../engine/tool.ts";
+import {
+  type Anatomy,
+  type Keepout,
+  loadKeepout,
+  type Port,
+  type Subject,
+  Tool,
+  type ToolSettings,
+} from "../engine/keepout.ts";
 import { centered } from "../page/centered_surface.ts";
 import { decodeSurface, unpacked } from "../page/embedded_surface.ts";
 import { ControlLoop } from "./control_loop.ts";
@@ -35,11 +42,11 @@ function tellState(time: number): void {
   if (loop === null || anatomy === null) return;
   const { last, hand, tool, cycles, limited } = loop;
   const { bodies } = tool.facts;
-  const clearances = bodies.map((_, i) => tool.clearance(i));
+  const clearances = bodies.map((_, i) => tool.made.clearance(i));
   // The engine's own figure of the nearest, where it has one.
   if (last.nearest >= 0) clearances[last.nearest] = last.distance;
-  const handClearance = anatomy.of.clearance(hand.place) - (bodies.at(-1)?.radius ?? 0);
-  const planes = tool.activePlanes();
+  const handClearance = anatomy.of.clearance(...hand.place) - (bodies.at(-1)?.radius ?? 0);
+  const planes = tool.made.planes().filter(({ isActive }) => isActive);
   const { lost, stepTime, rate } = clock;
   const state = { ...last, time, hand, clearances, handClearance, planes };
   tell({ kind: "state", state: { ...state, cycles, limited, lost, stepTime, rate } });
@@ -56,7 +63,7 @@ function tellSurface(
 /** Makes a tool on the anatomy; if the engine refuses the settings, throws. */
 function makeTool(settings: ToolSettings): Tool {
   const { of, port } = anatomy as NonNullable<typeof anatomy>;
-  const tool = keepout.tool(of, settings, port);
+  const tool = new Tool(keepout, of, settings, port);
   tell({ kind: "tool", facts: tool.facts });
   return tool;
 }
@@ -64,7 +71,7 @@ function makeTool(settings: ToolSettings): Tool {
 /** No anatomy, and no tool. */
 function letGo(): void {
   loop?.discard();
-  anatomy?.of.discard();
+  anatomy?.of.delete();
   loop = anatomy = place = null;
 }
 
@@ -81,7 +88,7 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
         : keepout.anatomyOfFile(source.name, source.bytes);
-    tellSurface(name, made.surface);
+    tellSurface(name, made.surface());
   }
   letGo();
   anatomy = { of: made, settings, port };
@@ -91,8 +98,8 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
 }
 
 async function start(engine: string, subject: Subject): Promise<void> {
-  keepout = await Keepout.load(makeModule, new Uint8Array(await unpacked(engine)));
-  tell({ kind: "ready", shapes: keepout.shapes, statuses: keepout.statuses(subject) });
+  keepout = await loadKeepout(makeModule, new Uint8Array(await unpacked(engine)));
+  tell({ kind: "ready", shapes: keepout.shapes(), statuses: keepout.statuses(subject) });
   setInterval(run, 1);
 }
 

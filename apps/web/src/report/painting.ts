@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
+import { Capsule } from "../page/capsule.ts";
+import { colorOf } from "../page/color_of.ts";
 import { type Graphics, surfaceGeometry } from "../page/graphics.ts";
 import { StillPicture } from "../page/still_picture.ts";
 import { type Anatomy, coarsened } from "./anatomy.ts";
-import { type Capsule, CapsuleBrush } from "./capsules.ts";
 import type { Cut } from "./cut.ts";
 import { discard, Line, setUniforms } from "./line.ts";
 
@@ -20,12 +21,24 @@ export interface Lengths {
   readonly width: number;
 }
 
+/** A body of an instrument: all within a radius of what is between two places. */
+export interface Body {
+  readonly from: three.Vector3;
+  readonly to: three.Vector3;
+  /** [mm] */
+  readonly radius: number;
+  /** The variable of the page's style that has the colour. */
+  readonly color: string;
+  /** How strong it is drawn where the surface hides it, from 0 to 1. */
+  readonly hidden: number;
+}
+
 /** What a picture shows beside the anatomy. */
 export interface Layer {
   readonly lengths: readonly Lengths[];
   readonly cut: Cut | null;
   /** Bodies of an instrument; others from one picture to the next. */
-  capsules?: readonly Capsule[];
+  bodies?: readonly Body[];
 }
 
 /** Draws the pictures of one anatomy. */
@@ -57,7 +70,8 @@ export class GraphicsPainter implements Painter {
   private readonly scene = new three.Scene();
   private readonly still: StillPicture;
   private readonly linesOf = new Map<Layer, readonly Line[]>();
-  private readonly brush = new CapsuleBrush();
+  private readonly capsules: Capsule[] = [];
+  private readonly instrument = new three.Scene();
   private readonly depths = new three.DataTexture(null, 1, 1, three.RedFormat, three.FloatType);
 
   private readonly fine: three.BufferAttribute;
@@ -113,13 +127,26 @@ export class GraphicsPainter implements Painter {
       line.adjust(columns, rows, scale, pixel);
       renderer.render(line.mesh, this.camera);
     }
-    this.brush.draw(renderer, this.camera, layer.capsules ?? []);
+    this.drawBodies(layer.bodies ?? []);
     return renderer.domElement;
+  }
+
+  /** Draws bodies over what was drawn before, and with its depths. */
+  private drawBodies(bodies: readonly Body[]): void {
+    bodies.forEach(({ from, to, radius, color, hidden }, i) => {
+      const capsule = this.capsules[i] ?? new Capsule();
+      if (this.capsules[i] === undefined) this.instrument.add(...capsule.parts);
+      this.capsules[i] = capsule;
+      capsule.place(from, to, radius);
+      capsule.paint(colorOf(color), hidden);
+    });
+    if (bodies.length > 0) this.graphics.renderer.render(this.instrument, this.camera);
   }
 
   dispose(): void {
     this.depths.dispose();
-    for (const { mesh } of [this.brush, ...[...this.linesOf.values()].flat()]) discard(mesh);
+    for (const capsule of this.capsules) capsule.dispose();
+    for (const { mesh } of [...this.linesOf.values()].flat()) discard(mesh);
     discard(this.anatomy);
   }
 

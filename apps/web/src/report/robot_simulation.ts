@@ -5,8 +5,7 @@ import * as three from "three";
 import { make } from "../page/elements.ts";
 import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
-import type { Capsule } from "./capsules.ts";
-import type { Layer } from "./painting.ts";
+import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
@@ -125,7 +124,7 @@ function strokeView(
       const least = Math.min(...clearances);
       const nearest = clearances.indexOf(least);
       const places = ends(stroke, run, cycle, anatomy);
-      layer.capsules = bodies.map(({ radius_mm }, body): Capsule => {
+      layer.bodies = bodies.map(({ radius_mm }, body): Body => {
         const isDeepest = least < 0 && body === nearest;
         return {
           from: places[body] as three.Vector3,

@@ -115,16 +115,16 @@ export class StillPainter implements Painter {
     const pen = this.canvas.getContext("2d") as CanvasRenderingContext2D;
     pen.putImageData(this.last.picture, 0, 0);
     this.drawLines(pen, layer, this.last.depths, scale);
-    this.drawCapsules(pen, layer);
+    this.drawBodies(pen, layer);
     return this.canvas;
   }
 
-  /** A capsule is a wide line with round ends, from wherever one looks. */
-  private drawCapsules(pen: CanvasRenderingContext2D, { capsules = [] }: Layer): void {
+  /** A body is a wide line with round ends, from wherever one looks. */
+  private drawBodies(pen: CanvasRenderingContext2D, { bodies = [] }: Layer): void {
     const { width, height } = this.canvas;
     const { top, bottom, zoom } = this.camera;
     pen.lineCap = "round";
-    for (const { from, to, radius, color } of capsules) {
+    for (const { from, to, radius, color } of bodies) {
       pen.beginPath();
       for (const place of [from, to]) {
         const { x, y } = place.clone().project(this.camera);

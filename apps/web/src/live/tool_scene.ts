@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+import * as three from "three";
+import type { ToolFacts, Vec3 } from "../engine/keepout.ts";
+import { Capsule } from "../page/capsule.ts";
+import type { CenteredSurface } from "../page/centered_surface.ts";
+import { colors, sheet } from "./markers.ts";
+import type { State } from "./protocol.ts";
+import { heldBody } from "./readings.ts";
+import { Scene } from "./scene.ts";
+
+/** How many active planes are drawn at most. */
+const mostPlanes = 8;
+/** Where a tip may begin: how high in the view, and how near. [sizes of the anatomy] */
+const placesToBegin = [0.3, 0.2, 0.1, 0].flatMap((near) =>
+  [0.16, 0.08, 0.24, 0, -0.08].map((height) => [height, near] as const),
+);
+/** A ball that is smaller than this share of what is seen is drawn as large. */
+const smallestBall = 0.006;
+/** How much of an instrument is seen at first, across the view. [mm] */
+const seenAtFirst = 130;
+/** The radius around the jaw of an instrument within which the hand takes hold of it. [mm] */
+const gripRadius = 4;
+
+/**
+ * The anatomy, and in it a tool, where the hand wants its last body, and the planes that limit the
+ * motion of a tip. A tip is a tool of one body, a ball; an instrument goes through a port.
+ */
+export class ToolScene extends Scene {
+  private bodies: Capsule[] = [];
+  private radii: readonly number[] = [];
+  private wanted = new Capsule();
+  private readonly planes = Array.from({ length: mostPlanes }, sheet);
+  private readonly edges = new three.LineSegments(
+    new three.BufferGeometry(),
+    new three.LineBasicMaterial({ color: colors.plane, depthTest: false, transparent: true }),
+  );
+  private readonly port = new three.Mesh(
+    new three.TorusGeometry(9, 1.6, 12, 40),
+    new three.MeshStandardMaterial({ color: colors.steel, roughness: 0.5 }),
+  );
+  /** Whether the view is still to be turned to the jaw of an instrument. */
+  private isNew = true;
+
+  /** `isBall`: of a tip. */
+  constructor(
+    container: HTMLElement,
+    room: () => number,
+    onDraw: () => void,
+    private readonly isBall: boolean,
+  ) {
+    super(container, room, onDraw);
+    this.moving.add(this.edges, ...this.planes);
+    if (!isBall) this.moving.add(this.port);
+    this.spring.line.renderOrder = isBall ? 1 : 3;
+  }
+
+  override show(surface: CenteredSurface): void {
+    this.isNew = true;
+    super.show(surface);
+  }
+
+  /** Another tool, which has these facts. */
+  equip({ bodies }: ToolFacts): void {
+    for (const body of [...this.bodies, this.wanted]) {
+      this.moving.remove(...body.parts);
+      body.dispose();
+    }
+    this.radii = bodies.map(({ radius }) => radius);
+    this.bodies = bodies.map(() => new Capsule());
+    this.wanted = new Capsule(this.isBall ? 0.35 : 0.6);
+    this.wanted.paint(colors.hand);
+    this.moving.add(...[...this.bodies, this.wanted].flatMap(({ parts }) => parts));
+    this.toolRadius = this.isBall ? (this.radii[0] ?? 1) : gripRadius;
+    this.redraw();
+  }
+
+  override update(moment: State): void {
+    if (this.isNew && !this.isBall) this.lookAtJaw(moment);
+    this.isNew = false;
+    super.update(moment);
+  }
+
+  /**
+   * A place for a tip to begin: beside the half of the anatomy that is seen, where a motion across
+   * the view leads into it and stays in sight. `kept`: what the tool keeps from the surface. [mm]
+   */
+  placeBeside(kept: number): Vec3 {
+    const distance = kept + this.beginning();
+    this.camera.updateMatrixWorld();
+    const [right, up, near] = [0, 1, 2].map((axis) =>
+      new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, axis),
+    ) as [three.Vector3, three.Vector3, three.Vector3];
+    const caster = new three.Raycaster();
+    const toCamera = new three.Vector3();
+    let place: three.Vector3 | null = null;
+    for (const [height, depth] of placesToBegin) {
+      const from = new three.Vector3()
+        .addScaledVector(up, height * this.size)
+        .addScaledVector(near, depth * this.size)
+        .addScaledVector(right, this.size);
+      caster.set(from, right.clone().negate());
+      const hit = caster.intersectObject(this.anatomy)[0];
+      if (!hit?.face) continue;
+      const contact = hit.point.clone();
+      place ??= contact.clone().addScaledVector(right, distance);
+      // Best where the surface is looked at, and nothing is before it.
+      if (Math.abs(hit.face.normal.dot(near)) < 0.4) continue;
+      toCamera.copy(this.camera.position).sub(contact).normalize();
+      caster.set(contact.clone().addScaledVector(toCamera, 0.01 * this.size), toCamera);
+      if (caster.intersectObject(this.anatomy).length > 0) continue;
+      place = contact.addScaledVector(right, distance);
+      break;
+    }
+    place ??= right.clone().multiplyScalar(0.3 * this.size);
+    this.keepInSight(place);
+    return this.outside(place);
+  }
+
+  /** A place to begin before where a ray through the view meets the anatomy; null where none does. */
+  placeBefore(x: number, y: number, kept: number): Vec3 | null {
+    const caster = new three.Raycaster();
+    caster.setFromCamera(new three.Vector2(x, y), this.camera);
+    const hit = caster.intersectObject(this.anatomy)[0];
+    if (!hit?.face) return null;
+    const { normal } = hit.face;
+    if (normal.dot(caster.ray.direction) > 0) normal.negate();
+    return this.outside(hit.point.addScaledVector(normal, kept + this.beginning()));
+  }
+
+  /** How far from what it keeps a tip begins. [mm] */
+  private beginning(): number {
+    return Math.min(10, 0.06 * this.size);
+  }
+
+  /** Leads the view back until a point is within it. */
+  private keepInSight(point: three.Vector3): void {
+    for (let i = 0; i < 40 && Math.abs(point.clone().project(this.camera).x) > this.room(); ++i) {
+      this.camera.position.multiplyScalar(1.1);
+      this.controls.maxDistance = Math.max(
+        this.controls.maxDistance,
+        this.camera.position.length(),
+      );
+      this.controls.update();
+      this.camera.updateMatrixWorld();
+    }
+  }
+
+  /**
+   * Looks at the jaw from beside the shaft, whence the anatomy hides as little as can be; of such
+   * places the highest.
+   */
+  private lookAtJaw({ cores, flange }: State): void {
+    const tip = this.inside(flange.place);
+    const port = this.pointOf(cores, 0);
+    const back = port.clone().sub(tip).normalize();
+    const aside = new three.Vector3(-back.y, back.x, 0);
+    if (aside.lengthSq() < 1e-6) aside.set(1, 0, 0);
+    aside.normalize();
+    const up = back.clone().cross(aside);
+    const distance =
+      (seenAtFirst / (2 * Math.tan((0.5 * this.camera.fov * Math.PI) / 180))) *
+      Math.max(1, 0.8 / (this.camera.aspect * this.room()));
+    const caster = new three.Raycaster();
+    const seen = (from: three.Vector3) =>
+      [0, 0.3, 0.8].filter((share) => {
+        const point = tip.clone().lerp(port, share);
+        const way = from.clone().sub(point);
+        caster.far = way.length();
+        caster.set(point, way.normalize());
+        return caster.intersectObject(this.anatomy).length === 0;
+      }).length;
+    const places = [0, 1, 2, 3, 4, 5, 6, 7]
+      .map((eighth) => {
+        const angle = (eighth * Math.PI) / 4;
+        const way = aside.clone().multiplyScalar(Math.cos(angle));
+        way.addScaledVector(up, Math.sin(angle)).addScaledVector(back, 0.5).normalize();
+        return tip.clone().addScaledVector(way, distance);
+      })
+      .sort((a, b) => b.z - a.z);
+    let [best, most] = [places[0] as three.Vector3, -1];
+    for (const place of places) {
+      const count = seen(place);
+      if (count > most) [best, most] = [place, count];
+      if (count === 3) break;
+    }
+    this.controls.target.copy(tip).lerp(port, 0.12);
+    this.camera.position.copy(best);
+    this.controls.update();
+  }
+
+  protected arrange(moment: State): void {
+    const { hand, flange, cores } = moment;
+    const [tip, wish] = [this.inside(flange.place), this.inside(hand.place)];
+    const seen = tip.distanceTo(this.camera.position);
+    const last = this.bodies.length - 1;
+    const held = this.isBall ? -1 : heldBody(moment);
+    const radiusOf = (body: number) =>
+      Math.max(this.radii[body] ?? 0, this.isBall ? smallestBall * seen : 0);
+    this.bodies.forEach((body, i) => {
+      body.place(this.pointOf(cores, 2 * i), this.pointOf(cores, 2 * i + 1), radiusOf(i));
+      body.paint(i === held ? colors.plane : i === last ? colors.tool : colors.steel);
+    });
+
+    // The last body does not move in the frame of the flange, nor in that of the hand.
+    const turn = new three.Quaternion(...hand.turn).multiply(
+      new three.Quaternion(...flange.turn).invert(),
+    );
+    const [from, to] = [2 * last, 2 * last + 1].map((end) =>
+      this.pointOf(cores, end).sub(tip).applyQuaternion(turn).add(wish),
+    ) as [three.Vector3, three.Vector3];
+    const radius = radiusOf(last);
+    this.wanted.place(from, to, (this.isBall ? 1.3 : 1.25) * radius);
+    this.wanted.show(this.isBall || wish.distanceTo(tip) > 0.3 || Math.abs(turn.w) < 0.9995);
+    const [wide, least] = this.isBall ? [0.16 * radius, 0.1 * radius] : [0.35, 0.3];
+    this.spring.stretch(wish, tip, wide, least);
+
+    this.port.position.copy(this.pointOf(cores, 0));
+    const along = this.pointOf(cores, 1).sub(this.port.position).normalize();
+    this.port.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), along);
+    this.showPlanes(moment, tip, Math.max(4 * radius, 0.03 * seen));
+  }
+
+  /** Shows the planes that limited the motion of a tip, as discs, and the edges of their triangles. */
+  private showPlanes({ planes, motion }: State, tip: three.Vector3, size: number): void {
+    const shown = planes.slice(0, mostPlanes);
+    this.planes.forEach((disc, i) => {
+      const plane = shown[i];
+      disc.visible = plane !== undefined;
+      if (plane === undefined) return;
+      const normal = new three.Vector3(...plane.normal);
+      // The offset is from where the tip was before the motion.
+      const made = normal.dot(new three.Vector3(...motion));
+      disc.position.copy(tip).addScaledVector(normal, plane.offset - made - this.toolRadius);
+      disc.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), normal);
+      disc.scale.setScalar(size);
+    });
+    this.edges.geometry.dispose();
+    this.edges.geometry = new three.BufferGeometry().setFromPoints(
+      shown.flatMap(({ triangle }) => this.outline(triangle)),
+    );
+  }
+
+  /** The edges of a triangle, as pairs of points. */
+  private outline(triangle: number): three.Vector3[] {
+    const positions = this.anatomy.geometry.getAttribute("position");
+    const corner = (i: number) =>
+      new three.Vector3().fromBufferAttribute(
+        positions,
+        this.corners[3 * triangle + (i % 3)] as number,
+      );
+    return [0, 1, 1, 2, 2, 3].map(corner);
+  }
+
+  /** A point of a list of places, three numbers each. */
+  private pointOf(places: readonly number[], i: number): three.Vector3 {
+    return this.inside(places.slice(3 * i, 3 * i + 3) as unknown as Vec3);
+  }
+}
