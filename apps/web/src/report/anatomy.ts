@@ -125,6 +125,24 @@ export function lookFrom(
   return { camera, target: target.clone() };
 }
 
+/** The vertices of an anatomy. */
+export const verticesOf = ({ positions }: Anatomy): three.Vector3[] =>
+  Array.from({ length: positions.length / 3 }, (_, i) =>
+    new three.Vector3().fromArray(positions, 3 * i),
+  );
+
+/** Looks from a direction at places, with so many times the height that shows them all. */
+export function lookAtAll(
+  places: readonly three.Vector3[],
+  toward: three.Vector3,
+  up: three.Vector3,
+  { size }: Anatomy,
+  height = 1.13,
+): Outlook {
+  const { middle, height: least } = fitted(places, toward, up);
+  return lookFrom(toward, up, middle, height * least, size);
+}
+
 /** The middle of places, and the height that shows them all, for one who looks from a direction. */
 export function fitted(
   places: readonly three.Vector3[],

@@ -5,12 +5,12 @@ import * as Plot from "@observablehq/plot";
 import { grouped, make } from "../page/elements.ts";
 import { benchmarkMethod } from "./benchmark_method.ts";
 import { benchmarkTable, columnsOf } from "./benchmark_table.ts";
-import { Legend, logarithmic, looksOf, tickText, tipOfColumns } from "./charts.ts";
+import { Legend, logarithmic, looksOf, plotSection, tickText, tipOfColumns } from "./charts.ts";
 import { comparisonSections } from "./comparison.ts";
 import { curves } from "./curves.ts";
 import { entries, type Timing, valueAt } from "./record.ts";
-import { lead, panel, panels, section } from "./report_page.ts";
-import { barInRow, inRow, rowChart } from "./row_chart.ts";
+import { lead } from "./report_page.ts";
+import { barInRow, inRow, rowChart, spans } from "./row_chart.ts";
 import { type Question, Selection } from "./selection.ts";
 import {
   inUnit,
@@ -237,59 +237,44 @@ class BenchmarkPlots {
     const first = ({ collect_us }: BenchmarkRow) => median(collect_us);
     const last = ({ query_us }: BenchmarkRow) => query_us?.p99 ?? median(query_us);
     return [
-      section(
+      plotSection(
         "Which index finds the triangles fastest",
-        lead(
+        [
           "The same work for every index, apart from the step: all triangles where the rule looks, by the exact test, with their closest points, sorted. Candidates only is what the index proposes, before that. The flatter a line, the less a finer mesh costs.",
           ...remarks,
-        ),
-        legend.element,
-        panels(
-          panel(
-            "Over the size of the mesh",
-            curves({
-              description: "Median of the query against the number of triangles, for each index",
-              data,
-              series: ({ index }) => index,
-              x: ["triangles", ({ triangles }) => triangles],
-              y: ["query [µs]", middle],
-              legend,
-              tip,
-            }),
-          ),
-          panel(
-            "On the largest: candidates only, median, 99 %",
-            rowChart({
-              description: "Median time of a query and its 99 %, for each index, the fastest first",
-              data: () => ofLargest(data()).sort((a, b) => middle(a) - middle(b)),
-              series: ({ index }) => index,
-              legend,
-              tip,
-              name: ({ from }) => [{ from: `${from}/index` }],
-              value: ({ from }) => [{ from: `${from}/query_us/p50`, format: microseconds }],
-              x: (rows) =>
-                logarithmic(
-                  "query [µs]",
-                  [first, middle, last].flatMap((of) => rows.map(of)),
-                ),
-              marks: (seen, { y, color, symbol }) => {
-                const line = { stroke: color, strokeWidth: 2, y1: y, y2: y };
-                return [
-                  Plot.link(seen, { x1: middle, x2: last, ...inRow, ...line }),
-                  Plot.dot(seen, {
-                    x: first,
-                    y,
-                    ...inRow,
-                    symbol,
-                    fill: "var(--card)",
-                    stroke: color,
-                  }),
-                  Plot.dot(seen, { x: middle, y, ...inRow, symbol, fill: color, r: 5 }),
-                ];
-              },
-            }),
-          ),
-        ),
+        ],
+        legend,
+        curves({
+          title: "Over the size of the mesh",
+          description: "Median of the query against the number of triangles, for each index",
+          data,
+          series: ({ index }) => index,
+          x: ["triangles", ({ triangles }) => triangles],
+          y: ["query [µs]", middle],
+          legend,
+          tip,
+        }),
+        rowChart({
+          title: "On the largest: candidates only, median, 99 %",
+          description: "Median time of a query and its 99 %, for each index, the fastest first",
+          data: () => ofLargest(data()).sort((a, b) => middle(a) - middle(b)),
+          series: ({ index }) => index,
+          legend,
+          tip,
+          name: ({ from }) => [{ from: `${from}/index` }],
+          value: ({ from }) => [{ from: `${from}/query_us/p50`, format: microseconds }],
+          x: (rows) =>
+            logarithmic(
+              "query [µs]",
+              [first, middle, last].flatMap((of) => rows.map(of)),
+            ),
+          marks: (seen, channels) => {
+            const [line, dot] = spans(seen, channels, middle, last);
+            const { y, color, symbol } = channels;
+            const own = { x: first, y, ...inRow, symbol, fill: "var(--card)", stroke: color };
+            return [line, Plot.dot(seen, own), dot];
+          },
+        }),
       ),
     ];
   }
@@ -334,24 +319,22 @@ class BenchmarkPlots {
       },
     ];
     const over = (size: "triangles" | "vertices") =>
-      panel(
-        `Over ${size}`,
-        curves({
-          description: `Rate of the whole step against the number of ${size}, and as published`,
-          data,
-          series: ({ series }) => series,
-          x: [size, (rate) => rate[size]],
-          y: ["rate of the whole step [kHz]", ({ khz }) => khz],
-          legend,
-          tip: ({ from, series }) =>
-            tipOfColumns(
-              series === published ? [published] : shownCombination(from),
-              from,
-              columns(series),
-            ),
-          rule: [1, "1 kHz"],
-        }),
-      );
+      curves({
+        title: `Over ${size}`,
+        description: `Rate of the whole step against the number of ${size}, and as published`,
+        data,
+        series: ({ series }) => series,
+        x: [size, (rate) => rate[size]],
+        y: ["rate of the whole step [kHz]", ({ khz }) => khz],
+        legend,
+        tip: ({ from, series }) =>
+          tipOfColumns(
+            series === published ? [published] : shownCombination(from),
+            from,
+            columns(series),
+          ),
+        rule: [1, "1 kHz"],
+      });
     const rates = stars.flatMap(({ from }, i) => [
       i > 0 ? " and " : "",
       shown(`${from}/khz`, inUnit("kHz", String)),
@@ -359,15 +342,16 @@ class BenchmarkPlots {
       shown(`${from}/triangles`, grouped),
     ]);
     return [
-      section(
+      plotSection(
         "How often a step fits into a second",
-        lead(
+        [
           "Rates of the median step, under every rule. The stars are what Li et al. 2020 published for the Stanford bunny, ",
           ...rates,
           " triangles on an Intel i7-8700, another machine. They state neither the motions nor the motion sphere of that run. Compare the slopes, not the heights.",
-        ),
-        legend.element,
-        panels(over("triangles"), over("vertices")),
+        ],
+        legend,
+        over("triangles"),
+        over("vertices"),
       ),
     ];
   }
@@ -376,27 +360,26 @@ class BenchmarkPlots {
     if (!this.rows.some(({ planes_mean, solve_us }) => solve_us && planes_mean > 0)) return [];
     const legend = this.legend("solver");
     const plot = (key: "p50" | "p99", label: string) =>
-      panel(
-        `Time to solve, ${label}`,
-        curves({
-          description: `Time of the search for the motion, ${label}, against the mean number of planes`,
-          data: () => this.chosen(this.sphere),
-          series: ({ solver }) => solver,
-          x: ["planes (mean)", ({ planes_mean }) => planes_mean],
-          y: ["solve [µs]", ({ solve_us }) => solve_us?.[key] ?? Number.NaN],
-          isLoose: true,
-          legend,
-          tip,
-        }),
-      );
+      curves({
+        title: `Time to solve, ${label}`,
+        description: `Time of the search for the motion, ${label}, against the mean number of planes`,
+        data: () => this.chosen(this.sphere),
+        series: ({ solver }) => solver,
+        x: ["planes (mean)", ({ planes_mean }) => planes_mean],
+        y: ["solve [µs]", ({ solve_us }) => solve_us?.[key] ?? Number.NaN],
+        isLoose: true,
+        legend,
+        tip,
+      });
     return [
-      section(
+      plotSection(
         "Which solver copes with many planes",
-        lead(
+        [
           "Each solver has the same motions; a mark for each row, whatever its sphere, those with steps without an answer too. Planes that are not in the way are left out for one that can tell that they have no bearing on its answer.",
-        ),
-        legend.element,
-        panels(plot("p50", "median"), plot("p99", "99 %")),
+        ],
+        legend,
+        plot("p50", "median"),
+        plot("p99", "99 %"),
       ),
     ];
   }
@@ -419,32 +402,27 @@ class BenchmarkPlots {
       ...barInRow,
     } as const;
     return [
-      section(
+      plotSection(
         "Where the time of a step goes",
-        lead(
+        [
           "On the largest mesh, the fastest first. Stages are timed in a round of their own, so that the whole step, at the right, is timed without any clock within. There is no query where the rule searches the tree by itself.",
-        ),
-        legend.element,
-        panels(
-          panel(
-            "",
-            rowChart({
-              description: "Which part of the median step is which, for each combination",
-              data: () =>
-                ofLargest(this.chosen().filter((row) => row.step_us && answers(row))).sort(
-                  (a, b) => median(a.step_us) - median(b.step_us),
-                ),
-              legend,
-              tip,
-              name: ({ from }) => combinationParts(from),
-              value: ({ from }) => [{ from: `${from}/step_us/p50`, format: microseconds }],
-              x: () => ({ label: "share of the stages", tickFormat: "%" }),
-              marks: (seen) => [
-                Plot.barX(parts(seen), Plot.stackX({ ...stack, stroke: "var(--card)" })),
-              ],
-            }),
-          ),
-        ),
+        ],
+        legend,
+        rowChart({
+          description: "Which part of the median step is which, for each combination",
+          data: () =>
+            ofLargest(this.chosen().filter((row) => row.step_us && answers(row))).sort(
+              (a, b) => median(a.step_us) - median(b.step_us),
+            ),
+          legend,
+          tip,
+          name: ({ from }) => combinationParts(from),
+          value: ({ from }) => [{ from: `${from}/step_us/p50`, format: microseconds }],
+          x: () => ({ label: "share of the stages", tickFormat: "%" }),
+          marks: (seen) => [
+            Plot.barX(parts(seen), Plot.stackX({ ...stack, stroke: "var(--card)" })),
+          ],
+        }),
       ),
     ];
   }
@@ -456,37 +434,31 @@ class BenchmarkPlots {
     const built = () =>
       this.rows.filter((row) => row.build_s > 0 && this.selection.has(row, this.sphere, this.rule));
     const bars = (title: string, cost: "build_s" | "bytes_per_triangle", unit: string) =>
-      panel(
+      rowChart({
         title,
-        rowChart({
-          description: `${title}, for each index`,
-          data: () =>
-            distinct(ofLargest(built()), ({ index }) => index).sort((a, b) => a[cost] - b[cost]),
-          series: ({ index }) => index,
-          legend,
-          tip,
-          name: ({ from }) => [{ from: `${from}/index` }],
-          value: ({ from }) => [
-            { from: `${from}/${cost}`, format: inUnit(unit) },
-            ...(cost === "build_s" ? [", ", { from: `${from}/build_cores`, format: cores }] : []),
-          ],
-          x: () => ({ label: `${title} [${unit}]`, grid: true, tickFormat: tickText }),
-          marks: (seen, { y, color }) => [
-            Plot.barX(seen, { x: cost, y, fill: color, ...barInRow }),
-          ],
-        }),
-      );
+        description: `${title}, for each index`,
+        data: () =>
+          distinct(ofLargest(built()), ({ index }) => index).sort((a, b) => a[cost] - b[cost]),
+        series: ({ index }) => index,
+        legend,
+        tip,
+        name: ({ from }) => [{ from: `${from}/index` }],
+        value: ({ from }) => [
+          { from: `${from}/${cost}`, format: inUnit(unit) },
+          ...(cost === "build_s" ? [", ", { from: `${from}/build_cores`, format: cores }] : []),
+        ],
+        x: () => ({ label: `${title} [${unit}]`, grid: true, tickFormat: tickText }),
+        marks: (seen, { y, color }) => [Plot.barX(seen, { x: cost, y, fill: color, ...barInRow })],
+      });
     return [
-      section(
+      plotSection(
         "What an index costs before the first query",
-        lead(
+        [
           "Each is built once on each mesh; shown is the largest. Cores busy are the processor’s time of all threads of this process over the time on the clock.",
-        ),
-        legend.element,
-        panels(
-          bars("Time to build", "build_s", "s"),
-          bars("Memory for a triangle", "bytes_per_triangle", "B"),
-        ),
+        ],
+        legend,
+        bars("Time to build", "build_s", "s"),
+        bars("Memory for a triangle", "bytes_per_triangle", "B"),
       ),
     ];
   }

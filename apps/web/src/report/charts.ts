@@ -4,6 +4,7 @@
 import * as Plot from "@observablehq/plot";
 import { make } from "../page/elements.ts";
 import { extremes } from "./extremes.ts";
+import { lead, panels, section } from "./report_page.ts";
 import { shown } from "./shown.ts";
 import type { Column } from "./table.ts";
 
@@ -76,8 +77,9 @@ function glyph({ color, symbol }: Look): Element {
   return picture;
 }
 
-/** A plot of data, drawn as wide as its place is. */
+/** A card with a plot of data, drawn as wide as its place is. */
 export interface Chart<Datum> {
+  readonly title?: string;
   /** For those who cannot see it. */
   readonly description: string;
   readonly draw: (width: number) => Plot.PlotOptions;
@@ -90,7 +92,8 @@ export interface Chart<Datum> {
 const space = { marginLeft: 48, marginBottom: 40, inset: 7 };
 
 /** The element that holds a chart. */
-export function chart<Datum>({ description, draw, tip, legend }: Chart<Datum>): HTMLElement {
+export function chart<Datum>(wanted: Chart<Datum>): HTMLElement {
+  const { title, description, draw, tip, legend } = wanted;
   const bubble = make("div", { class: "tip", hidden: "" });
   const place = make("div", { class: "plot", role: "img", "aria-label": description });
   let width = 0;
@@ -120,8 +123,17 @@ export function chart<Datum>({ description, draw, tip, legend }: Chart<Datum>): 
     width = room;
     redraw();
   }).observe(place);
-  return place;
+  const name = title && make("figcaption", {}, make("span", { class: "name" }, title));
+  return make("figure", {}, ...(name ? [name] : []), place);
 }
+
+/** A section with plots side by side, which a legend filters. `words`: on what they show. */
+export const plotSection = (
+  title: string,
+  words: readonly (Node | string)[],
+  legend: Legend,
+  ...plots: readonly HTMLElement[]
+): HTMLElement => section(title, lead(...words), legend.element, panels(...plots));
 
 /** Names and values for a tip. */
 export function tipOf(

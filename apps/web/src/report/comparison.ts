@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The sections of a comparison: whether indices, solvers and narrow phases give the same answers. */
 
-import * as Plot from "@observablehq/plot";
 import { grouped, make } from "../page/elements.ts";
 import { Legend, logarithmic, looksOf, tipOfColumns } from "./charts.ts";
 import { entries, valueAt } from "./record.ts";
-import { lead, panel, panels, section } from "./report_page.ts";
-import { inRow, rowChart } from "./row_chart.ts";
+import { lead, panels, section } from "./report_page.ts";
+import { rowChart, spans } from "./row_chart.ts";
 import { error, rounded, shown, shownName } from "./shown.ts";
-import { type Column, column, harm, named, scrolled, table } from "./table.ts";
+import { type Column, column, harm, named, tableSection } from "./table.ts";
 
 const size = (heading: string, from: string): Column => column(heading, from, error);
 const times: readonly Column[] = [
@@ -80,14 +79,7 @@ export function comparisonSections(from: string): HTMLElement[] {
   ) => {
     const rows = entries(`${from}/${key}/rows`);
     if (rows.length === 0) return [];
-    return [
-      section(
-        title,
-        lead(...faults(rows, columns), note),
-        scrolled(table(rows, columns)),
-        ...more(rows),
-      ),
-    ];
+    return [tableSection(title, [...faults(rows, columns), note], rows, columns, ...more(rows))];
   };
   if (!valueAt(from)) return [];
   const extent = valueAt(`${from}/complete`)
@@ -161,6 +153,7 @@ function errors(pointers: readonly string[]): HTMLElement[] {
   const inscribed = (from: string) => [{ from: `${from}/backend` }, ", ", { from: `${from}/tool` }];
   const chartOf = (relation: string) =>
     rowChart({
+      title: relation,
       description: `Median and worst error of each narrow phase, ${relation}`,
       data: () => rows.filter((row) => row.relation === relation),
       series: ({ backend }) => backend,
@@ -175,23 +168,12 @@ function errors(pointers: readonly string[]): HTMLElement[] {
       ],
       // On the same axis, so that panels can be compared.
       x: () => logarithmic("error [mm]", [...rows.map(middle), ...rows.map(worst)]),
-      marks: (seen, { y, color, symbol }) => [
-        Plot.link(seen, {
-          x1: middle,
-          x2: worst,
-          y1: y,
-          y2: y,
-          ...inRow,
-          stroke: color,
-          strokeWidth: 2,
-        }),
-        Plot.dot(seen, { x: middle, y, ...inRow, symbol, fill: color, r: 4.5 }),
-      ],
+      marks: (seen, channels) => spans(seen, channels, middle, worst),
     });
   const relations = [...new Set(rows.map(({ relation }) => relation))];
   return [
     lead("Filled: the median error, and a line to the worst; no mark where it is nothing."),
     legend.element,
-    panels(...relations.map((relation) => panel(relation, chartOf(relation)))),
+    panels(...relations.map(chartOf)),
   ];
 }

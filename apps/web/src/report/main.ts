@@ -3,11 +3,10 @@
 import { benchmarkSections } from "./benchmark.ts";
 import { comparisonSections } from "./comparison.ts";
 import { experimentSections } from "./experiments.ts";
+import { robotPlanningSections } from "./planning.ts";
 import { showReport } from "./report_page.ts";
-import { robotPlanningSections } from "./robot_planning.ts";
-import { robotVerificationSections } from "./robot_verification.ts";
 import { speedSections } from "./speed.ts";
-import { verificationSections } from "./verification.ts";
+import { robotVerificationSections, verificationSections } from "./verification.ts";
 
 void showReport({
   bench: (main) => main.append(...benchmarkSections("/benchmark", "/comparison")),

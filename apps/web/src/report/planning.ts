@@ -2,15 +2,14 @@
 
 import * as three from "three";
 import { grouped, make } from "../page/elements.ts";
-import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
+import { lookAtAll, unpackedAnatomy, verticesOf } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import { coloured, ends, widths } from "./paths.ts";
-import { type ReportRecord, valueAt } from "./record.ts";
-import { lead, section } from "./report_page.ts";
+import { entries, type ReportRecord, valueAt } from "./record.ts";
 import { pictureGrid, runColor } from "./runs.ts";
 import { rounded, shown } from "./shown.ts";
 import type { PlanRecord } from "./simulation_record.ts";
-import { type Column, column, harm, named, scrolled, table } from "./table.ts";
+import { type Column, column, harm, named, tableSection } from "./table.ts";
 
 /** What the page of `plan` shows. */
 export async function planningSections(main: HTMLElement, record: ReportRecord): Promise<void> {
@@ -18,10 +17,21 @@ export async function planningSections(main: HTMLElement, record: ReportRecord):
   for (const mesh of plan.meshes.keys()) main.append(await meshSection(plan, mesh));
 }
 
-const columns: readonly Column[] = [
+/** What came out under a checker: which runs have a path. */
+const solved: readonly Column[] = [
   named("checker", "/checker"),
   column("runs", "/runs"),
   column("solved", "/solved"),
+];
+/** What its paths took. */
+const cost: readonly Column[] = [
+  column("median [s]", "/median_seconds", rounded),
+  column("checking [s]", "/median_checking_seconds", rounded),
+  column("motions asked", "/median_checks"),
+  column("length [mm]", "/median_length_mm", rounded),
+];
+const columns: readonly Column[] = [
+  ...solved,
   {
     heading: "valid",
     from: "/valid",
@@ -32,10 +42,7 @@ const columns: readonly Column[] = [
   },
   harm("enters", "/entering"),
   column("least clearance [mm]", "/least_clearance_mm", (mm) => rounded(mm, 4)),
-  column("median [s]", "/median_seconds", rounded),
-  column("checking [s]", "/median_checking_seconds", rounded),
-  column("motions asked", "/median_checks"),
-  column("length [mm]", "/median_length_mm", rounded),
+  ...cost,
 ];
 
 /** One mesh: what came out under each checker, and all paths that were found. */
@@ -44,7 +51,10 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
   const anatomy = await unpackedAnatomy(mesh);
   const rows = [...plan.summaries.keys()].filter((row) => plan.summaries[row]?.mesh === mesh.name);
   const group = pictureGrid(2);
-  const view = new AnatomyView(group, anatomy, anatomy.corners, outlook(anatomy));
+  // From the side and a little above, z upwards, as the fixtures stand.
+  const [toward, up] = [new three.Vector3(0.9, -0.5, 0.35), new three.Vector3(0, 0, 1)];
+  const outlook = lookAtAll(verticesOf(anatomy), toward, up, anatomy);
+  const view = new AnatomyView(group, anatomy, anatomy.corners, outlook);
   rows.forEach((row, place) => {
     const checker = plan.summaries[row]?.checker as string;
     const runs = plan.runs.filter((run) => run.mesh === mesh.name && run.checker === checker);
@@ -65,30 +75,60 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
       " valid",
     );
   });
-  return section(
+  return tableSection(
     shown(`/meshes/${number}/name`),
-    lead(
+    [
       "All paths found under each checker. ",
       make("b", {}, "Red"),
       ": nearer to the mesh than allowed, or through it. A path is valid if all of it keeps the clearance. The sliding checker has a planner of its own, SlidingConnect.",
-    ),
-    scrolled(
-      table(
-        rows.map((row) => `/summaries/${row}`),
-        columns,
-      ),
-    ),
+    ],
+    rows.map((row) => `/summaries/${row}`),
+    columns,
     group,
     hint(),
   );
 }
 
-/** From the side and a little above, z upwards, as the fixtures stand. */
-function outlook(anatomy: Anatomy) {
-  const [toward, up] = [new three.Vector3(0.9, -0.5, 0.35), new three.Vector3(0, 0, 1)];
-  const places = Array.from({ length: anatomy.positions.length / 3 }, (_, i) =>
-    new three.Vector3().fromArray(anatomy.positions, 3 * i),
-  );
-  const { middle, height } = fitted(places, toward, up);
-  return lookFrom(toward, up, middle, 1.13 * height, anatomy.size);
+/** What came out under each checker for a whole instrument, and of each run. */
+export function robotPlanningSections(): HTMLElement[] {
+  const mesh: Column = { heading: "mesh", from: "/mesh" };
+  const judged: readonly Column[] = [
+    column("motions", "/motions"),
+    harm("too close", "/too_close"),
+    harm("in the mesh", "/entering"),
+    harm("unproven", "/unproven"),
+  ];
+  return [
+    tableSection(
+      "Under each checker",
+      [
+        "Motions are those between neighbors on the paths that were found. The oracle examines them every 0.05 mm. Unproven are those that keepout does not prove in pieces of 1 mm. A path is valid if no motion is too close.",
+      ],
+      entries("/summaries"),
+      [
+        mesh,
+        ...solved,
+        column("valid", "/valid"),
+        ...judged,
+        column("deepest [mm]", "/deepest_mm", rounded),
+        ...cost,
+      ],
+    ),
+    tableSection(
+      "The runs",
+      ["What is empty was not solved. No clearance: it never came as near as the margin."],
+      entries("/runs"),
+      [
+        mesh,
+        named("checker", "/checker"),
+        column("problem", "/problem"),
+        column("seed", "/seed"),
+        column("time [s]", "/seconds", rounded),
+        column("motions asked", "/checks"),
+        ...judged,
+        column("least clearance [mm]", "/clearance_mm", (mm) => rounded(mm, 4)),
+        column("length [mm]", "/length_mm", rounded),
+      ],
+    ),
+  ];
 }

@@ -59,16 +59,6 @@ export const method = (...words: readonly (Node | string)[]): HTMLElement =>
 export const panels = (...figures: readonly HTMLElement[]): HTMLElement =>
   make("div", { class: "panels wide charts", style: `--columns:${figures.length}` }, ...figures);
 
-/** A card under a title, if it has one. */
-export function panel(
-  title: string,
-  content: HTMLElement,
-  about: readonly Node[] = [],
-): HTMLElement {
-  const caption = make("figcaption", {}, make("span", { class: "name" }, title), ...about);
-  return make("figure", {}, ...(title === "" ? [] : [caption]), content);
-}
-
 /** The facts of a machine, as far as they are known, for a list of definitions. */
 function machineFacts(pointer: string): HTMLElement[] {
   const gibibytes = (value: number) => `${rounded(value)} GiB`;

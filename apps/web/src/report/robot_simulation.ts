@@ -3,7 +3,7 @@
 
 import * as three from "three";
 import { make } from "../page/elements.ts";
-import { type Anatomy, fitted, lookFrom, unpackedAnatomy } from "./anatomy.ts";
+import { type Anatomy, lookAtAll, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord } from "./record.ts";
@@ -11,7 +11,7 @@ import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
 import { millimetres, rounded, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
-import { type Column, column, harm, named, scrolled, table } from "./table.ts";
+import { type Column, column, harm, named, tableSection } from "./table.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
 
 interface Run {
@@ -51,14 +51,15 @@ function figures({ bodies }: RobotSimulationRecord): HTMLElement {
       harm("deepest [mm]", `/${name}_deepest_mm`, rounded),
     ]),
   ];
-  return section(
+  return tableSection(
     "The figures",
-    lead(
+    [
       "Cycles in which a body was closer than what is certified, ",
       shown("/certified_mm", millimetres),
       "; of them those in which the mesh reached into it; and how far, which is at most the body's radius. An independent judge sees several poses of each cycle. A body that is all behind the surface, farther than its radius, counts as clear.",
-    ),
-    scrolled(table(entries("/rows"), columns)),
+    ],
+    entries("/rows"),
+    columns,
   );
 }
 
@@ -143,17 +144,14 @@ function strokeView(
   });
   const about = make("p", { class: "hint" }, "At speed ", shown(`${from}/speed`), ".");
   const cycles = stroke.runs[0]?.places.length ?? 1;
-  const time = timeSlider(`${from}/runs/0/places`, cycles, (cycle) => {
+  const time = timeSlider(view, `${from}/runs/0/places`, cycles, (cycle) => {
     for (const follow of followed) follow(cycle);
     view.outdate();
   });
   return {
     element: make("div", {}, group, time.element, about),
     go: (run: number) => time.go(stroke.runs[run]?.worst ?? 0),
-    dispose() {
-      time.stop();
-      view.dispose();
-    },
+    dispose: time.dispose,
   };
 }
 
@@ -170,6 +168,5 @@ function outlook(anatomy: Anatomy, stroke: Stroke) {
   const axis = port.clone().sub(wrist).normalize();
   const side = axis.clone().cross(up).normalize();
   const toward = axis.addScaledVector(side, 1.2).normalize();
-  const { middle, height } = fitted(places, toward, up);
-  return lookFrom(toward, up, middle, 1.25 * height, anatomy.size);
+  return lookAtAll(places, toward, up, anatomy, 1.25);
 }

@@ -35,6 +35,20 @@ const rowHeight = 42;
 export const inRow = { dy: 9 };
 export const barInRow = { insetTop: 22, insetBottom: 7 };
 
+/** A line in each row from one value to another, and a mark at the first. */
+export function spans<Datum>(
+  seen: Datum[],
+  { y, color, symbol }: RowChannels<Datum>,
+  from: (datum: Datum) => number,
+  to: (datum: Datum) => number,
+): Plot.Markish[] {
+  const line = { stroke: color, strokeWidth: 2, y1: y, y2: y };
+  return [
+    Plot.link(seen, { x1: from, x2: to, ...inRow, ...line }),
+    Plot.dot(seen, { x: from, y, ...inRow, symbol, fill: color, r: 5 }),
+  ];
+}
+
 /** The element that holds a row chart. */
 export function rowChart<Datum>(wanted: RowChart<Datum>): HTMLElement {
   const { data, series = () => "", legend, name, value, x, marks } = wanted;

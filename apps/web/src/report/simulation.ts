@@ -2,12 +2,19 @@
 
 import * as three from "three";
 import { drawn, make } from "../page/elements.ts";
-import { type Anatomy, fitted, lookFrom, type Outlook, unpackedAnatomy } from "./anatomy.ts";
+import {
+  type Anatomy,
+  fitted,
+  lookFrom,
+  type Outlook,
+  unpackedAnatomy,
+  verticesOf,
+} from "./anatomy.ts";
 import { AnatomyView, bestDirection, hint } from "./anatomy_view.ts";
 import { benchmarkSections } from "./benchmark.ts";
 import { mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
-import { lastKey, type ReportRecord, valueAt } from "./record.ts";
+import { entries, lastKey, type ReportRecord, valueAt } from "./record.ts";
 import { lead, method, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
 import { millimetres, rounded, show, shown } from "./shown.ts";
@@ -15,7 +22,7 @@ import { stepTimes } from "./simulation_charts.ts";
 import { type Run, type SimulationRecord, trespass } from "./simulation_record.ts";
 import { seen } from "./still.ts";
 import { strokeSection } from "./stroke.ts";
-import { column, harm, named, scrolled, table } from "./table.ts";
+import { column, harm, named, tableSection } from "./table.ts";
 
 /** What the page of `simulate` shows. */
 export async function simulationSections(main: HTMLElement, record: ReportRecord): Promise<void> {
@@ -23,7 +30,7 @@ export async function simulationSections(main: HTMLElement, record: ReportRecord
   const anatomy = await unpackedAnatomy(simulation.mesh);
   main.append(
     overview(simulation, anatomy),
-    figures(simulation),
+    figures(),
     strokeSection(simulation, anatomy),
     ...speed(simulation),
     measurement(simulation.mesh.surface === "closed"),
@@ -83,10 +90,7 @@ function wholeView(record: SimulationRecord, anatomy: Anatomy): Outlook {
   const some = (run: Run) =>
     run.strokes.flatMap(({ tip }) => tip.filter((_, i) => i % every === 0).map(anatomy.placed));
   const up = new three.Vector3(...record.up).normalize();
-  const all = record.runs.flatMap(some);
-  for (let i = 0; i < anatomy.positions.length; i += 3) {
-    all.push(new three.Vector3().fromArray(anatomy.positions, i));
-  }
+  const all = [...record.runs.flatMap(some), ...verticesOf(anatomy)];
   const outlook = (toward: three.Vector3) => {
     const { middle, height } = fitted(all, toward, up);
     // Room for the scale bar below.
@@ -124,9 +128,13 @@ function directions(up: three.Vector3): three.Vector3[] {
   );
 }
 
-function figures(record: SimulationRecord): HTMLElement {
-  const rows = table(
-    record.runs.map((_, run) => `/runs/${run}`),
+const figures = (): HTMLElement =>
+  tableSection(
+    "The figures",
+    [
+      "A crossing is a move after which, or during which, the tip was on the other side of the surface. The rate is how often the median step fits into a millisecond.",
+    ],
+    entries("/runs"),
     [
       { ...named("rule", "/name"), content: (row) => [runName(Number(lastKey(row)))] },
       harm("deepest inside", "/summary/deepest_mm", millimetres),
@@ -143,14 +151,6 @@ function figures(record: SimulationRecord): HTMLElement {
       column("slowest [µs]", "/summary/max_us", rounded),
     ],
   );
-  return section(
-    "The figures",
-    lead(
-      "A crossing is a move after which, or during which, the tip was on the other side of the surface. The rate is how often the median step fits into a millisecond.",
-    ),
-    scrolled(rows),
-  );
-}
 
 function speed(record: SimulationRecord): HTMLElement[] {
   const times = stepTimes(record);

@@ -134,7 +134,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
     ],
   ] as const;
   const figures = both.map(([description, drawing]) =>
-    make("figure", {}, chart({ description, draw: drawing, tip, legend })),
+    chart({ description, draw: drawing, tip, legend }),
   );
   return {
     elements: [make("h3", {}, "How near it came"), legend.element, panels(...figures)],
@@ -196,8 +196,7 @@ export function stepTimes(record: SimulationRecord): HTMLElement[] {
       ],
     );
   const description = "For each rule, the part of all steps that took at least so long.";
-  const figure = make("figure", {}, chart({ description, draw, tip, legend }));
-  return [legend.element, figure];
+  return [legend.element, chart({ description, draw, tip, legend })];
 }
 
 /** Times that are drawn as one. */

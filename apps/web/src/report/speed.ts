@@ -3,12 +3,11 @@
 
 import * as Plot from "@observablehq/plot";
 import { make } from "../page/elements.ts";
-import { chart, Legend, type Look, logarithmic, tipOfColumns } from "./charts.ts";
+import { chart, Legend, type Look, logarithmic, plotSection, tipOfColumns } from "./charts.ts";
 import { curves } from "./curves.ts";
 import { entries, type Timing, valueAt } from "./record.ts";
-import { lead, panel, panels, section } from "./report_page.ts";
 import { type Format, mean, nanoseconds, rounded, shown, trimmed } from "./shown.ts";
-import { type Column, column, scrolled, table } from "./table.ts";
+import { type Column, column, tableSection } from "./table.ts";
 
 /** Median, 99 % and 99.9 %, as far as there are enough samples, in one unit. */
 function percentiles(from: string): (Node | string)[] {
@@ -100,16 +99,17 @@ export function speedSections(): HTMLElement[] {
 }
 
 function ratioSection(): HTMLElement {
-  const ratios = section(
+  const ratios = tableSection(
     "What is demanded, and what was measured",
-    lead(
+    [
       "Of ",
       shown("/mesh"),
       " unless said, on one core unless said. Beside each figure what it is made of: median / 99 % / 99.9 %. A median of a fraction of a microsecond, marked *, is that of batches; reading the clock, which all other times include, takes ",
       shown("/machine/clock_ns", (ns) => `${rounded(ns, 2)}\u00a0ns`),
       ".",
-    ),
-    scrolled(table(entries("/rows"), ratioColumns)),
+    ],
+    entries("/rows"),
+    ratioColumns,
   );
   ratios.className = "ratios";
   return ratios;
@@ -119,12 +119,13 @@ function querySection(): HTMLElement[] {
   const rows = entries("/queries");
   if (rows.length === 0) return [];
   return [
-    section(
+    tableSection(
       "Sphere queries at random places, every index",
-      lead(
+      [
         "Median / 99 % / 99.9 %. Candidates: what the index does alone. Answer: the triangles within the ball, by the engine’s kernel for each candidate where the index does not know by itself; beside it by the least code that decides the same. All answers are the same.",
-      ),
-      scrolled(table(rows, queryColumns)),
+      ],
+      rows,
+      queryColumns,
     ),
   ];
 }
@@ -166,6 +167,7 @@ function histogramSection(): HTMLElement[] {
   const tip = (bin: Bin) => tipOfColumns([bin.series], bin.from, binColumns);
   const color = ({ series }: Bin) => legend.look(series).color;
   const counts = chart({
+    title: "How many took how long",
     description: "How many cycles took how long: certified steps, and an empty loop",
     legend,
     tip,
@@ -188,6 +190,7 @@ function histogramSection(): HTMLElement[] {
     },
   });
   const tails = curves({
+    title: "How many took longer",
     description: "How many of a million cycles took longer: certified steps, and an empty loop",
     data: () => bins,
     series: ({ series }) => series,
@@ -197,11 +200,12 @@ function histogramSection(): HTMLElement[] {
     tip,
   });
   return [
-    section(
+    plotSection(
       "Cycle after cycle",
-      lead("The empty loop waits as often and as long as the median step, and does nothing."),
-      legend.element,
-      panels(panel("How many took how long", counts), panel("How many took longer", tails)),
+      ["The empty loop waits as often and as long as the median step, and does nothing."],
+      legend,
+      counts,
+      tails,
     ),
   ];
 }

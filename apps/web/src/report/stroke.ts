@@ -121,6 +121,7 @@ function strokeView(
   });
   const charts = clearanceCharts(record, stroke);
   const time = timeSlider(
+    view,
     `/runs/0/strokes/${stroke}/tip`,
     (record.runs[0] as Run).strokes[stroke]?.tip.length ?? 1,
     (cycle) => {
@@ -131,12 +132,7 @@ function strokeView(
   );
   time.go(moment.cycle);
   content.replaceChildren(group, time.element, ...charts.elements);
-  return {
-    dispose() {
-      time.stop();
-      view.dispose();
-    },
-  };
+  return time;
 }
 
 const clearanceAt = (run: number, stroke: number, cycle: number): string =>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { grouped, make } from "../page/elements.ts";
 import { valueAt } from "./record.ts";
+import { lead, section } from "./report_page.ts";
 import { type Format, show } from "./shown.ts";
 
 /** A column of a table: what of each row it shows. */
@@ -64,6 +65,21 @@ export function table(
 export function scrolled(content: HTMLTableElement, name = "scroll"): HTMLElement {
   return make("div", { class: name, tabindex: "0" }, content);
 }
+
+/** A section with a table of rows of the record, under the page's words on them. */
+export const tableSection = (
+  title: Node | string,
+  words: readonly (Node | string)[],
+  rows: readonly string[],
+  columns: readonly Column[],
+  ...more: readonly (Node | string)[]
+): HTMLElement =>
+  section(
+    title,
+    ...(words.length > 0 ? [lead(...words)] : []),
+    scrolled(table(rows, columns)),
+    ...more,
+  );
 
 /** A field that leaves only the rows of a table that have all words that are written there. */
 export function rowFilter(content: HTMLTableElement): HTMLElement {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { make } from "../page/elements.ts";
+import type { AnatomyView } from "./anatomy_view.ts";
 import { ordinal } from "./runs.ts";
 
 /** How long a stroke is played. [ms] */
@@ -21,8 +22,16 @@ export function strokeChooser(
   return chooser;
 }
 
-/** Chooses a cycle of a stroke, and plays it, slower than it was. `from`: an array with one entry a cycle. */
-export function timeSlider(from: string, cycles: number, follow: (cycle: number) => void) {
+/**
+ * Chooses a cycle of the stroke that a view shows, and plays it, slower than it was. `from`: an array with
+ * one entry a cycle. Disposes of the view, too.
+ */
+export function timeSlider(
+  view: AnatomyView,
+  from: string,
+  cycles: number,
+  follow: (cycle: number) => void,
+) {
   const slider = make("input", { type: "range", min: "0", "aria-label": "time" });
   slider.max = String(cycles - 1);
   const play = make("button", { type: "button", class: "play" }, "Play");
@@ -55,5 +64,9 @@ export function timeSlider(from: string, cycles: number, follow: (cycle: number)
     stop();
     go(Number(slider.value));
   });
-  return { element: make("div", { class: "time" }, play, slider, cycle), go, stop };
+  const dispose = () => {
+    stop();
+    view.dispose();
+  };
+  return { element: make("div", { class: "time" }, play, slider, cycle), go, dispose };
 }
