@@ -1,30 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The exact oracle on what `keepout replay` has written of a path: judge_path MESH STEPS.csv KEPT.
-// Prints as JSON how many motions of the tip there were, how many of them end inside, how many
-// touch the mesh on their way, how many come nearer than KEPT less a tenth of a micrometre, and how
-// near the nearest comes, if it is no farther than a tenth of a millimetre beyond that; else null.
-// [mm]
+// Judges of paths that a page of `keepout live` has saved, which ask nothing of the engine but how
+// finely it tells lengths apart. They print a verdict as JSON. [mm]
+//
+//     judge_path MESH STEPS.csv KEPT
+//
+// The exact oracle on what `keepout replay` has written of the path of a tip: how many motions
+// there were, how many of them end inside, how many touch the mesh on their way, how many come
+// nearer than KEPT less a tenth of a micrometer, and how near the nearest comes, if it is no
+// farther than a tenth of a millimeter beyond that; else null.
+//
+//     judge_path MESH PATH
+//
+// The judge of campaigns on the path of an instrument, which has kinematics and distances of its
+// own: how many cycles there are, and how many of them begin elsewhere than the one before ended,
+// come closer than margin - band, have the mesh in a body, or break a joint's limits; how close the
+// closest comes; how far the tip goes in all, and by how much the jaw turns from where it began, at
+// the most [rad]; and in how many cycles it makes less than half of the way that is asked for, with
+// a body no farther off than the margin.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "keepout/error.h"
+#include "keepout/factory/make_instrument_constraint.h"
+#include "keepout/index/index_cache.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/oracle/safety_oracle.h"
+#include "verify/robot/judge.h"
+#include "verify/robot/start.h"
 
-int main(int argc, char** argv) try {
-  if (argc != 4) {
-    std::cerr << "usage: judge_path MESH STEPS.csv KEPT\n";
-    return EXIT_FAILURE;
-  }
-  const double kept = std::stod(argv[3]);
-  const auto mesh = keepout::load_mesh(argv[1], {.check = keepout::MeshCheck::none}).mesh;
+namespace {
+
+using Json = nlohmann::json;
+using keepout::Vec3;
+using MeshPointer = std::shared_ptr<const keepout::Mesh>;
+
+constexpr std::string_view mark = "# path: ";
+
+/// A length as JSON; null if it is infinite.
+Json finite(double length) { return std::isfinite(length) ? Json(length) : Json(); }
+
+Json judged_steps(const MeshPointer& mesh, std::istream& steps, double kept) {
   keepout::oracle::SafetyOracle oracle(mesh);
-  std::ifstream steps(argv[2]);
   std::string line;
   std::getline(steps, line);
   std::size_t motions = 0, inside = 0, crossing = 0, nearer = 0;
@@ -36,8 +64,8 @@ int main(int argc, char** argv) try {
     for (int i = 0; i < 11 && std::getline(columns, word, ','); ++i) {
       if (i != 1) value[i] = std::stod(word);
     }
-    const keepout::Vec3 tip(value[2], value[3], value[4]);
-    const keepout::Vec3 end = tip + keepout::Vec3(value[8], value[9], value[10]);
+    const Vec3 tip(value[2], value[3], value[4]);
+    const Vec3 end = tip + Vec3(value[8], value[9], value[10]);
     const keepout::oracle::Finding finding =
         oracle.check(tip, end, std::max(kept - 1e-4, 0.0), kept + 0.1);
     crossing += finding.crosses ? 1 : 0;
@@ -45,14 +73,106 @@ int main(int argc, char** argv) try {
     nearest = std::min(nearest, finding.distance);
     inside += oracle.inside(end).value_or(false) ? 1 : 0;
   }
-  std::cout << "{\"motions\": " << motions << ", \"inside\": " << inside
-            << ", \"crossing\": " << crossing << ", \"nearer\": " << nearer << ", \"nearest\": ";
-  if (std::isfinite(nearest)) {
-    std::cout << nearest << "}\n";
-  } else {
-    std::cout << "null}\n";
+  if (motions == 0) throw keepout::Error("there is no motion");
+  return {{"motions", motions},
+          {"inside", inside},
+          {"crossing", crossing},
+          {"nearer", nearer},
+          {"nearest", finite(nearest)}};
+}
+
+/// What is JSON in the head of a path; leaves the stream behind it.
+Json head_of(std::istream& path) {
+  for (std::string line; std::getline(path, line);) {
+    if (line.starts_with(mark)) return Json::parse(line.substr(mark.size()));
   }
-  return motions > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+  throw keepout::Error("the path has no head");
+}
+
+keepout::Pose base_of(const Json& head) {
+  const auto numbers = head.at("base").get<std::array<double, 12>>();
+  keepout::Pose base;
+  for (int i = 0; i < 3; ++i) {
+    base.position[i] = numbers[i];
+    for (int j = 0; j < 3; ++j) base.rotation(i, j) = numbers[3 + 3 * i + j];
+  }
+  return base;
+}
+
+Json judged_path(const MeshPointer& mesh, std::istream& path) {
+  const Json head = head_of(path);
+  if (keepout::index_cache_file(*mesh, {}).stem().string() != head.at("digest")) {
+    throw keepout::Error("the path is of another mesh");
+  }
+  const keepout::InstrumentOptions options{
+      .margin = head.at("margin"), .band = head.at("band"), .period = head.at("period")};
+  const auto& robot = keepout::app::robot_named(head.at("robot"));
+  const keepout::Instrument instrument = robot.make(base_of(head));
+  const double tolerance =
+      keepout::make_instrument_constraint(mesh, instrument, {.options = options}).tolerance();
+  const auto tree = std::make_shared<const keepout::oracle::TriangleTree>(mesh);
+  const std::size_t joints = static_cast<std::size_t>(instrument.chain().size());
+  std::optional<keepout::app::RobotJudge> judge;
+  keepout::Random random(1);
+  std::vector<double> positions;
+  Vec3 tip = Vec3::Zero(), first_way = Vec3::Zero();
+  std::size_t cycles = 0, jumps = 0, below = 0, in_mesh = 0, limits = 0, held = 0;
+  double nearest = std::numeric_limits<double>::infinity(), way = 0.0, turn = 0.0;
+  const auto jaw_now = [&]() -> Vec3 {
+    const keepout::oracle::InstrumentOracle& oracle = judge->oracle();
+    const keepout::oracle::Segment jaw = oracle.axis(oracle.bodies() - 1);
+    return (jaw.to - jaw.from).normalized();
+  };
+  const auto tip_now = [&] { return judge->oracle().axis(judge->oracle().bodies() - 1).to; };
+  for (std::string line; std::getline(path, line); ++cycles) {
+    std::istringstream words(line);
+    std::vector<double> numbers;
+    for (std::string word; words >> word;) numbers.push_back(std::stod(word));
+    if (numbers.size() != 2 * joints + 6) throw keepout::Error("a line of the path is cut off");
+    const auto increment = numbers.begin() + static_cast<std::ptrdiff_t>(joints);
+    const std::vector<double> from(numbers.begin(), increment);
+    if (!judge) {
+      judge.emplace(keepout::app::JudgedScene{robot.judged(), base_of(head), {{tree}}},
+                    instrument.chain(), random, from, options, tolerance);
+      tip = tip_now();
+      first_way = jaw_now();
+      positions = from;
+    }
+    jumps += from == positions ? 0 : 1;
+    for (std::size_t k = 0; k < joints; ++k) positions[k] = from[k] + numbers[joints + k];
+    const keepout::app::RobotVerdict verdict = judge->judge(positions);
+    below += verdict.is_below ? 1 : 0;
+    in_mesh += verdict.least < 0.0 ? 1 : 0;
+    limits += verdict.limits_broken ? 1 : 0;
+    nearest = std::min(nearest, verdict.least);
+    const Vec3 made = tip_now() - tip;
+    const Vec3 asked(numbers.data() + 2 * joints);
+    const bool is_near = verdict.least <= options.margin;
+    held += is_near && asked.norm() > 0.05 && made.dot(asked) < 0.5 * asked.squaredNorm() ? 1 : 0;
+    way += made.norm();
+    tip = tip_now();
+    turn = std::max(turn, std::acos(std::clamp(jaw_now().dot(first_way), -1.0, 1.0)));
+  }
+  if (cycles == 0) throw keepout::Error("there is no cycle");
+  return {{"cycles", cycles}, {"jumps", jumps},
+          {"below", below},   {"in_mesh", in_mesh},
+          {"limits", limits}, {"nearest", finite(nearest)},
+          {"way", way},       {"turn", turn},
+          {"held", held},     {"kept", options.margin - options.band}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 3 && argc != 4) {
+    std::cerr << "usage: judge_path MESH STEPS.csv KEPT, or judge_path MESH PATH\n";
+    return EXIT_FAILURE;
+  }
+  const auto mesh = keepout::load_mesh(argv[1], {.check = keepout::MeshCheck::none}).mesh;
+  std::ifstream file(argv[2]);
+  std::cout << (argc == 4 ? judged_steps(mesh, file, std::stod(argv[3])) : judged_path(mesh, file))
+            << '\n';
+  return EXIT_SUCCESS;
 } catch (const std::exception& error) {
   std::cerr << "judge_path: " << error.what() << '\n';
   return EXIT_FAILURE;

@@ -21,7 +21,7 @@ export function empty(folder) {
   mkdirSync(folder, { recursive: true });
 }
 
-export const launched = (browserPath) =>
+export const launched = (browserPath = "/usr/bin/chromium") =>
   puppeteer.launch({
     executablePath: browserPath,
     args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
-#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <new>
@@ -19,7 +18,6 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "anatomy.h"
 #include "keepout/error.h"
@@ -79,28 +77,32 @@ val list(const auto& range) {
   return list(range, [](const auto& each) { return value(each); });
 }
 
-/// Returns a JavaScript object with these members.
-val object(std::initializer_list<std::pair<const char*, val>> members) {
+/// Returns a JavaScript object of names and members in turn.
+val object(const auto&... names_and_members) {
   val made = val::object();
-  for (const auto& [name, member] : members) made.set(name, member);
+  const auto fill = [&](const auto& self, const char* name, const auto& member,
+                        const auto&... rest) {
+    made.set(name, value(member));
+    if constexpr (sizeof...(rest) > 0) self(self, rest...);
+  };
+  fill(fill, names_and_members...);
   return made;
+}
+
+/// Returns memory that holds triples of numbers as a typed array.
+val view(const auto& triples) {
+  return val(typed_memory_view(3 * triples.size(), triples.data()->data()));
 }
 
 /// Anatomy of a surface whose equal vertices are one already: vertices (n, 3) in mm, and corners
 /// (m, 3), as typed arrays. They are copied.
 Anatomy* anatomy_of_surface(const val& vertices, const val& corners) {
   return or_error([&] {
-    const auto coordinates = emscripten::convertJSArrayToNumberVector<double>(vertices);
-    const auto numbers = emscripten::convertJSArrayToNumberVector<keepout::VertexId>(corners);
     keepout::Surface surface;
-    surface.vertices.reserve(coordinates.size() / 3);
-    for (std::size_t i = 0; i < coordinates.size(); i += 3) {
-      surface.vertices.emplace_back(coordinates.data() + i);
-    }
-    surface.triangles.reserve(numbers.size() / 3);
-    for (std::size_t i = 0; i < numbers.size(); i += 3) {
-      surface.triangles.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
-    }
+    surface.vertices.resize(vertices["length"].as<std::size_t>() / 3);
+    surface.triangles.resize(corners["length"].as<std::size_t>() / 3);
+    view(surface.vertices).call<void>("set", vertices);
+    view(surface.triangles).call<void>("set", corners);
     return new Anatomy(std::move(surface));
   });
 }
@@ -127,10 +129,8 @@ Anatomy* anatomy_of_shape(const std::string& name) {
 /// until the engine's memory grows.
 val surface(const Anatomy& anatomy) {
   static_assert(sizeof(Vec3) == 24 && sizeof(keepout::Corners) == 12);
-  const keepout::Mesh& mesh = *anatomy.mesh;
-  return object(
-      {{"vertices", val(typed_memory_view(3 * mesh.vertex_count(), mesh.vertices()[0].data()))},
-       {"corners", val(typed_memory_view(3 * mesh.triangle_count(), mesh.triangles()[0].data()))}});
+  return object("vertices", view(anatomy.mesh->vertices()), "corners",
+                view(anatomy.mesh->triangles()));
 }
 
 /// Returns the facts of the mesh: watertight, size, the warnings of its file, and the findings of
@@ -139,12 +139,11 @@ val findings(const Anatomy& anatomy) {
   return or_error([&] {
     const keepout::MeshFindings mesh = examine(*anatomy.mesh);
     const auto told = [](const keepout::app::Finding& finding) {
-      return object({{"text", value(text_of(finding))}, {"advice", value(finding.advice)}});
+      return object("text", text_of(finding), "advice", finding.advice);
     };
-    return object({{"watertight", value(mesh.is_watertight())},
-                   {"size", list(mesh.bounds.size())},
-                   {"warnings", list(anatomy.warnings)},
-                   {"findings", list(keepout::app::findings_of(mesh, std::nullopt), told)}});
+    return object("watertight", mesh.is_watertight(), "size", list(mesh.bounds.size()), "warnings",
+                  list(anatomy.warnings), "findings",
+                  list(keepout::app::findings_of(mesh, std::nullopt), told));
   });
 }
 
@@ -162,13 +161,10 @@ Tool* tool_on(Anatomy& anatomy, const val& settings) {
 /// and name and radius [mm] of each body.
 val facts(const Tool& tool) {
   const auto body = [](const keepout::Body& each) {
-    return object({{"name", value(each.name)}, {"radius", value(each.radius)}});
+    return object("name", each.name, "radius", each.radius);
   };
-  return object({{"positions", value(tool.positions)},
-                 {"asked", value(tool.asked)},
-                 {"band", value(tool.band)},
-                 {"period", value(tool.period)},
-                 {"bodies", list(tool.bodies, body)}});
+  return object("positions", tool.positions, "asked", tool.asked, "band", tool.band, "period",
+                tool.period, "bodies", list(tool.bodies, body));
 }
 
 /// Returns the numbers of the last cycle as they lie in memory, a view until the next call.
@@ -180,6 +176,8 @@ val last(const Tool& tool) {
 /// See Tool::place().
 val place(Tool& tool, const val& positions) {
   tool.cycle = {};
+  tool.planes = {};
+  tool.active = {};
   tool.place(emscripten::convertJSArrayToNumberVector<double>(positions));
   return last(tool);
 }
@@ -203,16 +201,12 @@ double body_clearance(Tool& tool, std::size_t body) {
 
 /// Returns all planes of the last step of a tip, from the tip before it.
 val planes(const Tool& tool) {
-  val all = val::array();
-  for (std::uint32_t i = 0; i < tool.planes.size(); ++i) {
-    const keepout::HalfSpace& plane = tool.planes[i];
-    const bool is_active = std::ranges::find(tool.active, i) != tool.active.end();
-    all.call<void>("push", object({{"normal", list(plane.normal)},
-                                   {"offset", value(plane.offset)},
-                                   {"triangle", value(plane.source)},
-                                   {"isActive", value(is_active)}}));
-  }
-  return all;
+  std::uint32_t number = 0;
+  return list(tool.planes, [&](const keepout::HalfSpace& plane) {
+    const bool is_active = std::ranges::find(tool.active, number++) != tool.active.end();
+    return object("normal", list(plane.normal), "offset", plane.offset, "triangle", plane.source,
+                  "isActive", is_active);
+  });
 }
 
 /// Returns all statuses by number: name, and reason, one line on what it means and what to do about
@@ -220,10 +214,10 @@ val planes(const Tool& tool) {
 val statuses(const std::string& subject) {
   const auto of = subject == "tip" ? keepout::Subject::tip : keepout::Subject::instrument;
   val all = val::array();
-  for (int i = 0; name(static_cast<keepout::Status>(i)) != "unknown"; ++i) {
-    const auto status = static_cast<keepout::Status>(i);
-    all.call<void>("push",
-                   object({{"name", value(name(status))}, {"reason", value(reason(status, of))}}));
+  for (keepout::Status status{}; name(status) != "unknown";) {
+    const auto number =
+        all.call<int>("push", object("name", name(status), "reason", reason(status, of)));
+    status = static_cast<keepout::Status>(number);
   }
   return all;
 }
@@ -237,12 +231,9 @@ val shapes() {
 val counterexamples() {
   const auto row = [](const auto& numbers) { return list(numbers); };
   return list(keepout::counterexamples(), [&](const keepout::Counterexample& example) {
-    return object({{"name", value(example.name)},
-                   {"vertices", list(example.surface.vertices, row)},
-                   {"triangles", list(example.surface.triangles, row)},
-                   {"tip", list(example.tip)},
-                   {"desired", list(example.desired)},
-                   {"radius", value(example.radius)}});
+    return object("name", example.name, "vertices", list(example.surface.vertices, row),
+                  "triangles", list(example.surface.triangles, row), "tip", list(example.tip),
+                  "desired", list(example.desired), "radius", example.radius);
   });
 }
 

@@ -14,19 +14,19 @@
 #include "anatomy.h"
 #include "keepout/robot/instrument.h"
 
-/// Result of a control cycle: doubles in this order, which src/engine/tool.ts reads.
+/// Result of a control cycle: doubles in this order, which src/engine/keepout.ts reads.
 struct Cycle {
   double positions[8];  // after the cycle: of a tip [mm], or of the joints [rad or mm]
   double motion[8];     // their increment in the cycle
   double asked[6];      // of a tip: the hand's place [mm]; of a flange: motion [mm], rotation [rad]
-  double flange[7];  // frame that the hand leads, after the cycle: place and quaternion i, j, k, w
-  double force[3];   // of the spring between hand and tip, on the hand [N]
-  double distance = std::numeric_limits<double>::quiet_NaN();  // of the tip, or of the nearest
-                                                               // body, before the cycle [mm]
-  double status;                                               // a number of statuses()
+  double flange[7];     // what the hand leads, after the cycle: place and quaternion i, j, k, w
+  double force[3];      // of the spring between hand and tip, on the hand [N]
+  // From the tip, or the nearest body, before the cycle to the surface; NaN if unknown. [mm]
+  double distance = std::numeric_limits<double>::quiet_NaN();
+  double status;        // a number of statuses()
   double held;          // planes or rows that limit the motion
   double rounds;        // judged trial motions of an instrument
-  double nearest = -1;  // number of that body; -1: unknown
+  double nearest = -1;  // number of the nearest body; -1: unknown
   double triangles;     // that the step of a tip rests on
   double plane_count;
   double cores[6 * keepout::Instrument::most_bodies];  // both ends of each body, after the cycle
@@ -56,6 +56,6 @@ struct Tool {
   std::span<const std::uint32_t> active;       // numbers of those that limit its motion
 };
 
-/// Makes a tool with the settings that src/engine/tool.ts declares: the instrument of a robot at a
-/// port; without a port, the ball of a tip at the origin under a rule. Throws Error.
+/// Makes a tool with the settings that src/engine/keepout.ts declares: the instrument of a robot at
+/// a port; without a port, the ball of a tip at the origin under a rule. Throws Error.
 std::unique_ptr<Tool> make_tool(Anatomy& anatomy, const emscripten::val& settings);

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * keepout itself, compiled to WebAssembly: apps/web/engine/exports.cpp says what each function does.
- * Lengths are in mm, forces in N, coordinates in the frame of the mesh. A function that fails throws
- * an Error with keepout's own message.
+ * keepout itself, compiled to WebAssembly: apps/web/engine/exports.cpp says what each function does,
+ * tool.h there what the numbers of a tool and of a cycle are. Lengths are in mm, forces in N,
+ * coordinates in the frame of the mesh. A function that fails throws an Error with keepout's message.
  */
 
 export type Vec3 = readonly [x: number, y: number, z: number];
 
 /** The engine, as emscripten makes it of build/wasm/keepout.mjs. */
 export interface Keepout {
-  /** Names of generated meshes. */
   shapes(): string[];
-  /** Returns all statuses by number, with their reasons for a tip or an instrument. */
   statuses(subject: Subject): StatusWords[];
   counterexamples(): Counterexample[];
-  /** Of a surface that is welded already: (n, 3) coordinates and (m, 3) numbers of vertices. */
   anatomyOfSurface(vertices: Float64Array, corners: Uint32Array): Anatomy;
-  /** Of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ or OFF. */
   anatomyOfFile(name: string, bytes: Uint8Array): Anatomy;
   anatomyOfShape(name: string): Anatomy;
   makeTool(anatomy: Anatomy, settings: ToolSettings & Spring & { port: Port | null }): EngineTool;
@@ -34,10 +30,8 @@ export const loadKeepout = (make: ModuleFactory, wasmBinary: Uint8Array): Promis
 
 /** A mesh and its index, which all tools on it share: they are deleted before it. */
 export interface Anatomy {
-  /** Coordinates (n, 3) [mm] and numbers of vertices (m, 3): views until the engine's memory grows. */
   surface(): { vertices: Float64Array; corners: Uint32Array };
   findings(): Findings;
-  /** To the surface; below 0 inside a watertight mesh. [mm] */
   clearance(...place: Vec3): number;
   delete(): void;
 }
@@ -110,14 +104,10 @@ export const unturned: Frame["turn"] = [0, 0, 0, 1];
 
 /** Facts of a tool that stay the same. */
 export interface ToolFacts {
-  /** Numbers of a position: three of a tip, one for each joint of an instrument. */
   readonly positions: number;
-  /** Numbers of Cycle.asked. */
   readonly asked: number;
-  /** Allowance for curvature, taken from the margin. [mm] */
-  readonly band: number;
-  /** Of a cycle. [s] */
-  readonly period: number;
+  readonly band: number; // [mm]
+  readonly period: number; // [s]
   readonly bodies: readonly { readonly name: string; readonly radius: number }[];
 }
 
@@ -131,30 +121,19 @@ export interface Plane {
 
 /** Result of a control cycle. */
 export interface Cycle {
-  /** Of the tip or the joints, after the cycle. [mm or rad] */
   readonly positions: readonly number[];
-  /** Increment in the cycle. */
   readonly motion: readonly number[];
-  /** Of a tip: the hand's place (3). Of an instrument: motion and rotation of the flange (6). */
   readonly asked: readonly number[];
-  /** The frame that the hand leads, after the cycle. */
   readonly flange: Frame;
-  /** On the hand of a tip. [N] */
-  readonly force: Vec3;
-  /** From the tip or the nearest body before the cycle to the surface; NaN: not known. [mm] */
+  readonly force: Vec3; // [N]
   readonly distance: number;
-  /** Both ends of each body's axis, after the cycle: (bodies, 6). [mm] */
-  readonly cores: readonly number[];
   readonly status: number;
-  /** Planes or rows that limit the motion. */
   readonly held: number;
-  /** Trial motions of an instrument that were judged. */
   readonly rounds: number;
-  /** The number of the nearest body; -1: not known. */
   readonly nearest: number;
-  /** Triangles that the step of a tip rests on. */
   readonly triangles: number;
   readonly planeCount: number;
+  readonly cores: readonly number[]; // (bodies, 6)
 }
 
 /** A tool of the engine, which gives cycles as numbers: struct Cycle of apps/web/engine/tool.h. */
@@ -163,9 +142,7 @@ interface EngineTool {
   place(positions: readonly number[]): Float64Array;
   follow(...hand: readonly number[]): Float64Array;
   step(...asked: readonly number[]): Float64Array;
-  /** From the surface of a body to the mesh. [mm] */
   clearance(body: number): number;
-  /** All planes of the last step of a tip, from where it was before. */
   planes(): Plane[];
   delete(): void;
 }

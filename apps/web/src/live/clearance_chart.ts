@@ -18,7 +18,7 @@ export class ClearanceChart {
   constructor(container: HTMLElement) {
     let [ink, line] = ["", ""];
     const read = () => {
-      [ink, line] = [colorOf("--quiet"), colorOf("--line")];
+      [ink, line] = [colorOf("--soft"), colorOf("--line")];
     };
     read();
     const grid = { stroke: () => line, width: 1 };

@@ -112,22 +112,13 @@ function ofLargest(rows: Rows): BenchmarkRow[] {
   return rows.filter(({ triangles }) => triangles === most);
 }
 
-const shownCombination = (from: string): (Node | string)[] => [
-  shown(`${from}/index`),
-  ", ",
-  shown(`${from}/activation`),
-  ", ",
-  shown(`${from}/solver`),
-];
-
 /** A combination within the text of a plot. */
-const combinationParts = (from: string) => [
-  { from: `${from}/index` },
-  ", ",
-  { from: `${from}/activation` },
-  ", ",
-  { from: `${from}/solver` },
-];
+const combinationParts = (from: string) =>
+  ["index", ", ", "activation", ", ", "solver"].map((part) =>
+    part === ", " ? part : { from: `${from}/${part}` },
+  );
+const shownCombination = (from: string): (Node | string)[] =>
+  combinationParts(from).map((part) => (typeof part === "string" ? part : shown(part.from)));
 
 const tip = ({ from }: BenchmarkRow): HTMLElement[] =>
   tipOfColumns(shownCombination(from), from, facts);

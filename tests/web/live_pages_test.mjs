@@ -1,0 +1,460 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * The pages of `keepout live`, with a tip and with an instrument, in a real browser and with real input:
+ *
+ *   live_pages_test.mjs KEEPOUT JUDGE_PATH FOLDER [BROWSER]
+ *
+ * A hand drags the tip into the skull; what the page's tool did is done again by `keepout replay`, as
+ * the page says, and must be the same in every bit; the exact oracle judges it. Then without a fixture,
+ * with files that are dropped. What the joints of an instrument did is judged by the oracle of `keepout
+ * verify --robot`, whose kinematics and distances are its own. Both are led by touch and by keys. Prints
+ * times and rates, and asserts none.
+ */
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readdirSync, readFileSync, renameSync, statSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import {
+  assertAccessible,
+  assertAlone,
+  empty,
+  large,
+  launched,
+  note,
+  opened,
+  root,
+  sleep,
+  small,
+} from "./tabs.mjs";
+
+const [keepout, judge, folder, browserPath] = process.argv.slice(2);
+const skull = join(process.env.KEEPOUT_CACHE || join(root, ".cache"), "fixtures/skull.stl");
+empty(folder);
+const run = (program, ...args) =>
+  execFileSync(program, args, { encoding: "utf8", cwd: folder, maxBuffer: 1 << 26 });
+const judged = (...words) => {
+  const verdict = JSON.parse(run(judge, skull, ...words));
+  note(JSON.stringify(verdict));
+  return verdict;
+};
+const browser = await launched(browserPath);
+after(() => browser.close());
+
+/** The tabs of the page that is tested. */
+let desk;
+let phone;
+
+/** Waits until there is a tool, whose state is told. */
+const ready = (tab) =>
+  tab.waitForFunction(
+    () =>
+      !document.querySelector("#grip").hidden &&
+      document.querySelector("#loading").hidden &&
+      document.querySelector("#clearance").textContent.endsWith("mm"),
+    { timeout: 60_000 },
+  );
+
+/** Where the middle of the hand is on the screen. */
+const handAt = (tab) =>
+  tab.evaluate(() => {
+    const { x, y, width, height } = document.querySelector("#grip").getBoundingClientRect();
+    return { x: x + width / 2, y: y + height / 2 };
+  });
+
+/** Takes the hand, and leads it for some seconds along a way of the share of the time; holds it. */
+async function dragged(seconds, way) {
+  const { x, y } = await handAt(desk);
+  await desk.mouse.move(x, y);
+  await desk.mouse.down();
+  const begin = performance.now();
+  for (let t = 0; t < 1; t = (performance.now() - begin) / (1000 * seconds)) {
+    const [across, down] = way(t);
+    await desk.mouse.move(x + across, y + down);
+    await sleep(8);
+  }
+}
+
+/** Takes the hand with a finger, and leads it along a way of 50 places; gives the finger, which holds it. */
+async function touched(way) {
+  const { x, y } = await handAt(phone);
+  const place = (i) => way(i).map((value, axis) => value + [x, y][axis]);
+  const finger = await phone.touchscreen.touchStart(...place(0));
+  for (let i = 0; i < 50; ++i) {
+    await finger.move(...place(i));
+    await sleep(20);
+  }
+  return finger;
+}
+
+const textOf = (tab, selector) => tab.$eval(selector, (element) => element.textContent);
+
+/** Waits until an element has a text with certain words. */
+const says = (tab, selector, words, timeout = 30_000) =>
+  tab.waitForFunction(
+    (where, part) => document.querySelector(where).textContent.includes(part),
+    { timeout },
+    selector,
+    words,
+  );
+
+const limitedCycles = async (tab) =>
+  Number((await textOf(tab, "#limited")).split(" of ")[0].replaceAll(",", ""));
+
+/** Waits until the tool was held back in so many cycles; a browser may be slow. */
+async function comesTo(tab, cycles) {
+  for (let i = 0; i < 200 && (await limitedCycles(tab)) < cycles; ++i) await sleep(50);
+  assert.ok((await limitedCycles(tab)) >= cycles, "it is not led into the anatomy");
+}
+
+/** Notes how the control loop keeps its time. */
+async function noteRates() {
+  const [limited, lost, step, rate, frames] = await Promise.all(
+    ["#limited", "#lost", "#step-time", "#rate", "#frames"].map((figure) => textOf(desk, figure)),
+  );
+  note(
+    `limited: ${limited}; lost: ${lost}; a step takes ${step}; ${rate} cycles and ${frames} frames a second`,
+  );
+}
+
+/** Waits for the end of a replay, and asserts that the tool went the same way. */
+async function assertReplayed() {
+  await says(desk, "#toast", "Replayed", 60_000);
+  assert.match(await textOf(desk, "#toast"), /bit for bit/);
+}
+
+/** Presses a button of the page and gives the file that it saves, and what the path was made with. */
+async function savedPath(tab = desk) {
+  const before = new Set(readdirSync(folder));
+  await tab.$eval("#save", (button) => button.click()); // on a phone it may be out of sight
+  for (let i = 0; i < 200; ++i) {
+    await sleep(50);
+    const name = readdirSync(folder).find((one) => !before.has(one) && one.endsWith(".txt"));
+    if (name === undefined) continue;
+    const file = `path-${before.size}.txt`; // the next one has the same name
+    renameSync(join(folder, name), join(folder, file));
+    const text = readFileSync(join(folder, file), "utf8");
+    return { file, text, header: JSON.parse(text.match(/^# path: (.*)$/m)[1]) };
+  }
+  assert.fail("no path was saved");
+}
+
+/** Makes a page of the skull, and tests how large it is; gives what opens it. */
+function testPage(name, ...options) {
+  const page = `${name}.html`;
+  run(keepout, "live", skull, ...options, "--no-open", "--out", page);
+  test(`${name}: the page is small, and needs nothing beside it`, () => {
+    const wasm = statSync(join(root, "build/wasm/keepout.wasm")).size;
+    note(`wasm ${(wasm / 1e3).toFixed(0)} kB`);
+    assert.ok(wasm <= 600e3, "keepout.wasm is larger than 600 kB");
+    assertAlone(join(folder, page), 6e6);
+  });
+  /** Opens the page, until the tool can be dragged. Its downloads come to the folder. */
+  return async (viewport) => {
+    const tab = await opened(browser, join(folder, page), viewport, async (one) => {
+      const client = await one.createCDPSession();
+      await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
+    });
+    await ready(tab);
+    return tab;
+  };
+}
+
+/** The last tests of a page: it looks well on both, and nothing was complained of. */
+function testLooks(name) {
+  for (const [looks, scheme] of Object.entries({ phone: "dark", light: "light", dark: "dark" })) {
+    test(`${name}: controls have names and contrast holds: ${looks}`, async () => {
+      const tab = looks === "phone" ? phone : desk;
+      await tab.bringToFront();
+      await tab.$eval("#save", (button) => button.click()); // a word is told, on a ground of one color
+      await assertAccessible(tab, scheme);
+      await tab.screenshot({ path: join(folder, `${name}_${looks}.png`) });
+    });
+  }
+  test(`${name}: nothing was complained of`, async () => {
+    const faults = [...desk.faults, ...phone.faults];
+    await Promise.all([desk.close(), phone.close()]);
+    assert.deepEqual(faults, []);
+  });
+}
+
+/** Leads the hand by keys, each until something holds, and out of hand; a figure is `rest` then. */
+async function ledByKeys(keys, figure, rest) {
+  await desk.click("#again");
+  await sleep(500);
+  await desk.focus("#view");
+  for (const [key, until] of Object.entries(keys)) {
+    await desk.keyboard.down(key);
+    await until(await limitedCycles(desk));
+    await desk.keyboard.up(key);
+  }
+  await desk.waitForFunction(
+    (where, text) => !document.querySelector(where).textContent.startsWith(text),
+    {},
+    figure,
+    rest,
+  );
+  await desk.keyboard.press("Escape");
+  await says(desk, figure, rest);
+}
+
+// The page of a tip.
+
+const openTip = testPage("tip");
+
+/** Pushes the tip's hand into the anatomy and rubs it up and down there. */
+async function rub(seconds = 4) {
+  await dragged(seconds, (t) => [-130 * Math.min(1, 3 * t), 60 * Math.sin(14 * t)]);
+  await desk.mouse.up();
+}
+
+/** Numbers of the lines of a path. */
+const linesOf = ({ text }) =>
+  text
+    .split("\n")
+    .filter((line) => line !== "" && !line.startsWith("#"))
+    .map((line) => line.split(" ").map(Number));
+
+/** Types what the head of a path says, and gives the rows of STEPS.csv. */
+function replayed({ file, text }, mesh, rule) {
+  const line = text.split("\n").find((one) => one.startsWith("#   keepout replay "));
+  const words = line
+    .match(/'[^']*'|\S+/g)
+    .slice(2) // past "# keepout"
+    .map((word) => ({ THIS_FILE: file, RULE: rule })[word] ?? word);
+  words[1] = mesh;
+  run(keepout, ...words);
+  const [, ...rows] = readFileSync(join(folder, "steps.csv"), "utf8").trim().split("\n");
+  return rows.map((row) => row.split(","));
+}
+
+/** How many cycles of a path have another tool than replay has, in any bit. */
+function differing(lines, rows) {
+  assert.equal(rows.length, lines.length);
+  return lines.filter((line, i) =>
+    [0, 1, 2].some((axis) => !Object.is(line[3 + axis], Number(rows[i][2 + axis]))),
+  ).length;
+}
+
+test("a drag into the skull: limited, out of it, and the same as keepout replay", async () => {
+  const begin = performance.now();
+  desk = await openTip(large);
+  note(
+    `the tool can be dragged ${((performance.now() - begin) / 1000).toFixed(1)} s after opening`,
+  );
+  await rub();
+  await noteRates();
+  const path = await savedPath();
+  const lines = linesOf(path);
+  const rows = replayed(path, skull, "certified");
+  assert.equal(differing(lines, rows), 0, "the page and keepout replay differ");
+  const limited = rows.filter((row) => row[1] === "limited").length;
+  const { toolRadius, margin } = path.header.settings;
+  const kept = toolRadius + margin;
+  note(`${lines.length} cycles kept, ${limited} of them limited`);
+  const verdict = judged("steps.csv", String(kept));
+  assert.ok(limited >= 1000, `${limited} limited cycles`);
+  assert.deepEqual([verdict.inside, verdict.crossing, verdict.nearer], [0, 0, 0]);
+  assert.ok(
+    verdict.nearest !== null && verdict.nearest < kept + 0.01,
+    "it never came to the margin",
+  );
+
+  // Opened again, the path is played, and goes the same way.
+  const field = await desk.$("#file");
+  await field.uploadFile(join(folder, path.file));
+  await assertReplayed();
+});
+
+test("the same drag without a fixture goes in", async () => {
+  await desk.click("#rules input[value=none]");
+  await desk.click("#again");
+  await sleep(500);
+  await rub(2);
+  const rows = linesOf(await savedPath());
+  // As replay would write what happened: from tip to tip.
+  const steps = rows.slice(1).map((line, i) => {
+    const tip = rows[i].slice(3);
+    const motion = tip.map((value, axis) => line[3 + axis] - value);
+    return [i, "free", ...tip, ...motion, ...motion].join(",");
+  });
+  writeFileSync(join(folder, "free.csv"), `head\n${steps.join("\n")}\n`);
+  const verdict = judged("free.csv", "0");
+  assert.ok(verdict.inside > 100, `${verdict.inside} motions end inside`);
+  assert.ok(verdict.crossing > 0);
+  await desk.click("#rules input[value=certified]");
+});
+
+test("a tip led by keys", () =>
+  ledByKeys(
+    {
+      ArrowLeft: (before) => comesTo(desk, before + 101),
+      PageUp: () => sleep(300),
+    },
+    "#newtons",
+    "0.00 N",
+  ));
+
+test("counterexamples: the paper's rule goes through, the certified one stays out", async () => {
+  await desk.click("#fail");
+  await desk.waitForSelector("#failures[open] #examples button");
+  const examples = await desk.$$("#examples button");
+  assert.equal(examples.length, 3);
+  for (const example of examples) {
+    await example.click();
+    const captions = await desk.$$eval("#duel figcaption span", (all) =>
+      all.map((one) => one.textContent),
+    );
+    assert.deepEqual(captions, ["goes through the surface", "stays out"]);
+  }
+  await desk.click("#failures .close");
+});
+
+test("files are dropped: a mesh, then what is none, and the page lives on", async () => {
+  const client = await desk.createCDPSession();
+  /** Drops a file with these bytes. */
+  const drop = async (name, bytes) => {
+    writeFileSync(join(folder, name), bytes);
+    const data = { items: [], files: [join(folder, name)], dragOperationsMask: 1 };
+    for (const type of ["dragEnter", "dragOver", "drop"]) {
+      await client.send("Input.dispatchDragEvent", { type, x: 640, y: 400, data });
+    }
+  };
+  await drop("my cube.obj", readFileSync(join(root, "tests/install/cube.obj")));
+  await desk.waitForFunction(() => document.title.startsWith("my cube.obj"));
+  await ready(desk);
+  assert.match(await textOf(desk, "#findings"), /12 triangles.*watertight/);
+
+  await drop("broken.stl", readFileSync(skull).subarray(0, 1000));
+  await says(desk, "#toast", "broken.stl: ");
+  note(await textOf(desk, "#toast"));
+  await drop("nonsense.txt", "1 2 3\n");
+  await says(desk, "#toast", "nonsense.txt: line 1");
+  assert.equal(await desk.title(), "my cube.obj – keepout live");
+
+  const before = await limitedCycles(desk);
+  await rub(2);
+  const path = await savedPath();
+  assert.equal(
+    differing(linesOf(path), replayed(path, join(folder, "my cube.obj"), "certified")),
+    0,
+  );
+  const limitedAfter = await limitedCycles(desk);
+  assert.ok(limitedAfter > before + 100, `limited cycles: ${before} before, ${limitedAfter} after`);
+
+  // A path whose settings the engine refuses: those before stay in force.
+  await drop("refused.txt", path.text.replace('"radius":5', '"radius":-1'));
+  await says(desk, "#toast", "longer than --radius");
+  note(await textOf(desk, "#toast"));
+  await desk.waitForFunction(() =>
+    document.querySelector("#radius").parentElement.innerText.includes("5 mm"),
+  );
+});
+
+test("a tip led by touch, on a phone", async () => {
+  phone = await openTip(small);
+  const finger = await touched((i) => [12 - 2 * i, 20 * Math.sin(i / 6)]);
+  assert.ok((await limitedCycles(phone)) > 100, "touch does not lead into the skull");
+  await finger.end();
+});
+
+testLooks("tip");
+
+// The page of an instrument.
+
+const openInstrument = testPage("instrument", "--robot", "psm");
+
+/** Takes the jaw, leads it down the view into the anatomy, and about there; holds it. */
+const leadIn = (seconds = 6) =>
+  dragged(seconds, (t) => [90 * Math.sin(9 * t), 260 * Math.min(1, 3 * t)]);
+
+/** What the judge says of the path on record, which is clear of the anatomy all the way. */
+async function clearPath(tab = desk) {
+  const path = await savedPath(tab);
+  const verdict = judged(path.file);
+  const { jumps, below, limits } = verdict;
+  assert.deepEqual([jumps, below, limits], [0, 0, 0]);
+  return { path, verdict };
+}
+
+test("the jaw dragged into the skull: held back, and all bodies clear, says the judge", async () => {
+  desk = await openInstrument(large);
+  await leadIn();
+  assert.equal(await textOf(desk, "#status b"), "limited");
+  assert.match(await textOf(desk, "#status span"), /limit the motion/);
+  assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
+  assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
+  await desk.screenshot({ path: join(folder, "dragged.png") });
+  await desk.mouse.up();
+  await noteRates();
+  const { path, verdict } = await clearPath();
+  assert.equal(verdict.in_mesh, 0);
+  assert.ok(verdict.way > 20, `the jaw went ${verdict.way} mm only`);
+  assert.ok(verdict.held >= 500, `held back in ${verdict.held} cycles only`);
+  assert.ok(verdict.nearest !== null && verdict.nearest >= verdict.kept - 1e-9);
+
+  // That judge sees what is too close: had the margin been larger, it would say so.
+  const { margin } = path.header;
+  const stricter = path.text.replace(`"margin":${margin}`, `"margin":${margin + 0.3}`);
+  writeFileSync(join(folder, "stricter.txt"), stricter);
+  assert.ok(judged("stricter.txt").below > 0, "the judge sees nothing");
+});
+
+test("it is turned by the wheel and by keys, and the hand with it", async () => {
+  await desk.click("#again");
+  await sleep(700);
+  const { x, y } = await handAt(desk);
+  await desk.mouse.move(x, y);
+  await desk.mouse.down();
+  await desk.keyboard.down("Shift");
+  for (let i = 0; i < 20; ++i) await desk.mouse.wheel({ deltaY: 10 });
+  await desk.keyboard.up("Shift");
+  await sleep(500);
+  await desk.keyboard.down("d");
+  await sleep(300);
+  await desk.keyboard.up("d");
+  await sleep(500);
+  await desk.mouse.up();
+  const { verdict } = await clearPath();
+  assert.ok(verdict.turn > 0.5, `turned by ${verdict.turn} rad only`);
+});
+
+test("an instrument led by keys, into the skull and out of hand", () =>
+  ledByKeys({ ArrowDown: (before) => comesTo(desk, before + 100) }, "#hand-off", "0.00 mm"));
+
+test("a wider margin is come up to, and kept", async () => {
+  await desk.$eval("#margin", (slider) => {
+    slider.value = "1";
+    slider.dispatchEvent(new Event("input"));
+  });
+  await desk.waitForFunction(
+    () => Number.parseFloat(document.querySelector("#clearance").textContent) > 0.99,
+  );
+  await leadIn(2);
+  await desk.waitForFunction(() =>
+    /^(1\.|0\.99)/.test(document.querySelector("#clearance").textContent),
+  );
+  await desk.mouse.up();
+  await clearPath();
+});
+
+test("a path is played again, the same in every bit", async () => {
+  await desk.click("#replay");
+  await assertReplayed();
+});
+
+test("an instrument led by touch, on a phone, and turned by a second finger", async () => {
+  phone = await openInstrument(small);
+  const { x, y } = await handAt(phone);
+  const finger = await touched((i) => [0, 3 * i]);
+  await comesTo(phone, 100);
+  const second = await phone.touchscreen.touchStart(x + 60, y);
+  for (let i = 0; i < 30; ++i) await second.move(x + 60 + 5 * i, y);
+  await sleep(500);
+  await second.end();
+  await finger.end();
+  const { verdict } = await clearPath(phone);
+  assert.ok(verdict.turn > 0.1, `turned by ${verdict.turn} rad only`);
+});
+
+testLooks("instrument");
