@@ -108,8 +108,9 @@ Anatomy* anatomy_of_surface(const val& vertices, const val& corners) {
 }
 
 /// Anatomy of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ or OFF, in mm.
-Anatomy* anatomy_of_file(const std::string& name, const std::string& bytes) {
+Anatomy* anatomy_of_file(const std::string& name, const val& content) {
   return or_error([&] {
+    const auto bytes = emscripten::convertJSArrayToNumberVector<std::uint8_t>(content);
     // The file system is in memory.
     std::FILE* const file = std::fopen(name.c_str(), "wb");
     if (file == nullptr) throw keepout::Error(name + " is no name of a file");

@@ -7,13 +7,10 @@ import { extremes } from "./extremes.ts";
 import { panels } from "./report_page.ts";
 import { ordinal, runColor } from "./runs.ts";
 import { microseconds, millimetres, shown } from "./shown.ts";
-import type { SimulationRecord, Stroke } from "./simulation_record.ts";
+import type { Moment, SimulationRecord, Stroke } from "./simulation_record.ts";
 
 /** A cycle in a plot: what is drawn of it, and where in the record that is. */
-interface Point {
-  readonly run: number;
-  readonly stroke: number;
-  readonly cycle: number;
+interface Point extends Moment {
   readonly x: number;
   readonly y: number;
 }
