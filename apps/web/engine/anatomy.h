@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <exception>
 #include <limits>
 #include <memory>
 #include <string>
@@ -28,8 +29,8 @@ struct Anatomy {
   }
 
   /// Returns the distance from a place to the nearest triangle, below 0 inside a watertight mesh,
-  /// NaN where it is not known. Throws what guard() throws. [mm]
-  double clearance(const keepout::Vec3& place) {
+  /// NaN if it is unknown. [mm]
+  double clearance(double x, double y, double z) try {
     if (!probe) {
       // The probe retreats from no depth: the winding number alone decides about the inside.
       const double size = mesh->bounds().size().norm();
@@ -40,9 +41,11 @@ struct Anatomy {
                              .distances = keepout::Distances::always}}));
     }
     probe->forget();
-    const keepout::Step step = probe->step({.tip = place, .desired = keepout::Vec3::Zero()});
+    const keepout::Step step = probe->step({.tip = {x, y, z}, .desired = keepout::Vec3::Zero()});
     if (!step.distance) return std::numeric_limits<double>::quiet_NaN();
     return step.status == keepout::Status::inside ? -*step.distance : *step.distance;
+  } catch (const std::exception&) {
+    return std::numeric_limits<double>::quiet_NaN();
   }
 
   std::shared_ptr<const keepout::Mesh> mesh;

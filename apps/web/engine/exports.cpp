@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
-#include <limits>
 #include <memory>
 #include <new>
 #include <optional>
@@ -46,15 +45,6 @@ auto or_error(const auto& make) {
     message = error.what();
   }
   val::global("Error").new_(message).throw_();
-}
-
-/// Returns what measure() returns, and NaN if it throws.
-double or_unknown(const auto& measure) noexcept {
-  try {
-    return measure();
-  } catch (const std::exception&) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
 }
 
 /// Returns a JavaScript value.
@@ -148,11 +138,6 @@ val findings(const Anatomy& anatomy) {
   });
 }
 
-/// See Anatomy::clearance().
-double clearance(Anatomy& anatomy, double x, double y, double z) {
-  return or_unknown([&] { return anatomy.clearance({x, y, z}); });
-}
-
 /// See make_tool().
 Tool* tool_on(Anatomy& anatomy, const val& settings) {
   return or_error([&] { return make_tool(anatomy, settings).release(); });
@@ -193,11 +178,6 @@ val follow(Tool& tool, double x, double y, double z, double i, double j, double 
 val step(Tool& tool, double x, double y, double z, double u, double v, double w) {
   tool.step({x, y, z}, {u, v, w});
   return last(tool);
-}
-
-/// See Tool::clearance().
-double body_clearance(Tool& tool, std::size_t body) {
-  return or_unknown([&] { return tool.clearance(body); });
 }
 
 /// Returns all planes of the last step of a tip, from the tip before it.
@@ -247,13 +227,13 @@ EMSCRIPTEN_BINDINGS(keepout) {
   class_<Anatomy>("Anatomy")
       .function("surface", &surface)
       .function("findings", &findings)
-      .function("clearance", &clearance);
+      .function("clearance", &Anatomy::clearance);
   class_<Tool>("Tool")
       .function("facts", &facts)
       .function("place", &place)
       .function("follow", &follow)
       .function("step", &step)
-      .function("clearance", &body_clearance)
+      .function("clearance", &Tool::clearance)
       .function("planes", &planes);
   function("anatomyOfSurface", &anatomy_of_surface, allow_raw_pointers());
   function("anatomyOfFile", &anatomy_of_file, allow_raw_pointers());

@@ -2,6 +2,8 @@
 #include "tool.h"
 
 #include <algorithm>
+#include <exception>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -55,7 +57,9 @@ struct Tip final : Tool {
     make_step({.tip = from, .desired = desired}, from + desired);
   }
 
-  double clearance(std::size_t) override { return anatomy.clearance(tip) - bodies[0].radius; }
+  double clearance(std::size_t) override {
+    return anatomy.clearance(tip.x(), tip.y(), tip.z()) - bodies[0].radius;
+  }
 
   void make_step(const keepout::Motion& motion, const Vec3& hand) {
     keepout::Step step{.status = keepout::Status::free, .motion = motion.desired};
@@ -164,11 +168,13 @@ struct Instrument final : Tool {
   }
 
   /// To a twentieth of a millimeter, or a hundredth of the distance.
-  double clearance(std::size_t body) override {
+  double clearance(std::size_t body) override try {
     const double* const core = cycle.cores + 6 * body;
     return distance_along(nearest, Vec3(core), Vec3(core + 3),
                           std::numeric_limits<double>::infinity()) -
            bodies[body].radius;
+  } catch (const std::exception&) {
+    return std::numeric_limits<double>::quiet_NaN();
   }
 
   /// Writes where flange and bodies are.

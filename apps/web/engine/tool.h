@@ -42,8 +42,7 @@ struct Tool {
   /// One step: of a tip from a place by an increment, of an instrument by a twist of the flange,
   /// its linear and its angular part.
   virtual void step(const keepout::Vec3& first, const keepout::Vec3& second) = 0;
-  /// Returns the distance from the surface of a body to the mesh. Throws if there is no memory.
-  /// [mm]
+  /// Returns the distance from the surface of a body to the mesh, NaN if it is unknown. [mm]
   virtual double clearance(std::size_t body) = 0;
 
   std::size_t positions = 3;  // numbers of a position

@@ -51,38 +51,28 @@ export const pathFormat = ({ subject, facts }: Tool): PathFormat =>
  * of it the next time.
  */
 export class PathRecord {
-  private lines_: Float64Array;
-  private count = 0;
+  private readonly values: number[] = [];
 
-  constructor(private readonly format: PathFormat) {
-    this.lines_ = new Float64Array(format.width * 1024);
-  }
+  constructor(private readonly format: PathFormat) {}
 
   clear(): void {
-    this.count = 0;
+    this.values.length = 0;
   }
 
   /** `wasOk`: whether the cycle before this one was. */
   add(line: readonly number[], wasOk: boolean): void {
     const { width, most } = this.format;
-    if (this.count >= most || (wasOk && this.repeatsLast(line))) return;
-    if (width * (this.count + 1) > this.lines_.length) {
-      const longer = new Float64Array(2 * this.lines_.length);
-      longer.set(this.lines_);
-      this.lines_ = longer;
-    }
-    this.lines_.set(line, width * this.count);
-    ++this.count;
+    if (this.values.length >= width * most || (wasOk && this.repeatsLast(line))) return;
+    this.values.push(...line);
   }
 
   /** (n, width), copied. */
   lines(): Float64Array {
-    return this.lines_.slice(0, this.format.width * this.count);
+    return Float64Array.from(this.values);
   }
 
   private repeatsLast(line: readonly number[]): boolean {
-    if (this.count === 0) return false;
-    const at = this.format.width * (this.count - 1);
-    return line.every((value, i) => Object.is(value, this.lines_[at + i]));
+    const last = this.values.length - this.format.width;
+    return last >= 0 && line.every((value, i) => Object.is(value, this.values[last + i]));
   }
 }
