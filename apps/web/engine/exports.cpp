@@ -103,7 +103,7 @@ Anatomy* anatomy_of_file(const std::string& name, const val& content) {
     const auto bytes = emscripten::convertJSArrayToNumberVector<std::uint8_t>(content);
     // The file system is in memory.
     std::FILE* const file = std::fopen(name.c_str(), "wb");
-    if (file == nullptr) throw keepout::Error(name + " is no name of a file");
+    if (file == nullptr) throw keepout::Error("a file cannot be named '" + name + "'");
     const bool is_whole = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
     const std::unique_ptr<const char, int (*)(const char*)> removal(name.c_str(), std::remove);
     if (std::fclose(file) != 0 || !is_whole) throw std::bad_alloc();

@@ -66,10 +66,11 @@ export class ToolScene extends Scene {
       body.dispose();
     }
     this.radii = bodies.map(({ radius }) => radius);
-    this.bodies = bodies.map(() => new Capsule());
+    // Made first, the hand is drawn under a tool at the same place.
     this.wanted = new Capsule(this.isBall ? 0.35 : 0.6);
     this.wanted.paint(colors.hand);
-    this.moving.add(...[...this.bodies, this.wanted].flatMap(({ parts }) => parts));
+    this.bodies = bodies.map(() => new Capsule());
+    this.moving.add(...[this.wanted, ...this.bodies].flatMap(({ parts }) => parts));
     this.toolRadius = this.isBall ? (this.radii[0] ?? 1) : gripRadius;
     this.redraw();
   }
