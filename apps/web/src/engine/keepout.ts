@@ -15,7 +15,10 @@ export interface Keepout {
   anatomyOfSurface(vertices: Float64Array, corners: Uint32Array): Anatomy;
   anatomyOfFile(name: string, bytes: Uint8Array): Anatomy;
   anatomyOfShape(name: string): Anatomy;
-  makeTool(anatomy: Anatomy, settings: ToolSettings & Spring & { port: Port | null }): EngineTool;
+  makeTool(
+    anatomy: Anatomy,
+    settings: ToolSettings & typeof spring & { port: Port | null },
+  ): EngineTool;
 }
 
 /** What emscripten's loader makes an engine of: build/wasm/keepout.mjs. */
@@ -85,13 +88,8 @@ export interface Port {
   readonly base: readonly number[];
 }
 
-interface Spring {
-  readonly stiffness: number; // [N/mm]
-  readonly largestForce: number; // [N]
-}
-
 /** The spring between hand and tip. */
-export const spring: Spring = { stiffness: 1, largestForce: 4 };
+export const spring = { stiffness: 1 /* N/mm */, largestForce: 4 /* N */ } as const;
 
 /** A place and an orientation. */
 export interface Frame {
