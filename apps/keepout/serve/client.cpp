@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <string>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "keepout/error.h"
 #include "keepout/factory/convex_tool_text.h"
 #include "keepout/factory/guide_text.h"
-#include "keepout/mesh/load_mesh.h"
+#include "keepout/robot/instrument_options.h"
+#include "serve/answer.h"
 #include "shared/names.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
@@ -21,14 +22,42 @@ namespace {
 
 Vec3 vector(std::span<const double> numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
-Pose pose_of(const NumberTable& frame) {
-  if (!frame.is_given) return {};
+/// Returns the three numbers of a key; zeros without it.
+Vec3 vector(const Json& request, std::string_view key) {
+  return request.contains(key) ? vector(numbers(request, key)) : Vec3::Zero();
+}
+
+Twist twist_of(const Json& request) {
+  return {.linear = vector(request, "linear"), .angular = vector(request, "angular")};
+}
+
+Pose frame_of(const Json& request) {
+  if (!request.contains("frame")) return {};
   using RowByRow = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  const Eigen::Map<const RowByRow> m(frame.numbers.data());
+  const RowByRow m(numbers(request, "frame").data());
   if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
     throw Error("the last row of 'frame' must be 0, 0, 0, 1");
   }
   return {m.topRightCorner<3, 1>(), m.topLeftCorner<3, 3>()};
+}
+
+/// Returns the path of a key. Throws Error unless a file is there: a pipe would hold up all
+/// clients.
+std::filesystem::path file_of(const Json& request, const char* key) {
+  const std::string text = request[key].get<std::string>();
+  std::error_code trouble;
+  if (!std::filesystem::is_regular_file(text, trouble)) {
+    throw Error(in_quotes(key) + " must name a file, which " + in_quotes(text) + " does not");
+  }
+  return text;
+}
+
+/// Returns the value of an option. Precondition: it is of the option's kind.
+OptionValue option_value(const Json& value, OptionKind kind) {
+  if (kind == OptionKind::number) return value.get<double>();
+  if (kind == OptionKind::whole_number) return value.get<std::int64_t>();
+  if (kind == OptionKind::flag) return value.get<bool>();
+  return value.get<std::string>();
 }
 
 /// The four numbers of a link's number and a point of it.
@@ -40,19 +69,11 @@ LinkPoint link_point(std::span<const double> numbers) {
   return {static_cast<int>(link), vector(numbers.subspan(1))};
 }
 
-Chain read_chain_of([[maybe_unused]] const Request& request) {
+Chain read_chain_of([[maybe_unused]] const Json& request) {
 #if KEEPOUT_HAS_URDF
-  const std::filesystem::path file(request.text("urdf").text);
-  std::error_code trouble;
-  // A pipe would hold up all clients.
-  if (!std::filesystem::is_regular_file(file, trouble)) {
-    throw Error("'urdf' must name a file, which " + in_quotes(request.text("urdf").text) +
-                " does not");
-  }
-  const double scale = request.table("scale").is_given ? request.table("scale").numbers[0] : 1000.0;
-  UrdfChain chain =
-      read_chain(file, request.text("base_link").text, request.text("tip_link").text, scale);
-  return Chain(std::move(chain.joints), pose_of(request.table("frame")), chain.flange);
+  UrdfChain chain = read_chain(file_of(request, "urdf"), request.value("base_link", ""),
+                               request.value("tip_link", ""), request.value("scale", 1000.0));
+  return Chain(std::move(chain.joints), frame_of(request), chain.flange);
 #else
   throw Error(
       "this build reads no URDF: install liburdfdom-dev and liburdfdom-headers-dev, and build it "
@@ -60,146 +81,226 @@ Chain read_chain_of([[maybe_unused]] const Request& request) {
 #endif
 }
 
-Instrument instrument_of(const Request& request) {
+Instrument read_instrument(const Json& request) {
   std::vector<Body> bodies;
-  const std::span<const double> numbers = request.table("capsules").numbers;
-  for (std::size_t i = 0; i < numbers.size(); i += 9) {
-    const std::span<const double> row = numbers.subspan(i, 9);
+  const std::vector<double> capsules = numbers(request, "capsules");
+  for (std::size_t i = 0; i < capsules.size(); i += 9) {
+    const std::span<const double> row = std::span(capsules).subspan(i, 9);
     bodies.push_back({.points = {link_point(row), link_point(row.subspan(4))}, .radius = row[8]});
   }
   return {read_chain_of(request), std::move(bodies)};
 }
 
+std::vector<std::string_view> keys_of_instruments() {
+  std::vector<std::string_view> keys{"base_link", "tip_link", "scale", "frame"};
+  for (const auto& option : instrument_options) keys.push_back(option.name);
+  return keys;
+}
+
+/// Returns the client's own constraint, or the one that clients share.
+MotionConstraint& tip_of(Client& client) noexcept {
+  return client.tip.constraint ? *client.tip.constraint : client.service.constraint;
+}
+
 InstrumentConstraint& instrument_of(Client& client) {
-  if (client.instrument) return *client.instrument;
+  if (client.instrument.constraint) return *client.instrument.constraint;
   throw Refusal{"no_instrument", "there is no instrument yet: open one, with 'instrument'"};
 }
 
-Twist twist_of(const Request& request) {
-  Twist twist;
-  if (request.table("linear").is_given) twist.linear = vector(request.table("linear").numbers);
-  if (request.table("angular").is_given) twist.angular = vector(request.table("angular").numbers);
-  return twist;
+void step(Client& client, const Json& request, std::string& out) {
+  const std::vector<double> jacobian = numbers(request, "jacobian");
+  const std::vector<double> rows = numbers(request, "rows");
+  const std::vector<double> bounds = numbers(request, "bounds");
+  const std::size_t joints = jacobian.size() / 3;
+  if (request.contains("rows") != request.contains("bounds")) {
+    refuse("'rows' and 'bounds' belong together: rows . u >= bounds");
+  }
+  if (request.contains("rows") && request["rows"].size() != bounds.size()) {
+    refuse("'bounds' must have one number for each of the 'rows'");
+  }
+  if (rows.size() != bounds.size() * (joints > 0 ? joints : 3)) {
+    refuse(
+        "each of the 'rows' must have one number for each column of the 'jacobian', or three "
+        "without one");
+  }
+  Motion motion{.tip = vector(request, "tip"), .desired = vector(request, "desired")};
+  using RowByRow = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
+  const TipJacobian::Matrix matrix =
+      Eigen::Map<const RowByRow>(jacobian.data(), 3, static_cast<Eigen::Index>(joints));
+  if (joints > 0) motion.jacobian = TipJacobian(matrix);
+  if (request.contains("rows")) {
+    motion.rows = ExtraRows(rows.data(), bounds.data(), std::ssize(bounds));
+  }
+  const Step step = tip_of(client).step(motion, client.side);
+  append_step(out, step, joints);
+  append_guides(out, client.tip.guide_names, step.guides, step.relaxation);
 }
+
+void steps(Client& client, const Json& request, std::string& out) {
+  append_key(out, "steps");
+  append_array(out, request["motions"], [&](const Json& row) {
+    const std::vector<double> motion = numbers(row);
+    out += '{';
+    const Vec3 desired = vector(std::span(motion).subspan(3));
+    append_step(out, tip_of(client).step({vector(motion), desired}, client.side), 0);
+    out += '}';
+  });
+}
+
+void polytope(Client& client, const Json& request, std::string& out) {
+  append_polytope(out, tip_of(client).free_polytope(vector(request, "tip"),
+                                                    numbers(request, "radius").front()));
+}
+
+void open_instrument(Client& client, const Json& request, std::string& out) {
+  InstrumentConstraintSettings settings = client.service.instrument;
+  for (const auto& option : instrument_options) {
+    if (!request.contains(option.name)) continue;
+    option.set(settings.options, option_value(request[option.name], option.kind));
+  }
+  client.instrument = {make_instrument_constraint(client.service.mesh, client.service.index,
+                                                  read_instrument(request), settings)};
+  const Instrument& opened = instrument_of(client).instrument();
+  append_member(out, "ok", true);
+  append_key(out, "joints");
+  append_array(out, std::views::iota(1, opened.chain().size() + 1),
+               [&](int k) { append_string(out, opened.chain().joint(k).name); });
+  append_member(out, "bodies", opened.bodies().size());
+}
+
+void joint_step(Client& client, const Json& request, std::string& out) {
+  const bool has_twist = request.contains("linear") || request.contains("angular");
+  if (has_twist == request.contains("increment")) {
+    refuse("a 'joint_step' takes either 'linear' or 'angular' of the flange, or an 'increment'");
+  }
+  if (has_twist && request.contains("weights")) refuse("'weights' belong to an 'increment'");
+  InstrumentConstraint& guarded = instrument_of(client);
+  const auto joints = static_cast<std::size_t>(guarded.instrument().chain().size());
+  for (const char* key : {"q", "increment", "weights"}) {
+    if (request.contains(key) && request[key].size() != joints) {
+      refuse(in_quotes(key) + " must have " + std::to_string(joints) +
+             " numbers, one for each joint of the instrument");
+    }
+  }
+  const std::vector<double> q = numbers(request, "q");
+  const InstrumentStep step =
+      has_twist ? guarded.step(q, twist_of(request))
+                : guarded.step(q, numbers(request, "increment"), numbers(request, "weights"));
+  append_joint_step(out, step, joints);
+  if (guarded.mesh_count() > 1 && step.distance) {
+    append_member(out, "nearest_mesh", step.nearest_mesh);
+  }
+  append_guides(out, client.instrument.guide_names, step.guides, step.relaxation);
+}
+
+/// The rule and the narrow phase of the service do not count: a tool has its own.
+void open_tool(Client& client, const Json& request, std::string& out) {
+  MotionConstraintSettings settings = client.service.tip;
+  settings.options.tool_radius = 0.0;
+  settings.activation = "certified";
+  settings.narrow_phase = request.value("narrow_phase", "exact");
+  settings.tool = tool_of_text(request["tool"].get<std::string>());
+  MotionConstraint made =
+      make_motion_constraint(client.service.mesh, client.service.index, settings);
+  if (client.tip.constraint) {
+    made.set_guides(
+        {client.tip.constraint->guides().begin(), client.tip.constraint->guides().end()});
+  }
+  client.tip.constraint = std::move(made);
+  append_member(out, "ok", true);
+}
+
+void set_guides(Client& client, const Json& request, std::string& out) {
+  const std::string of = request.value("of", "tip");
+  if (of != "tip" && of != "instrument") refuse("'of' must be 'tip' or 'instrument'");
+  std::vector<Guide> guides;
+  for (const Json& text : request["guides"]) {
+    guides.push_back(guide_of_text(text.get<std::string>()));
+  }
+  if (of == "instrument") {
+    const auto of_base = std::ranges::find(guides, 0, &Guide::link);
+    if (of_base != guides.end()) {
+      throw Error("guide '" + of_base->name() + "' is of a tip, or of the base: name a link, as " +
+                  std::string(guide_forms));
+    }
+    instrument_of(client);
+    client.instrument.set_guides(std::move(guides));
+  } else {
+    if (!client.tip.constraint && !guides.empty()) {
+      client.tip.constraint =
+          make_motion_constraint(client.service.mesh, client.service.index, client.service.tip);
+    }
+    client.tip.set_guides(std::move(guides));
+  }
+  append_member(out, "ok", true);
+}
+
+void add_anatomy(Client& client, const Json& request, std::string& out) {
+  InstrumentConstraint& guarded = instrument_of(client);
+  const std::shared_ptr<const Mesh> mesh = load_mesh(file_of(request, "file")).mesh;
+  const std::size_t number = guarded.add_mesh(mesh, make_or_load_index(mesh, client.service.tip),
+                                              request.value("margin", 0.0));
+  append_member(out, "ok", true);
+  append_member(out, "mesh", number);
+}
+
+void place_anatomy(Client& client, const Json& request, std::string& out) {
+  InstrumentConstraint& guarded = instrument_of(client);
+  const std::size_t count = guarded.mesh_count();
+  const double number = request["mesh"].get<double>();
+  if (!(number >= 0.0 && number < static_cast<double>(count) && number == std::floor(number))) {
+    throw Error("'mesh' must be the number of a mesh, 0 to " + std::to_string(count - 1));
+  }
+  const Status placed =
+      guarded.place(static_cast<std::size_t>(number), frame_of(request), twist_of(request));
+  if (!is_ok(placed)) {
+    throw Error(
+        "'frame', 'linear' or 'angular' is implausible beside the mesh: it keeps its previous "
+        "pose, and joint steps are invalid_input until it has a valid one");
+  }
+  append_member(out, "ok", true);
+}
+
+void info(Client& client, const Json&, std::string& out) {
+  out.append(",").append(client.service.info);
+}
+
+void statuses(Client& client, const Json&, std::string& out) {
+  out.append(",").append(client.service.statuses);
+}
+
+void ping(Client&, const Json&, std::string& out) { append_member(out, "ok", true); }
 
 }  // namespace
 
-void open_instrument(Client& client, const std::shared_ptr<const Mesh>& mesh,
-                     const std::shared_ptr<const SpatialIndex>& index,
-                     InstrumentConstraintSettings settings, const Request& request) {
-  try {
-    for (std::size_t i = 0; i < instrument_options.size(); ++i) {
-      const OptionOfRequest& given = request.options[i];
-      if (given.is_given) instrument_options[i].set(settings.options, given.value);
-    }
-    client.instrument = make_instrument_constraint(mesh, index, instrument_of(request), settings);
-    client.guide_names.clear();
-  } catch (const Error& error) {
-    throw Refusal{"no_instrument", printable(error.what())};
-  }
+template <class Constraint>
+void Guarded<Constraint>::set_guides(std::vector<Guide> guides) {
+  std::vector<std::string> names;
+  for (const Guide& guide : guides) names.push_back(guide.name());
+  if (constraint) constraint->set_guides(std::move(guides));
+  guide_names = std::move(names);
 }
 
-void open_tool(Client& client, const std::shared_ptr<const Mesh>& mesh,
-               const std::shared_ptr<const SpatialIndex>& index, MotionConstraintSettings settings,
-               const Request& request) {
-  settings.options.tool_radius = 0.0;
-  settings.activation = "certified";
-  settings.narrow_phase =
-      request.text("narrow_phase").is_given ? request.text("narrow_phase").text : "exact";
-  try {
-    settings.tool = tool_of_text(request.text("tool").text);
-    MotionConstraint made = make_motion_constraint(mesh, index, settings);
-    if (client.own) made.set_guides({client.own->guides().begin(), client.own->guides().end()});
-    client.own = std::move(made);
-  } catch (const Error& error) {
-    throw Refusal{"no_tool", printable(error.what())};
-  }
-}
-
-void set_guides(Client& client, const std::shared_ptr<const Mesh>& mesh,
-                const std::shared_ptr<const SpatialIndex>& index,
-                const MotionConstraintSettings& settings, const Request& request) {
-  try {
-    std::vector<Guide> guides;
-    std::vector<std::string> names;
-    for (const std::string& text : request.guides.texts) {
-      guides.push_back(guide_of_text(text));
-      names.push_back(guides.back().name());
-    }
-    if (request.text("of").text == "instrument") {
-      const auto of_base = std::ranges::find(guides, 0, &Guide::link);
-      if (of_base != guides.end()) {
-        throw Error("guide '" + of_base->name() +
-                    "' is of a tip, or of the base: name a link, as " + std::string(guide_forms));
-      }
-      instrument_of(client).set_guides(std::move(guides));
-      client.guide_names = std::move(names);
-      return;
-    }
-    if (!client.own && !guides.empty()) {
-      client.own = make_motion_constraint(mesh, index, settings);
-    }
-    if (client.own) client.own->set_guides(std::move(guides));
-    client.tip_guide_names = std::move(names);
-  } catch (const Error& error) {
-    throw Refusal{"no_guide", printable(error.what())};
-  }
-}
-
-std::size_t add_anatomy(Client& client, const MotionConstraintSettings& settings,
-                        const Request& request) {
-  InstrumentConstraint& instrument = instrument_of(client);
-  const std::filesystem::path file(request.text("file").text);
-  try {
-    std::error_code trouble;
-    if (!std::filesystem::is_regular_file(file, trouble)) {
-      throw Error("'file' must name a file, which " + in_quotes(request.text("file").text) +
-                  " does not");
-    }
-    const std::shared_ptr<const Mesh> mesh = load_mesh(file).mesh;
-    const OptionOfRequest& given = request.option("margin");
-    const double margin = given.is_given ? std::get<double>(given.value) : 0.0;
-    return instrument.add_mesh(mesh, make_or_load_index(mesh, settings), margin);
-  } catch (const Error& error) {
-    throw Refusal{"no_anatomy", printable(error.what())};
-  }
-}
-
-void place_anatomy(Client& client, const Request& request) {
-  InstrumentConstraint& instrument = instrument_of(client);
-  const double number = request.table("mesh").numbers[0];
-  const std::size_t count = instrument.mesh_count();
-  if (!(number >= 0.0 && number < static_cast<double>(count) && number == std::floor(number))) {
-    throw Refusal{"no_anatomy",
-                  "'mesh' must be the number of a mesh, 0 to " + std::to_string(count - 1)};
-  }
-  try {
-    const Status placed = instrument.place(static_cast<std::size_t>(number),
-                                           pose_of(request.table("frame")), twist_of(request));
-    if (is_ok(placed)) return;
-  } catch (const Error& error) {
-    throw Refusal{"no_anatomy", error.what()};
-  }
-  throw Refusal{"no_anatomy",
-                "'frame', 'linear' or 'angular' is implausible beside the mesh: it keeps its "
-                "previous pose, and joint steps are invalid_input until it has a valid one"};
-}
-
-InstrumentStep joint_step(Client& client, const Request& request) {
-  InstrumentConstraint& instrument = instrument_of(client);
-  const auto n = static_cast<std::size_t>(instrument.instrument().chain().size());
-  for (const NumberTable* table :
-       {&request.table("q"), &request.table("increment"), &request.table("weights")}) {
-    if (table->is_given && table->columns != n) {
-      throw Refusal{"not_a_request", in_quotes(table->name) + " must have " + std::to_string(n) +
-                                         " numbers, one for each joint of the instrument"};
-    }
-  }
-  if (request.table("increment").is_given) {
-    return instrument.step(request.table("q").numbers, request.table("increment").numbers,
-                           request.table("weights").numbers);
-  }
-  return instrument.step(request.table("q").numbers, twist_of(request));
+std::span<const Verb> verbs() {
+  static const std::vector<Verb> verbs{
+      {"step", {"tip", "desired"}, {"jacobian", "rows", "bounds"}, step},
+      {"steps", {"motions"}, {}, steps},
+      {"polytope", {"tip", "radius"}, {}, polytope},
+      {"instrument",
+       {"urdf", "capsules"},
+       keys_of_instruments(),
+       open_instrument,
+       "no_instrument",
+       most_work},
+      {"joint_step", {"q"}, {"linear", "angular", "increment", "weights"}, joint_step},
+      {"tool", {"tool"}, {"narrow_phase"}, open_tool, "no_tool", most_work},
+      {"guides", {"guides"}, {"of"}, set_guides, "no_guide"},
+      {"anatomy", {"file"}, {"margin"}, add_anatomy, "no_anatomy", most_work},
+      {"place", {"mesh", "frame"}, {"linear", "angular"}, place_anatomy, "no_anatomy"},
+      {"info", {}, {}, info},
+      {"statuses", {}, {}, statuses},
+      {"ping", {}, {}, ping}};
+  return verbs;
 }
 
 }  // namespace keepout::app

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,114 +12,80 @@
 
 namespace keepout::app {
 
-/// What a line may ask for.
-enum class Verb : std::uint8_t {
-  step,
-  steps,
-  polytope,
-  info,
-  statuses,
-  ping,
-  instrument,
-  joint_step,
-  tool,
-  guides,
-  anatomy,
-  place
-};
+using Json = nlohmann::ordered_json;
 
-/// The largest request that there is room for.
+/// The largest request that is read.
 struct RequestLimits {
   std::size_t joints = 7;      // columns of a Jacobian
   std::size_t rows = 64;       // of the caller's own
   std::size_t motions = 1024;  // of one batch
 };
 
-/// How many rows of how many numbers a value may have.
-struct TableShape {
-  int rank;  // of the value: 0 a number, 1 an array, 2 an array of arrays
-  std::size_t fewest_rows, most_rows;
-  std::size_t fewest_columns, most_columns;
-};
-
-/// The numbers of one value of a request, row by row, in memory that is made once. A number is a
-/// table of one row and one column, an array one of one row.
-struct NumberTable {
+/// A key of requests, and its value: a number or a string, an array of them, or an array of arrays
+/// of one length; or what an option takes, whose range is checked where the option is set.
+struct Field {
+  struct Count {
+    std::size_t least, most;
+    bool has(std::size_t count) const noexcept { return count >= least && count <= most; }
+  };
   std::string_view name;
-  TableShape shape;
-  std::string description;  // what the value must be, for messages
-  bool is_given = false;    // there is a value, whole
-  std::size_t rows = 0;
-  std::size_t columns = 0;
-  std::vector<double> numbers = {};
+  std::string expected;  // what the value must be, for messages
+  int rank = 0;          // of the value: 0 no array, 1 an array, 2 an array of arrays
+  Count columns = {1, 1};
+  Count rows = {1, 1};
+  bool is_text = false;                // strings, not numbers
+  const OptionText* option = nullptr;  // that the value is of
 };
 
-/// The text of one value of a request.
-struct TextValue {
+struct Client;
+
+/// Something that a client may ask for: a value of "do".
+struct Verb {
   std::string_view name;
-  bool is_given = false;
-  std::string text = {};
+  std::vector<std::string_view> needed;    // keys beside "id" and "do"
+  std::vector<std::string_view> optional;  // keys
+  /// Appends the members of the answer. Throws Refusal and Error.
+  void (*carry_out)(Client& client, const Json& request, std::string& out);
+  std::string_view refusal = {};  // the kind of Refusal that an Error becomes
+  std::size_t work = 1;           // as much as so many steps
 };
 
-/// The texts of one value of a request, an array of them.
-struct TextList {
-  std::string_view name;
-  std::size_t most;
-  bool is_given = false;
-  std::vector<std::string> texts = {};
-};
-
-/// An option of an instrument in a request.
-struct OptionOfRequest {
-  std::string_view name;
-  const OptionText* option;
-  bool is_given = false;
-  OptionValue value = {};  // of the option's kind; its range is checked where it is used
-};
-
-/// What a request to do something has besides "id" and "do"; unused places are empty.
-struct VerbKeys {
-  std::string_view name;
-  Verb verb;
-  std::array<std::string_view, 2> needed;
-  std::array<std::string_view, 4> optional;
-  bool takes_options = false;  // all instrument_options too
-
-  bool needs(std::string_view key) const noexcept;
-  bool takes(std::string_view key) const noexcept;  // needed or optional
-};
-
-/// Returns the keys of each verb.
-std::span<const VerbKeys> verb_keys() noexcept;
-
-/// One request as it was read.
-struct Request {
-  explicit Request(const RequestLimits& limits);
-
-  std::string id;  // as JSON, to be echoed; null if there is none, or none that can be read
-  Verb verb = Verb::ping;
-  TextList guides;                       // as guide_of_text reads each
-  std::vector<NumberTable> tables;       // see table()
-  std::vector<TextValue> texts;          // see text()
-  std::vector<OptionOfRequest> options;  // of an instrument, in the order of instrument_options
-
-  /// Returns the value of a key. Precondition: the constructor knows the key.
-  const NumberTable& table(std::string_view key) const noexcept;
-  /// See table().
-  const TextValue& text(std::string_view key) const noexcept;
-  /// See table().
-  const OptionOfRequest& option(std::string_view key) const noexcept;
-};
-
-/// Thrown for a line that is not carried out: what the client is told.
+/// Thrown for a line that is not carried out, and sent to the client.
 struct Refusal {
   std::string_view kind;  // see --help
   std::string message;    // what is wrong and what to do
 };
 
-/// Reads a line into memory that is made once. Throws Refusal: "not_json", or "not_a_request" for
-/// JSON with another key, type, size or value than a request has. Whatever the outcome, request.id
-/// is what is to be echoed.
-void read_request(std::string_view line, Request& request);
+/// Throws Refusal: "not_a_request".
+[[noreturn]] void refuse(std::string message);
+
+/// Reads requests.
+class RequestReader {
+ public:
+  /// `verbs` must outlive it.
+  RequestReader(const RequestLimits& limits, std::span<const Verb> verbs);
+
+  /// Reads a line into `request`, and returns what it asks for: all that the verb needs is there,
+  /// nothing that it does not take, and each value is one of its field. Throws Refusal: "not_json",
+  /// or "not_a_request" for JSON with another key, type or size. Whatever the outcome, `id` is what
+  /// is to be echoed, as JSON: null if there is none, or none that can be read.
+  const Verb& read(std::string_view line, std::string& id, Json& request) const;
+
+  /// Returns the keys of all requests, but for "id" and "do".
+  std::span<const Field> fields() const noexcept { return fields_; }
+
+ private:
+  void check_values(const Json& request) const;
+  const Verb& checked_verb(const Json& request) const;
+
+  std::vector<Field> fields_;
+  std::span<const Verb> verbs_;
+};
+
+/// Returns the numbers of a value, row by row.
+std::vector<double> numbers(const Json& value);
+
+/// Returns the numbers of a key, row by row; empty without that key.
+std::vector<double> numbers(const Json& request, std::string_view key);
 
 }  // namespace keepout::app

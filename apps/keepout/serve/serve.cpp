@@ -2,26 +2,35 @@
 #include "serve/serve.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <signal.h>
-#include <sys/socket.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
+#include <asio/awaitable.hpp>
+#include <asio/co_spawn.hpp>
+#include <asio/io_context.hpp>
+#include <asio/local/stream_protocol.hpp>
+#include <asio/posix/stream_descriptor.hpp>
+#include <asio/read_until.hpp>
+#include <asio/redirect_error.hpp>
+#include <asio/steady_timer.hpp>
+#include <asio/use_awaitable.hpp>
+#include <asio/write.hpp>
 #include <cerrno>
-#include <climits>
+#include <chrono>
 #include <cstdlib>
-#include <cstring>
-#include <list>
+#include <exception>
 #include <ostream>
 #include <string>
-#include <vector>
+#include <system_error>
+#include <utility>
 
 #include "keepout/error.h"
+#include "keepout/robot/instrument_options.h"
 #include "serve/answer.h"
-#include "serve/service.h"
-#include "serve/unix_socket.h"
+#include "serve/client.h"
 #include "shared/named_mesh.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
@@ -30,147 +39,171 @@
 namespace keepout::app {
 namespace {
 
-constexpr short gone = POLLERR | POLLHUP | POLLNVAL;
-constexpr int for_ever = -1;
+using Descriptor = asio::posix::stream_descriptor;
+using Local = asio::local::stream_protocol;
+using std::filesystem::path;
 
-bool is_passing(int error) { return error == EINTR || error == EAGAIN || error == EWOULDBLOCK; }
+std::error_code last_error() { return {errno, std::system_category()}; }
 
-/// A session, and the open files that its bytes come from and go to. Never waits.
-class Connection {
- public:
-  enum class Kind : std::uint8_t {
-    files,  // such as stdin and stdout: they stay open, and blocking, since others may share them
-    socket  // one socket for both, which is closed at the end
-  };
-  Connection(Service& service, int in, int out, Kind kind)
-      : session_(service), in_(in), out_(out), kind_(kind) {}
-  ~Connection() {
-    if (kind_ == Kind::socket) ::close(in_);
-  }
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-
-  /// What to wait for: bytes, if any are wanted; and a reader who has gone, or, if there is
-  /// something unsent, room.
-  std::array<pollfd, 2> awaited() const noexcept {
-    const bool has_unsent = !session_.unsent().empty();
-    return {{{session_.wants_bytes() ? in_ : -1, POLLIN, 0},
-             {out_, static_cast<short>(has_unsent ? POLLOUT : 0), 0}}};
-  }
-
-  /// One turn, after what was waited for: receives what there is, answers, sends what can be sent.
-  void serve(const pollfd* happened) {
-    has_gone_ = (happened[1].revents & gone) != 0;
-    if (!has_gone_ && happened[0].revents != 0) receive();
-    if (has_gone_) return;
-    if (session_.has_work()) session_.take_turn();
-    if (!session_.unsent().empty()) send();
-  }
-
-  bool has_work() const noexcept { return session_.has_work(); }
-  bool is_done() const noexcept { return has_gone_ || session_.is_done(); }
-
-  /// What went wrong with the files; empty if nothing did, or if the client just left.
-  const std::string& trouble() const noexcept { return trouble_; }
-
- private:
-  void receive() {
-    const std::span<char> room = session_.room();
-    const ssize_t count = kind_ == Kind::socket
-                              ? ::recv(in_, room.data(), room.size(), MSG_DONTWAIT)
-                              : ::read(in_, room.data(), room.size());
-    if (count > 0) {
-      session_.added(static_cast<std::size_t>(count));
-    } else if (count == 0) {
-      session_.ended();
-    } else {
-      note_failure("stdin: ");
-    }
-  }
-
-  void send() {
-    const std::string_view text = session_.unsent();
-    pollfd file{out_, POLLOUT, 0};
-    if (kind_ == Kind::files && ::poll(&file, 1, 0) != 1) return;  // it would wait for room
-    // A pipe that has room takes as much as PIPE_BUF without waiting.
-    const ssize_t count =
-        kind_ == Kind::socket
-            ? ::send(out_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL)
-            : ::write(out_, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
-    if (count >= 0) {
-      session_.sent(static_cast<std::size_t>(count));
-    } else {
-      note_failure("stdout: ");
-    }
-  }
-
-  void note_failure(const char* file) {
-    if (is_passing(errno)) return;
-    has_gone_ = true;
-    if (kind_ == Kind::files && errno != EPIPE) trouble_ = file + std::string(std::strerror(errno));
-  }
-
-  Session session_;
-  int in_;
-  int out_;
-  Kind kind_;
-  bool has_gone_ = false;  // nobody will read an answer
-  std::string trouble_;
-};
-
-void turn_away(int client, std::size_t most_clients) {
-  std::string out;
-  append_error(out, "null", "too_many_clients",
-               "there are " + std::to_string(most_clients) +
-                   " clients already: close one, or start with a larger --max-clients");
-  // A new socket has room for it.
-  [[maybe_unused]] const ssize_t sent =
-      ::send(client, out.data(), out.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-  ::close(client);
+[[noreturn]] void fail(const path& socket, const std::string& why, std::error_code error = {}) {
+  throw Error("--socket " + socket.string() + ": " + why + (error ? ": " + error.message() : ""));
 }
 
-/// Serves clients in turn until `stop`: of a socket, one more than `most_clients` at a time is told
-/// so, and left; without a socket the one client of stdin and stdout, until he ends. Returns what
-/// went wrong with these.
-std::string serve_clients(Service& service, const StopSignal& stop, UnixSocket* socket,
-                          std::size_t most_clients) {
-  std::list<Connection> clients;
-  if (socket == nullptr) {
-    clients.emplace_back(service, STDIN_FILENO, STDOUT_FILENO, Connection::Kind::files);
+/// Removes a socket that no server listens to.
+void make_way(asio::io_context& io, const path& file, const Local::endpoint& endpoint) {
+  std::error_code error;
+  const auto type = std::filesystem::symlink_status(file, error).type();
+  // Of everything else that may be wrong, bind() finds the reason.
+  if (type == std::filesystem::file_type::none || type == std::filesystem::file_type::not_found) {
+    return;
   }
-  std::vector<pollfd> files;  // the same memory each time
-  bool is_out_of_files = false;
+  if (type != std::filesystem::file_type::socket) {
+    fail(file, "something else than a socket is there: take another path, or remove it");
+  }
+  Local::socket probe(io, Local());
+  probe.non_blocking(true);
+  probe.connect(endpoint, error);
+  if (!error || error == asio::error::try_again) {
+    fail(file, "another server answers there: end it, or take another path");
+  }
+  if (error != asio::error::connection_refused) {
+    fail(file, "a socket is there that cannot be asked", error);
+  }
+  std::filesystem::remove(file, error);
+  if (error) fail(file, "what an earlier server has left cannot be removed", error);
+}
+
+/// A Unix socket that clients connect to: its file is there, for its owner alone (0600), as long as
+/// this object.
+class UnixSocket {
+ public:
+  /// Replaces a socket that a dead server has left behind. Throws Error if another server answers
+  /// there, if something else than a socket is there, if the path is too long, and if the file
+  /// cannot be made.
+  UnixSocket(asio::io_context& io, path file) : file_(std::move(file)), acceptor_(io) {
+    constexpr std::size_t longest = sizeof(sockaddr_un::sun_path) - 1;
+    if (file_.empty()) fail(file_, "give the path of a file");
+    if (const std::size_t size = file_.native().size(); size > longest) {
+      fail(file_, "the path has " + std::to_string(size) + " bytes; a Unix socket's has at most " +
+                      std::to_string(longest) + ": take a shorter one, or one that is relative");
+    }
+    const Local::endpoint endpoint(file_.native());
+    const path folder = file_.has_parent_path() ? file_.parent_path() : ".";
+    // Of two servers that start at once, each might remove the other's new socket for an old one.
+    const int folder_file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (folder_file < 0) {
+      fail(file_, "its folder " + folder.string() + " cannot be used", last_error());
+    }
+    const Descriptor lock(io, folder_file);
+    ::flock(folder_file, LOCK_EX);
+
+    make_way(io, file_, endpoint);
+    std::error_code error;
+    acceptor_.open(endpoint.protocol(), error);
+    // Before there is a file, so that it never is open to others: Linux makes it with this mode.
+    ::fchmod(acceptor_.native_handle(), S_IRUSR | S_IWUSR);
+    if (!error) acceptor_.bind(endpoint, error);
+    if (error) fail(file_, "the socket cannot be made", error);
+    const bool is_ours =
+        ::chmod(file_.c_str(), S_IRUSR | S_IWUSR) == 0 && ::lstat(file_.c_str(), &made_) == 0;
+    if (!is_ours) error = last_error();
+    if (!error) acceptor_.listen(64, error);
+    if (!error) return;
+    ::unlink(file_.c_str());
+    fail(file_, "the socket cannot be listened to", error);
+  }
+  ~UnixSocket() {
+    struct stat there = {};  // somebody else may have put another file in its place
+    if (::lstat(file_.c_str(), &there) == 0 && there.st_dev == made_.st_dev &&
+        there.st_ino == made_.st_ino) {
+      ::unlink(file_.c_str());
+    }
+  }
+  UnixSocket(const UnixSocket&) = delete;
+  UnixSocket& operator=(const UnixSocket&) = delete;
+
+  Local::acceptor& acceptor() noexcept { return acceptor_; }
+
+ private:
+  path file_;
+  struct stat made_ = {};
+  Local::acceptor acceptor_;
+};
+
+void rethrow(const std::exception_ptr& failure) {
+  if (failure) std::rethrow_exception(failure);
+}
+
+/// Serves a client until it leaves: while its answers are unsent none of its lines is read, so a
+/// client that does not read takes up no more memory than one turn's answers. Returns what went
+/// wrong with the files; empty if the client just left.
+template <class In, class Out>
+asio::awaitable<std::string> converse(Service& service, In& in, Out& out) {
+  Client client{service};
+  std::string received;
+  std::string answers;
+  std::error_code error;
+  auto noting = asio::redirect_error(asio::use_awaitable, error);
   while (true) {
-    // Without room for another open file, the door is tried again from time to time.
-    const int door = socket == nullptr || is_out_of_files ? -1 : socket->file();
-    int patience = is_out_of_files ? 100 : for_ever;  // [ms]
-    files.assign({{stop.file(), POLLIN, 0}, {door, POLLIN, 0}});
-    for (const Connection& client : clients) {
-      if (client.has_work()) patience = 0;
-      for (const pollfd& file : client.awaited()) files.push_back(file);
+    co_await asio::async_read_until(in, asio::dynamic_buffer(received, most_received(service)),
+                                    '\n', noting);
+    const bool has_ended = error == asio::error::eof;
+    if (error && !has_ended && error != asio::error::not_found) {
+      co_return "stdin: " + error.message();
     }
-    if (::poll(files.data(), files.size(), patience) < 0) {
-      for (pollfd& file : files) file.revents = 0;  // interrupted
-    }
-    if (files[0].revents != 0) return {};
-    const pollfd* happened = &files[2];
-    for (Connection& client : clients) {
-      client.serve(happened);
-      happened += 2;
-    }
-    if (socket == nullptr && clients.front().is_done()) return clients.front().trouble();
-    clients.remove_if([](const Connection& client) { return client.is_done(); });
-    if (!is_out_of_files && files[1].revents == 0) continue;
-    for (int i = 0; i < 8; ++i) {  // at a time, so that nobody who is in waits for long
-      const int client = socket->accept(is_out_of_files);
-      if (client < 0) break;
-      if (clients.size() < most_clients) {
-        clients.emplace_back(service, client, client, Connection::Kind::socket);
-      } else {
-        turn_away(client, most_clients);
-      }
+    if (has_ended) received += '\n';  // the last line needs no end
+    received.erase(0, take_turn(client, received, answers));
+    // Other clients have their turn before this returns.
+    co_await asio::async_write(out, asio::buffer(answers), noting);
+    if (error) co_return error == asio::error::broken_pipe ? "" : "stdout: " + error.message();
+    answers.clear();
+    if (has_ended && received.empty()) co_return "";
+  }
+}
+
+asio::awaitable<void> serve_socket(Service& service, Local::socket socket) {
+  co_await converse(service, socket, socket);
+}
+
+/// Serves all clients of a socket; one more than `most_clients` at a time is refused.
+asio::awaitable<void> serve_clients(Service& service, Local::acceptor& door,
+                                    std::size_t most_clients) {
+  const auto executor = door.get_executor();
+  std::size_t clients = 0;
+  std::error_code error;
+  while (true) {
+    Local::socket client =
+        co_await door.async_accept(asio::redirect_error(asio::use_awaitable, error));
+    if (error) {  // no room for another open file, most likely: tried again from time to time
+      asio::steady_timer pause(executor, std::chrono::milliseconds(100));
+      co_await pause.async_wait(asio::use_awaitable);
+    } else if (clients < most_clients) {
+      ++clients;
+      asio::co_spawn(executor, serve_socket(service, std::move(client)),
+                     [&clients](const std::exception_ptr& failure) {
+                       --clients;
+                       rethrow(failure);
+                     });
+    } else {
+      std::string out;
+      append_error(out, "null", "too_many_clients",
+                   "there are " + std::to_string(most_clients) +
+                       " clients already: close one, or start with a larger --max-clients");
+      client.write_some(asio::buffer(out), error);  // a new socket has room for it
     }
   }
+}
+
+/// Returns stdin or stdout for Asio, which makes a file non-blocking: opened anew where that is
+/// possible, since other processes may share it.
+int own_file(int file, int mode) {
+  struct stat status = {};
+  if (::fstat(file, &status) == 0 && (S_ISFIFO(status.st_mode) || S_ISCHR(status.st_mode))) {
+    const std::string name = "/proc/self/fd/" + std::to_string(file);
+    const int own = ::open(name.c_str(), mode | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+    if (own >= 0) return own;
+  }
+  return ::fcntl(file, F_DUPFD_CLOEXEC, 0);
 }
 
 /// Otherwise the next file that is opened would be taken for it.
@@ -184,6 +217,27 @@ void require_stdio() {
   }
 }
 
+/// Serves the one client of stdin and stdout. Returns what went wrong with these.
+std::string serve_stdio(Service& service, asio::io_context& io) {
+  const int flags[] = {::fcntl(STDIN_FILENO, F_GETFL), ::fcntl(STDOUT_FILENO, F_GETFL)};
+  Descriptor in(io, own_file(STDIN_FILENO, O_RDONLY));
+  Descriptor out(io, own_file(STDOUT_FILENO, O_WRONLY));
+  out.async_wait(Descriptor::wait_error, [&](std::error_code error) {
+    if (!error) io.stop();  // the reader has gone
+  });
+  std::string trouble;
+  asio::co_spawn(io, converse(service, in, out),
+                 [&](const std::exception_ptr& failure, std::string text) {
+                   rethrow(failure);
+                   trouble = std::move(text);
+                   io.stop();
+                 });
+  io.run();
+  ::fcntl(STDIN_FILENO, F_SETFL, flags[0]);
+  ::fcntl(STDOUT_FILENO, F_SETFL, flags[1]);
+  return trouble;
+}
+
 }  // namespace
 
 int serve(const ServeOptions& options, std::ostream& log) {
@@ -195,16 +249,22 @@ int serve(const ServeOptions& options, std::ostream& log) {
   Service service(loaded.mesh, settings);
   const StopSignal stop;
   ::signal(SIGPIPE, SIG_IGN);  // a client who has gone is an error of write() alone
+  asio::io_context io(1);
+  Descriptor stopped(io, ::dup(stop.file()));
+  stopped.async_wait(Descriptor::wait_read, [&](std::error_code) { io.stop(); });
   std::optional<UnixSocket> socket;
-  if (options.socket) socket.emplace(*options.socket);
+  if (options.socket) socket.emplace(io, *options.socket);
   log << "keepout: serving " << options.service.mesh.string() << " ("
       << counted(loaded.mesh->triangle_count(), "triangle") << ") on "
       << (socket ? options.socket->string() : "stdin and stdout") << std::endl;
-  const std::string trouble =
-      serve_clients(service, stop, socket ? &*socket : nullptr, options.most_clients);
-  if (trouble.empty()) return EXIT_SUCCESS;
-  log << "keepout: " << trouble << '\n';
-  return EXIT_FAILURE;
+  if (!socket) {
+    const std::string trouble = serve_stdio(service, io);
+    if (!trouble.empty()) log << "keepout: " << trouble << '\n';
+    return trouble.empty() ? EXIT_SUCCESS : EXIT_FAILURE;
+  }
+  asio::co_spawn(io, serve_clients(service, socket->acceptor(), options.most_clients), rethrow);
+  io.run();
+  return EXIT_SUCCESS;
 }
 
 std::string protocol_help() {

@@ -2,23 +2,21 @@
 #include "serve/service.h"
 
 #include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "keepout/error.h"
 #include "keepout/factory/for_each_option.h"
 #include "keepout/mesh/doctor.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
+#include "serve/client.h"
+#include "shared/names.h"
 
 namespace keepout::app {
 namespace {
 
-using OrderedJson = nlohmann::ordered_json;
-
-constexpr int protocol = 1;             // goes up when an old client would no longer be understood
-constexpr std::size_t longest_end = 2;  // of a line: "\r\n" [bytes]
-constexpr std::size_t most_work = 16;   // of a turn, in steps
+constexpr int protocol = 1;  // goes up when an old client would no longer be understood
 constexpr std::size_t enough_output = std::size_t{1} << 16;  // for a turn [bytes]
 
 /// With capacity for the largest request.
@@ -30,49 +28,42 @@ MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
 }
 
 /// Without its braces.
-std::string members_of(const OrderedJson& object) {
+std::string members_of(const Json& object) {
   // A path need not be UTF-8.
-  const std::string text = object.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  const std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
   return text.substr(1, text.size() - 2);
 }
 
-/// Returns all statuses: `reason` is that of a tip.
-OrderedJson statuses() {
-  OrderedJson list = OrderedJson::array();
+/// Returns all statuses, where `reason` is that of a tip, and the names of all limits.
+Json statuses_and_limits() {
+  Json statuses = Json::array();
   for (std::size_t i = 0; i < status_count; ++i) {
     const auto status = static_cast<Status>(i);
-    list.push_back({{"ok", is_ok(status)},
-                    {"status", name(status)},
-                    {"reason", reason(status, Subject::tip)},
-                    {"instrument_reason", reason(status, Subject::instrument)},
-                    {"polytope_reason", reason(status, Subject::polytope)}});
+    statuses.push_back({{"ok", is_ok(status)},
+                        {"status", name(status)},
+                        {"reason", reason(status, Subject::tip)},
+                        {"instrument_reason", reason(status, Subject::instrument)},
+                        {"polytope_reason", reason(status, Subject::polytope)}});
   }
-  return list;
+  Json limits = Json::array();
+  for (std::size_t i = 0; i < limit_count; ++i) limits.push_back(name(static_cast<Limit>(i)));
+  return {{"statuses", statuses}, {"limits", limits}};
 }
 
-/// Returns the names of all limits.
-OrderedJson limits() {
-  OrderedJson list = OrderedJson::array();
-  for (std::size_t i = 0; i < limit_count; ++i) list.push_back(name(static_cast<Limit>(i)));
-  return list;
-}
-
-OrderedJson info(const Mesh& mesh, const ServiceSettings& settings,
-                 const MotionConstraintSettings& c) {
-  OrderedJson options{{"index", c.index}, {"convex_tool", c.tool.has_value()}};
+Json info_on(const Mesh& mesh, const ServiceSettings& settings, const MotionConstraintSettings& c) {
+  Json options{{"index", c.index}, {"convex_tool", c.tool.has_value()}};
   for_each_option(c, [&](const auto& option, const auto& of) {
     std::visit([&](const auto& value) { options[std::string(option.name)] = value; },
                option.get(of));
   });
-  const auto array = [](const Vec3& v) { return OrderedJson{v.x(), v.y(), v.z()}; };
-  const std::string space(name(settings.space));
+  const auto array = [](const Vec3& v) { return Json{v.x(), v.y(), v.z()}; };
   return {{"version", KEEPOUT_VERSION},
           {"protocol", protocol},
           {"unit", "mm"},
           {"frame", "of the mesh"},
           {"mesh",
            {{"file", settings.mesh.string()},
-            {"space", space},
+            {"space", std::string(name(settings.space))},
             {"triangles", mesh.triangle_count()},
             {"vertices", mesh.vertex_count()},
             {"low", array(mesh.bounds().low)},
@@ -86,208 +77,72 @@ OrderedJson info(const Mesh& mesh, const ServiceSettings& settings,
             {"motions", settings.limits.motions}}}};
 }
 
-Vec3 vector(std::span<const double> numbers) { return {numbers[0], numbers[1], numbers[2]}; }
-
-bool is_blank(std::string_view text) {
-  return text.find_first_not_of(" \t\r") == std::string_view::npos;
+/// Appends the answer to a line. Returns how many steps the work was worth. A blank line is no
+/// work, but a sea of them must not hold up the others.
+std::size_t answer(Client& client, std::string_view line, std::string& out) {
+  const Service& service = client.service;
+  const bool is_too_long =
+      std::exchange(client.is_skipping, false) || line.size() > service.longest_line;
+  if (!is_too_long && line.find_first_not_of(" \t\r") == std::string_view::npos) return 1;
+  const std::size_t before = out.size();
+  std::string id = "null";
+  try {
+    if (is_too_long) {
+      throw Refusal{"line_too_long",
+                    "the line has more than " + std::to_string(service.longest_line) +
+                        " bytes and was skipped: send less at a time, or raise --max-line"};
+    }
+    Json request;
+    const Verb& verb = service.requests.read(line, id, request);
+    out.append("{\"id\":").append(id);
+    try {
+      verb.carry_out(client, request, out);
+    } catch (const Error& error) {
+      throw Refusal{verb.refusal, printable(error.what())};
+    }
+    out += "}\n";
+    return std::max(verb.work, request.contains("motions") ? request["motions"].size() : 0);
+  } catch (const Refusal& refusal) {
+    out.resize(before);
+    append_error(out, id, refusal.kind, refusal.message);
+    return 1;
+  }
 }
 
 }  // namespace
 
-LineReader::LineReader(std::size_t longest) : longest_(longest), buffer_(longest + longest_end) {}
+Service::Service(std::shared_ptr<const Mesh> served, const ServiceSettings& settings)
+    : mesh(std::move(served)),
+      index(make_or_load_index(mesh, settings.constraint)),
+      instrument{.solver = settings.constraint.solver,
+                 .options = {.margin = settings.constraint.options.margin,
+                             .recovery = settings.constraint.options.recovery}},
+      tip(with_room_for(settings.constraint, settings.limits)),
+      constraint(make_motion_constraint(mesh, index, tip)),
+      longest_line(settings.longest_line),
+      requests(settings.limits, verbs()),
+      info(members_of(info_on(*mesh, settings, tip))),
+      statuses(members_of(statuses_and_limits())) {}
 
-std::span<char> LineReader::room() noexcept {
-  if (begin_ == end_) {
-    begin_ = searched_ = end_ = 0;
-  } else if (begin_ > 0 && end_ == buffer_.size()) {
-    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
-    searched_ -= begin_;
-    end_ -= begin_;
-    begin_ = 0;
-  }
-  return {buffer_.data() + end_, buffer_.size() - end_};
+std::size_t most_received(const Service& service) noexcept {
+  return service.longest_line + std::string_view("\r\n").size();
 }
 
-std::optional<Line> LineReader::next() noexcept {
-  const auto first = buffer_.begin() + static_cast<std::ptrdiff_t>(searched_);
-  const auto last = buffer_.begin() + static_cast<std::ptrdiff_t>(end_);
-  const auto newline = std::find(first, last, '\n');
-  if (newline != last) {
-    const auto at = static_cast<std::size_t>(newline - buffer_.begin());
-    return finished(at, at + 1);
-  }
-  searched_ = end_;
-  if (has_ended_ && (begin_ < end_ || is_skipping_)) return finished(end_, end_);
-  if (is_skipping_ || end_ - begin_ == buffer_.size()) {
-    is_skipping_ = true;
-    begin_ = searched_ = end_ = 0;
-  }
-  return std::nullopt;
-}
-
-std::optional<Line> LineReader::finished(std::size_t line_end, std::size_t next_begin) noexcept {
-  std::string_view text(buffer_.data() + begin_, line_end - begin_);
-  if (text.ends_with('\r')) text.remove_suffix(1);
-  begin_ = searched_ = next_begin;
-  const bool is_too_long = is_skipping_ || text.size() > longest_;
-  is_skipping_ = false;
-  return Line{is_too_long, is_too_long ? std::string_view() : text};
-}
-
-Service::Service(std::shared_ptr<const Mesh> mesh, const ServiceSettings& settings)
-    : mesh_(mesh),
-      index_(make_or_load_index(mesh, settings.constraint)),
-      instrument_{.solver = settings.constraint.solver,
-                  .options = {.margin = settings.constraint.options.margin,
-                              .recovery = settings.constraint.options.recovery}},
-      settings_(with_room_for(settings.constraint, settings.limits)),
-      constraint_(make_motion_constraint(mesh, index_, settings_)),
-      longest_line_(settings.longest_line),
-      limits_(settings.limits),
-      request_(settings.limits),
-      jacobian_(3, static_cast<Eigen::Index>(settings.limits.joints)),
-      info_(members_of(info(*mesh, settings, settings_))),
-      statuses_(members_of({{"statuses", statuses()}, {"limits", limits()}})) {}
-
-std::size_t Service::answer(const Line& line, Client& client, std::string& out) {
-  if (line.is_too_long) {
-    append_error(out, "null", "line_too_long",
-                 "the line has more than " + std::to_string(longest_line_) +
-                     " bytes and was skipped: send less at a time, or raise --max-line");
-    return 1;
-  }
-  if (is_blank(line.text)) return 0;
-  const std::size_t before = out.size();
-  try {
-    read_request(line.text, request_);
-    begin_answer(out, request_.id);
-    const std::size_t work = carry_out(client, out);
-    end_answer(out);
-    return work;
-  } catch (const Refusal& refusal) {
-    out.resize(before);
-    append_error(out, request_.id, refusal.kind, refusal.message);
-    return 1;
-  }
-}
-
-std::size_t Service::carry_out(Client& client, std::string& out) {
-  out += ',';
-  switch (request_.verb) {
-    case Verb::step:
-      append_single_step(client, out);
-      break;
-    case Verb::steps:
-      append_batch(client, out);
-      return std::max<std::size_t>(request_.table("motions").rows, 1);
-    case Verb::polytope:
-      append_polytope(out,
-                      constraint_of(client).free_polytope(vector(request_.table("tip").numbers),
-                                                          request_.table("radius").numbers[0]));
-      break;
-    case Verb::info:
-      out += info_;
-      break;
-    case Verb::statuses:
-      out += statuses_;
-      break;
-    case Verb::instrument:
-      open_instrument(client, mesh_, index_, instrument_, request_);
-      append_instrument(out, client.instrument->instrument());
-      return most_work;
-    case Verb::tool:
-      open_tool(client, mesh_, index_, settings_, request_);
-      out += "\"ok\":true";
-      return most_work;
-    case Verb::joint_step: {
-      const InstrumentStep step = joint_step(client, request_);
-      append_joint_step(out, step, request_.table("q").columns);
-      if (client.instrument->mesh_count() > 1 && step.distance) {
-        out += ",\"nearest_mesh\":" + std::to_string(step.nearest_mesh);
-      }
-      append_guides(out, client.guide_names, step.guides, step.relaxation);
-      break;
+std::size_t take_turn(Client& client, std::string_view received, std::string& answers) {
+  std::size_t begin = 0;
+  for (std::size_t work = 0; work < most_work && answers.size() < enough_output;) {
+    const std::size_t end = received.find('\n', begin);
+    if (end == std::string_view::npos) {
+      if (received.size() - begin < most_received(client.service)) break;
+      client.is_skipping = true;
+      return received.size();
     }
-    case Verb::guides:
-      set_guides(client, mesh_, index_, settings_, request_);
-      out += "\"ok\":true";
-      break;
-    case Verb::anatomy:
-      out += "\"ok\":true,\"mesh\":" + std::to_string(add_anatomy(client, settings_, request_));
-      return most_work;
-    case Verb::place:
-      place_anatomy(client, request_);
-      out += "\"ok\":true";
-      break;
-    case Verb::ping:
-      out += "\"ok\":true";
-      break;
+    std::string_view line = received.substr(begin, end - begin);
+    begin = end + 1;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    work += answer(client, line, answers);
   }
-  return 1;
-}
-
-/// Returns the client's own constraint, or the one that clients share.
-MotionConstraint& Service::constraint_of(Client& client) noexcept {
-  return client.own ? *client.own : constraint_;
-}
-
-Step Service::step(Client& client, const Motion& motion) noexcept {
-  return constraint_of(client).step(motion, client.tip);
-}
-
-void Service::append_single_step(Client& client, std::string& out) {
-  Motion motion{.tip = vector(request_.table("tip").numbers),
-                .desired = vector(request_.table("desired").numbers)};
-  const auto joints = static_cast<Eigen::Index>(request_.table("jacobian").columns);
-  if (joints > 0) {
-    using RowByRow = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor>;
-    jacobian_.leftCols(joints) =
-        Eigen::Map<const RowByRow>(request_.table("jacobian").numbers.data(), 3, joints);
-    motion.jacobian = TipJacobian(jacobian_.data(), joints);
-  }
-  if (request_.table("rows").is_given) {
-    motion.rows =
-        ExtraRows(request_.table("rows").numbers.data(), request_.table("bounds").numbers.data(),
-                  static_cast<Eigen::Index>(request_.table("rows").rows));
-  }
-  const Step step = this->step(client, motion);
-  append_step(out, step, request_.table("jacobian").columns);
-  append_guides(out, client.tip_guide_names, step.guides, step.relaxation);
-}
-
-void Service::append_batch(Client& client, std::string& out) {
-  const std::span<const double> numbers = request_.table("motions").numbers;
-  out += "\"steps\":[";
-  for (std::size_t i = 0; i < numbers.size(); i += 6) {
-    const Motion motion{.tip = vector(numbers.subspan(i)),
-                        .desired = vector(numbers.subspan(i + 3))};
-    out += i == 0 ? "{" : ",{";
-    append_step(out, step(client, motion), 0);
-    out += '}';
-  }
-  out += ']';
-}
-
-Session::Session(Service& service) : service_(service), lines_(service.longest_line()) {
-  out_.reserve(enough_output / 4);
-}
-
-void Session::take_turn() {
-  std::size_t work = 0;
-  while (work < most_work && out_.size() < enough_output) {
-    const std::optional<Line> line = lines_.next();
-    may_have_line_ = line.has_value();
-    if (!line) return;
-    // A blank line is no work, but a sea of them must not hold up the others.
-    work += std::max<std::size_t>(service_.answer(*line, client_, out_), 1);
-  }
-}
-
-void Session::sent(std::size_t count) noexcept {
-  sent_ += count;
-  if (sent_ < out_.size()) return;
-  out_.clear();
-  sent_ = 0;
+  return begin;
 }
 
 }  // namespace keepout::app
