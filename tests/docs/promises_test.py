@@ -6,7 +6,7 @@ promises.ini beside this file has a section for each feature. A section lists th
 feature, and has a cell for each promise of docs/safety.md. A line of a cell names a test:
 
     PROGRAM Suite.Test          a test of GoogleTest; PROGRAM is one of tests/CMakeLists.txt
-    test_FILE.py::test_NAME     a test in tests/python
+    test_FILE.py::test_NAME     a test in Python
     ctest NAME                  a test of ctest
     -: REASON                   the only line: why the promise needs no test for this feature
 
@@ -50,7 +50,7 @@ def programs_of(root):
 
 
 def python_tests_of(root):
-    return {f"{path.name}::{name}" for path in (root / "tests/python").glob("test_*.py")
+    return {f"{path.name}::{name}" for path in (root / "tests").rglob("test_*.py")
             for name in re.findall(r"^def (test_\w+)\(", read(path), re.M)}
 
 
@@ -142,7 +142,7 @@ def entry_points_in_python(root):
 
 
 def entry_points_of(root):
-    verbs = re.findall(r'\{"(\w+)",\s*Verb::\w+', read(root / "apps/keepout/serve/request.cpp"))
+    verbs = re.findall(r'\{"(\w+)",\s*\{', read(root / "apps/keepout/serve/client.cpp"))
     return {*entry_points_in_headers(root), *entry_points_in_python(root),
             *(f"serve {verb}" for verb in verbs)}
 

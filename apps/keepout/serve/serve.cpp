@@ -13,7 +13,6 @@
 #include <asio/io_context.hpp>
 #include <asio/local/stream_protocol.hpp>
 #include <asio/posix/stream_descriptor.hpp>
-#include <asio/read_until.hpp>
 #include <asio/redirect_error.hpp>
 #include <asio/steady_timer.hpp>
 #include <asio/use_awaitable.hpp>
@@ -21,11 +20,14 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "keepout/error.h"
 #include "keepout/robot/instrument_options.h"
@@ -140,25 +142,29 @@ void rethrow(const std::exception_ptr& failure) {
 template <class In, class Out>
 asio::awaitable<std::string> converse(Service& service, In& in, Out& out) {
   Client client{service};
-  std::string received;
   std::string answers;
+  const std::size_t room = most_received(service);
+  std::vector<char> received(room + 1);  // and the end of the last line
+  std::size_t size = 0;                  // of what was received
   std::error_code error;
   auto noting = asio::redirect_error(asio::use_awaitable, error);
-  while (true) {
-    co_await asio::async_read_until(in, asio::dynamic_buffer(received, most_received(service)),
-                                    '\n', noting);
-    const bool has_ended = error == asio::error::eof;
-    if (error && !has_ended && error != asio::error::not_found) {
-      co_return "stdin: " + error.message();
+  for (bool has_ended = false; !has_ended;) {
+    size += co_await in.async_read_some(asio::buffer(received.data() + size, room - size), noting);
+    has_ended = error == asio::error::eof;
+    if (error && !has_ended) co_return "stdin: " + error.message();
+    if (has_ended) received[size++] = '\n';
+    std::string_view unread(received.data(), size);
+    while (const std::size_t done = take_turn(client, unread, answers)) {
+      unread.remove_prefix(done);
+      // Other clients have their turn before this returns.
+      co_await asio::async_write(out, asio::buffer(answers), noting);
+      if (error) co_return error == asio::error::broken_pipe ? "" : "stdout: " + error.message();
+      answers.clear();
     }
-    if (has_ended) received += '\n';  // the last line needs no end
-    received.erase(0, take_turn(client, received, answers));
-    // Other clients have their turn before this returns.
-    co_await asio::async_write(out, asio::buffer(answers), noting);
-    if (error) co_return error == asio::error::broken_pipe ? "" : "stdout: " + error.message();
-    answers.clear();
-    if (has_ended && received.empty()) co_return "";
+    size = unread.size();
+    std::memmove(received.data(), unread.data(), size);
   }
+  co_return "";
 }
 
 asio::awaitable<void> serve_socket(Service& service, Local::socket socket) {
