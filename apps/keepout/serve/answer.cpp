@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace keepout::app {
 namespace {
@@ -18,11 +19,11 @@ void append_outcome(std::string& out, const Result& result) {
 /// Appends the names of all limits of a step, if there are any.
 void append_limits(std::string& out, Limits limits) {
   if (limits.empty()) return;
-  append_key(out, "limits");
-  auto all = std::views::iota(std::size_t{0}, limit_count) |
-             std::views::transform([](std::size_t i) { return static_cast<Limit>(i); }) |
-             std::views::filter([limits](Limit limit) { return limits.has(limit); });
-  append_array(out, all, [&](Limit limit) { append_string(out, name(limit)); });
+  append_member(out, "limits",
+                std::views::iota(std::size_t{0}, limit_count) |
+                    std::views::transform([](std::size_t i) { return static_cast<Limit>(i); }) |
+                    std::views::filter([limits](Limit limit) { return limits.has(limit); }) |
+                    std::views::transform([](Limit limit) { return name(limit); }));
 }
 
 /// Appends the increment of the joints. A step that is not ok has none: then all are zero, so that
@@ -38,14 +39,14 @@ void append_increment(std::string& out, std::span<const double> increment, std::
 /// pair has none.
 void append_degraded(std::string& out, std::span<const DegradedClearance> degraded) {
   if (degraded.empty()) return;
-  append_key(out, "degraded");
-  append_array(out, degraded, [&](const DegradedClearance& pair) {
-    out += '{';
-    append_member(out, "body", pair.body);
-    append_member(out, "mesh", pair.mesh);
-    append_member(out, "level", pair.is_certified ? pair.level : std::nan(""));
-    out += '}';
-  });
+  append_member(out, "degraded", degraded | std::views::transform([](const auto& pair) {
+                                   return [&pair](std::string& object) {
+                                     append_member(object, "body", pair.body);
+                                     append_member(object, "mesh", pair.mesh);
+                                     append_member(object, "level",
+                                                   pair.is_certified ? pair.level : std::nan(""));
+                                   };
+                                 }));
 }
 
 }  // namespace
@@ -80,12 +81,6 @@ void append_string(std::string& out, std::string_view value) {
   out += '"';
 }
 
-void append_key(std::string& out, std::string_view key) {
-  if (!out.ends_with('{')) out += ',';
-  append_string(out, key);
-  out += ':';
-}
-
 void append_step(std::string& out, const Step& step, std::size_t joints) {
   append_outcome(out, step);
   append_limits(out, step.limits);
@@ -98,10 +93,7 @@ void append_step(std::string& out, const Step& step, std::size_t joints) {
 
 void append_polytope(std::string& out, const Polytope& polytope) {
   append_outcome(out, polytope);
-  append_key(out, "normals");
-  append_array(out, polytope.planes, [&](const HalfSpace& plane) {
-    append_array(out, plane.normal, [&](double x) { append_number(out, x); });
-  });
+  append_member(out, "normals", polytope.planes | std::views::transform(&HalfSpace::normal));
   append_member(out, "offsets", polytope.planes | std::views::transform(&HalfSpace::offset));
 }
 
@@ -121,23 +113,26 @@ void append_guides(std::string& out, std::span<const std::string> names,
                    std::span<const GuideState> states, Relaxation relaxation) {
   if (states.empty()) return;
   append_member(out, "relaxation", name(relaxation));
-  append_key(out, "guides");
-  append_array(out, std::views::iota(std::size_t{0}, states.size()), [&](std::size_t g) {
-    out += '{';
-    append_member(out, "name", names[g]);
-    append_member(out, "excess", states[g].excess);
-    append_member(out, "limits", states[g].limits);
-    append_member(out, "relaxed", states[g].relaxed);
-    out += '}';
-  });
+  append_member(
+      out, "guides",
+      std::views::iota(std::size_t{0}, states.size()) | std::views::transform([&](std::size_t g) {
+        return [&, g](std::string& object) {
+          append_member(object, "name", names[g]);
+          append_member(object, "excess", states[g].excess);
+          append_member(object, "limits", states[g].limits);
+          append_member(object, "relaxed", states[g].relaxed);
+        };
+      }));
 }
 
 void append_error(std::string& out, std::string_view id, std::string_view kind,
                   std::string_view message) {
-  out.append("{\"id\":").append(id).append(",\"error\":{");
-  append_member(out, "kind", kind);
-  append_member(out, "message", message);
-  out += "}}\n";
+  out.append("{\"id\":").append(id);
+  append_member(out, "error", [&](std::string& object) {
+    append_member(object, "kind", kind);
+    append_member(object, "message", message);
+  });
+  out += "}\n";
 }
 
 }  // namespace keepout::app

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "keepout/robot/instrument_step.h"
 #include "keepout/step/motion_constraint.h"
@@ -23,36 +24,40 @@ void append_number(std::string& out, double value);
 /// Appends a string in quotes. `value`: UTF-8.
 void append_string(std::string& out, std::string_view value);
 
-/// Appends `"key":`, after a comma unless it is the first member of its object.
-void append_key(std::string& out, std::string_view key);
-
-/// Appends an array. `append`: called with each item, appends it.
-template <std::ranges::input_range Items, class Append>
-void append_array(std::string& out, Items&& items, const Append& append) {
-  out += '[';
-  for (bool is_first = true; const auto& item : items) {
-    if (!is_first) out += ',';
-    is_first = false;
-    append(item);
+/// Appends a number, a text, a truth value, an array of values, or an object, whose members a
+/// function appends.
+template <class Value>
+void append_value(std::string& out, Value&& value) {
+  using Plain = std::remove_cvref_t<Value>;
+  if constexpr (std::same_as<Plain, bool>) {
+    out += value ? "true" : "false";
+  } else if constexpr (std::integral<Plain>) {
+    out += std::to_string(value);
+  } else if constexpr (std::floating_point<Plain>) {
+    append_number(out, value);
+  } else if constexpr (std::convertible_to<Plain, std::string_view>) {
+    append_string(out, value);
+  } else if constexpr (std::ranges::range<Plain>) {
+    out += '[';
+    for (bool is_first = true; auto&& item : value) {
+      if (!std::exchange(is_first, false)) out += ',';
+      append_value(out, item);
+    }
+    out += ']';
+  } else {
+    out += '{';
+    value(out);
+    out += '}';
   }
-  out += ']';
 }
 
-/// Appends a member of an object. `value`: a number, a text, a truth value, or an array of numbers.
+/// Appends a member of an object, after a comma unless it is the first.
 template <class Value>
-void append_member(std::string& out, std::string_view key, const Value& value) {
-  append_key(out, key);
-  if constexpr (std::same_as<Value, bool>) {
-    out += value ? "true" : "false";
-  } else if constexpr (std::integral<Value>) {
-    out += std::to_string(value);
-  } else if constexpr (std::floating_point<Value>) {
-    append_number(out, value);
-  } else if constexpr (std::convertible_to<Value, std::string_view>) {
-    append_string(out, value);
-  } else {
-    append_array(out, value, [&](double number) { append_number(out, number); });
-  }
+void append_member(std::string& out, std::string_view key, Value&& value) {
+  if (!out.ends_with('{')) out += ',';
+  append_string(out, key);
+  out += ':';
+  append_value(out, value);
 }
 
 /// Appends the members of a step. `joints`: of its Jacobian; 0 without one.

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "serve/client.h"
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -12,6 +10,7 @@
 #include "keepout/factory/guide_text.h"
 #include "keepout/robot/instrument_options.h"
 #include "serve/answer.h"
+#include "serve/service.h"
 #include "shared/names.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
@@ -137,14 +136,15 @@ void step(Client& client, const Json& request, std::string& out) {
 }
 
 void steps(Client& client, const Json& request, std::string& out) {
-  append_key(out, "steps");
-  append_array(out, request["motions"], [&](const Json& row) {
-    const std::vector<double> motion = numbers(row);
-    out += '{';
-    const Vec3 desired = vector(std::span(motion).subspan(3));
-    append_step(out, tip_of(client).step({vector(motion), desired}, client.side), 0);
-    out += '}';
-  });
+  append_member(
+      out, "steps",
+      request["motions"] | std::views::transform([&](const Json& row) {
+        return [&](std::string& object) {
+          const std::vector<double> motion = numbers(row);
+          const Vec3 desired = vector(std::span(motion).subspan(3));
+          append_step(object, tip_of(client).step({vector(motion), desired}, client.side), 0);
+        };
+      }));
 }
 
 void polytope(Client& client, const Json& request, std::string& out) {
@@ -162,9 +162,9 @@ void open_instrument(Client& client, const Json& request, std::string& out) {
                                                   read_instrument(request), settings)};
   const Instrument& opened = instrument_of(client).instrument();
   append_member(out, "ok", true);
-  append_key(out, "joints");
-  append_array(out, std::views::iota(1, opened.chain().size() + 1),
-               [&](int k) { append_string(out, opened.chain().joint(k).name); });
+  append_member(out, "joints",
+                std::views::iota(1, opened.chain().size() + 1) |
+                    std::views::transform([&](int k) { return opened.chain().joint(k).name; }));
   append_member(out, "bodies", opened.bodies().size());
 }
 

@@ -32,7 +32,6 @@
 #include "keepout/error.h"
 #include "keepout/robot/instrument_options.h"
 #include "serve/answer.h"
-#include "serve/client.h"
 #include "shared/named_mesh.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"

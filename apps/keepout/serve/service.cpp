@@ -10,7 +10,6 @@
 #include "keepout/mesh/doctor.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
-#include "serve/client.h"
 #include "shared/names.h"
 
 namespace keepout::app {

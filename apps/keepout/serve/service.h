@@ -4,16 +4,20 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
+#include "keepout/step/side_watch.h"
 #include "serve/request.h"
 
 namespace keepout::app {
 
-inline constexpr std::size_t default_longest_line = std::size_t{1} << 18;
 inline constexpr std::size_t most_work = 16;  // of a turn, in steps
 
 /// What a service is made from.
@@ -22,7 +26,7 @@ struct ServiceSettings {
   AnatomicalSpace space = AnatomicalSpace::unstated;  // that its coordinates are in, for "info"
   MotionConstraintSettings constraint{.options = {.distances = Distances::always}};
   RequestLimits limits;
-  std::size_t longest_line = default_longest_line;  // [bytes]
+  std::size_t longest_line = std::size_t{1} << 18;  // [bytes]
 };
 
 /// What all clients share: one mesh, one index, and one constraint of tips. Not thread-safe.
@@ -40,6 +44,28 @@ struct Service {
   std::string info;      // members of an answer
   std::string statuses;  // members of an answer
 };
+
+/// A tip or an instrument, and the names of its guides.
+template <class Constraint>
+struct Guarded {
+  std::optional<Constraint> constraint = std::nullopt;
+  std::vector<std::string> guide_names = {};
+
+  /// Throws Error, and keeps the guides that there are, like Constraint::set_guides.
+  void set_guides(std::vector<Guide> guides);
+};
+
+/// What is kept of one client from line to line. Knows no file or socket.
+struct Client {
+  Service& service;
+  SideWatch side = {};                            // of the tip, where the last step led it
+  Guarded<MotionConstraint> tip = {};             // its own once it has a tool or guides
+  Guarded<InstrumentConstraint> instrument = {};  // once it is opened
+  bool is_skipping = false;  // the beginning of this line is gone: it was too long
+};
+
+/// Returns all that a client may ask for.
+std::span<const Verb> verbs();
 
 /// Returns how many bytes of a client at most wait for the end of their line.
 std::size_t most_received(const Service& service) noexcept;
