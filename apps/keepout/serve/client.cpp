@@ -51,14 +51,6 @@ std::filesystem::path file_of(const Json& request, const char* key) {
   return text;
 }
 
-/// Returns the value of an option. Precondition: it is of the option's kind.
-OptionValue option_value(const Json& value, OptionKind kind) {
-  if (kind == OptionKind::number) return value.get<double>();
-  if (kind == OptionKind::whole_number) return value.get<std::int64_t>();
-  if (kind == OptionKind::flag) return value.get<bool>();
-  return value.get<std::string>();
-}
-
 /// The four numbers of a link's number and a point of it.
 LinkPoint link_point(std::span<const double> numbers) {
   const double link = numbers[0];
@@ -156,7 +148,7 @@ void open_instrument(Client& client, const Json& request, std::string& out) {
   InstrumentConstraintSettings settings = client.service.instrument;
   for (const auto& option : instrument_options) {
     if (!request.contains(option.name)) continue;
-    option.set(settings.options, option_value(request[option.name], option.kind));
+    option.set(settings.options, *option_value(request[option.name], option.kind));
   }
   client.instrument = {make_instrument_constraint(client.service.mesh, client.service.index,
                                                   read_instrument(request), settings)};

@@ -34,21 +34,8 @@ bool is_id(const Json& value) {
          (value.is_string() && value.get_ref<const std::string&>().size() <= longest_id);
 }
 
-bool is_of_kind(const Json& value, OptionKind kind) {
-  switch (kind) {
-    case OptionKind::number:
-      return value.is_number();
-    case OptionKind::whole_number:
-      return value.is_number_integer();
-    case OptionKind::flag:
-      return value.is_boolean();
-    default:
-      return value.is_string();
-  }
-}
-
 bool fits(const Json& value, const Field& field) {
-  if (field.option != nullptr) return is_of_kind(value, field.option->kind);
+  if (field.option != nullptr) return option_value(value, field.option->kind).has_value();
   const auto is_item = [&](const Json& item) {
     return field.is_text ? item.is_string() : item.is_number();
   };
@@ -109,9 +96,6 @@ void append_numbers(const Json& value, std::vector<double>& numbers) {
 std::vector<Field> fields_within(const RequestLimits& limits) {
   const auto up_to = [](std::size_t count) { return "at most " + std::to_string(count); };
   const auto number = [](std::string_view name) { return Field{name, "a number"}; };
-  const auto text = [](std::string_view name) {
-    return Field{.name = name, .expected = "a string", .is_text = true};
-  };
   const auto vector = [](std::string_view name) {
     return Field{name, "an array of three numbers", 1, {3, 3}};
   };
@@ -121,53 +105,46 @@ std::vector<Field> fields_within(const RequestLimits& limits) {
                  1,
                  {1, Chain::most_joints}};
   };
+  const auto rows_of = [](std::string_view name, std::string expected, Field::Count columns,
+                          Field::Count rows) {
+    return Field{name, std::move(expected), 2, columns, rows};
+  };
   std::vector<Field> fields{
       vector("tip"),
       vector("desired"),
-      {"jacobian",
-       "three arrays, the rows of the Jacobian, of one number for each joint, " +
-           up_to(limits.joints) + " (--joints)",
-       2,
-       {1, limits.joints},
-       {3, 3}},
-      {"rows",
-       "an array of arrays of one number for each joint, or three without a Jacobian, " +
-           up_to(limits.rows) + " of them (--rows)",
-       2,
-       {1, std::max<std::size_t>(limits.joints, 3)},
-       {0, limits.rows}},
+      rows_of("jacobian",
+              "three arrays, the rows of the Jacobian, of one number for each joint, " +
+                  up_to(limits.joints) + " (--joints)",
+              {1, limits.joints}, {3, 3}),
+      rows_of("rows",
+              "an array of arrays of one number for each joint, or three without a Jacobian, " +
+                  up_to(limits.rows) + " of them (--rows)",
+              {1, std::max<std::size_t>(limits.joints, 3)}, {0, limits.rows}),
       {"bounds",
        "an array of one number for each of the rows, " + up_to(limits.rows) + " (--rows)",
        1,
        {0, limits.rows}},
       number("radius"),
-      {"motions",
-       "an array of arrays of six numbers, tip and desired increment, " + up_to(limits.motions) +
-           " of them",
-       2,
-       {6, 6},
-       {0, limits.motions}},
+      rows_of("motions",
+              "an array of arrays of six numbers, tip and desired increment, " +
+                  up_to(limits.motions) + " of them",
+              {6, 6}, {0, limits.motions}),
       number("scale"),
-      {"frame", "four arrays of four numbers, a homogeneous matrix", 2, {4, 4}, {4, 4}},
-      {"capsules",
-       "an array of arrays of nine numbers, a link and a point of it, another, and a radius, " +
-           up_to(Instrument::most_bodies) + " of them",
-       2,
-       {9, 9},
-       {1, Instrument::most_bodies}},
+      rows_of("frame", "four arrays of four numbers, a homogeneous matrix", {4, 4}, {4, 4}),
+      rows_of(
+          "capsules",
+          "an array of arrays of nine numbers, a link and a point of it, another, and a radius, " +
+              up_to(Instrument::most_bodies) + " of them",
+          {9, 9}, {1, Instrument::most_bodies}),
       of_joints("q"),
       vector("linear"),
       vector("angular"),
       of_joints("increment"),
       of_joints("weights"),
-      number("mesh"),
-      text("urdf"),
-      text("base_link"),
-      text("tip_link"),
-      text("tool"),
-      text("narrow_phase"),
-      text("of"),
-      text("file")};
+      number("mesh")};
+  for (const char* name : {"urdf", "base_link", "tip_link", "tool", "narrow_phase", "of", "file"}) {
+    fields.push_back({.name = name, .expected = "a string", .is_text = true});
+  }
   for (const auto& option : instrument_options) {
     fields.push_back({.name = option.name, .expected = option.expected(), .option = &option});
   }
@@ -250,6 +227,16 @@ const Verb& RequestReader::checked_verb(const Json& request) const {
     }
   }
   return *verb;
+}
+
+std::optional<OptionValue> option_value(const Json& value, OptionKind kind) {
+  if (kind == OptionKind::number && value.is_number()) return value.get<double>();
+  if (kind == OptionKind::whole_number && value.is_number_integer()) {
+    return value.get<std::int64_t>();
+  }
+  if (kind == OptionKind::flag && value.is_boolean()) return value.get<bool>();
+  if (kind == OptionKind::choice && value.is_string()) return value.get<std::string>();
+  return std::nullopt;
 }
 
 std::vector<double> numbers(const Json& value) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -81,6 +82,9 @@ class RequestReader {
   std::vector<Field> fields_;
   std::span<const Verb> verbs_;
 };
+
+/// Returns the value of an option; nothing if it is of another kind.
+std::optional<OptionValue> option_value(const Json& value, OptionKind kind);
 
 /// Returns the numbers of a value, row by row.
 std::vector<double> numbers(const Json& value);

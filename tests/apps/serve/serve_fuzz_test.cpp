@@ -16,8 +16,8 @@
 #include <string_view>
 #include <vector>
 
+#include "factory/tools_by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
-#include "keepout/fixtures/shapes.h"
 #include "serve/answer.h"
 #include "serve/service.h"
 #include "temporary_folder.h"
@@ -27,12 +27,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::shared_ptr<const Mesh> mesh() {
-  static const auto shared = std::make_shared<const Mesh>(make_cube(10.0));
-  return shared;
-}
+constexpr std::size_t longest_line = 600;
 
-app::ServiceSettings settings(std::size_t longest_line) {
+app::ServiceSettings settings() {
   app::ServiceSettings settings;
   settings.mesh = "cube";
   settings.constraint.options.radius = 2.0;
@@ -189,14 +186,14 @@ bool is_joint_step(const Json& request, const Json& answer) {
 }
 
 /// The lines of a text that are to be answered.
-std::vector<std::string_view> lines_of(std::string_view bytes, std::size_t longest) {
+std::vector<std::string_view> lines_of(std::string_view bytes) {
   std::vector<std::string_view> lines;
   while (!bytes.empty()) {
     const std::size_t end = std::min(bytes.find('\n'), bytes.size());
     std::string_view line = bytes.substr(0, end);
     if (line.ends_with('\r')) line.remove_suffix(1);
     const bool is_blank = line.find_first_not_of(" \t\r") == std::string_view::npos;
-    if (!is_blank || line.size() > longest) lines.push_back(line);
+    if (!is_blank || line.size() > longest_line) lines.push_back(line);
     bytes.remove_prefix(std::min(end + 1, bytes.size()));
   }
   return lines;
@@ -206,12 +203,46 @@ std::vector<std::string_view> lines_of(std::string_view bytes, std::size_t longe
 /// constraint of his own.
 class JudgedService {
  public:
-  explicit JudgedService(std::size_t longest_line);
-
   /// Sends bytes as one client, in pieces of random sizes, and judges all that is answered: one
   /// line for each that is not blank, in order, with its id; motions and planes for requests alone,
   /// and those of the constraint. Returns what is wrong; empty if nothing is.
-  std::string converse(std::string_view bytes, std::mt19937_64& random);
+  std::string converse(std::string_view bytes, std::mt19937_64& random) {
+    app::Client client{service_};
+    std::string received;
+    std::string answers;
+    const auto take = [&](std::string_view piece) {
+      received += piece;
+      for (std::size_t done = 1; done > 0; received.erase(0, done)) {
+        std::string turn;
+        done = app::take_turn(client, received, turn);
+        answers += turn;
+      }
+    };
+    for (std::string_view rest = bytes; !rest.empty();) {
+      const std::size_t room = app::most_received(service_) - received.size();
+      if (room == 0) return "there is no room for more";
+      const std::size_t part = std::min({rest.size(), room, 1 + random() % 600});
+      take(rest.substr(0, part));
+      rest.remove_prefix(part);
+    }
+    take("\n");
+    if (!received.empty()) return "it does not end";
+
+    tip_ = {};
+    has_own_tip_ = has_instrument_ = false;
+    std::string_view rest = answers;
+    for (const std::string_view line : lines_of(bytes)) {
+      const std::size_t end = rest.find('\n');
+      if (end == std::string_view::npos) return "no answer to: " + std::string(line);
+      ++lines_;
+      const std::string fault = judge(line, rest.substr(0, end));
+      if (!fault.empty()) {
+        return fault + "\n" + std::string(line) + "\n" + std::string(rest.substr(0, end));
+      }
+      rest.remove_prefix(end + 1);
+    }
+    return rest.empty() ? std::string() : "an answer to nothing: " + std::string(rest);
+  }
 
   std::span<const app::Field> fields() const noexcept { return service_.requests.fields(); }
   std::size_t lines() const noexcept { return lines_; }        // that were answered
@@ -220,13 +251,74 @@ class JudgedService {
   std::size_t done(const std::string& verb) { return done_[verb]; }
 
  private:
-  std::string judge(std::string_view line, std::string_view answer);
-  bool may_refuse(const Json& request, const app::Verb& verb, std::string_view kind) const;
-  std::string judge_answer(const Json& request, const app::Verb& verb, std::string_view answer);
+  std::string judge(std::string_view line, std::string_view answer) {
+    const Json told = Json::parse(answer, nullptr, false);
+    if (!told.is_object() || !told.contains("id")) return "no answer but";
+    const bool is_too_long = line.size() > longest_line;
+    const Json request = is_too_long ? Json(Json::value_t::discarded) : parsed(line);
+    if (request.is_object() && request.contains("id") && is_id(request["id"]) &&
+        told["id"] != request["id"]) {
+      return "another id";
+    }
+    const app::Verb* verb = verb_of(request, fields());
+    if (verb != nullptr && !is_consistent(request)) verb = nullptr;
+    if (!told.contains("error")) {
+      return verb == nullptr ? "not refused" : judge_answer(request, *verb, answer);
+    }
+    const std::string kind = told["error"]["kind"];
+    if (told["error"]["message"].get<std::string>().empty() || told.size() != 2)
+      return "no message";
+    if (verb != nullptr) return may_refuse(request, *verb, kind) ? "" : "refused";
+    ++refusals_;
+    const bool is_right =
+        is_too_long ? kind == "line_too_long" : kind == "not_json" || kind == "not_a_request";
+    return is_right ? "" : "another kind of error";
+  }
 
-  app::ServiceSettings settings_;
-  app::Service service_;
-  MotionConstraint reference_;
+  /// True if a request may be refused in this way: for a file, a text or a number that is none, or
+  /// because of what was opened before.
+  bool may_refuse(const Json& request, const app::Verb& verb, std::string_view kind) const {
+    if (verb.name == "joint_step" && has_instrument_) {
+      return kind == "not_a_request" && !has_six_joints(request);
+    }
+    const bool needs_instrument = verb.name == "joint_step" || !verb.refusal.empty();
+    return (kind == "no_instrument" && needs_instrument && !has_instrument_) ||
+           (kind == verb.refusal && !verb.refusal.empty());
+  }
+
+  /// Returns what is wrong with the answer to a request that was carried out; empty if nothing is.
+  std::string judge_answer(const Json& request, const app::Verb& verb, std::string_view answer) {
+    const Json told = Json::parse(answer);
+    ++done_[std::string(verb.name)];
+    if (verb.name == "joint_step") {
+      return has_instrument_ && has_six_joints(request) && is_joint_step(request, told)
+                 ? ""
+                 : "no step of joints";
+    }
+    if (verb.name == "ping" || !verb.refusal.empty()) {
+      has_instrument_ |= verb.name == "instrument";
+      has_own_tip_ |= verb.name == "tool" || (verb.name == "guides" && !request["guides"].empty() &&
+                                              request.value("of", "tip") == "tip");
+      return told.value("ok", false) ? "" : "not done";
+    }
+    if (has_own_tip_) return {};
+    std::string expected;
+    if (verb.name == "step") expected = step_text(request, reference_, tip_);
+    if (verb.name == "steps") expected = steps_text(request, reference_, tip_);
+    if (verb.name == "polytope") {
+      app::append_polytope(
+          expected, reference_.free_polytope(vector(request["tip"]), number(request["radius"])));
+    }
+    return answer.ends_with(expected + '}') ? "" : "another answer than " + expected;
+  }
+
+  app::ServiceSettings settings_ = settings();
+  app::Service service_{cube(), settings_};
+  MotionConstraint reference_ = [this] {
+    MotionConstraintSettings own = settings_.constraint;
+    own.capacity.extra_rows = settings_.limits.rows;
+    return make_motion_constraint(cube(), own);
+  }();
   SideWatch tip_;             // of the client
   bool has_own_tip_ = false;  // a tool or guides: the reference says nothing of its steps
   bool has_instrument_ = false;
@@ -234,115 +326,6 @@ class JudgedService {
   std::size_t refusals_ = 0;
   std::map<std::string, std::size_t> done_;
 };
-
-JudgedService::JudgedService(std::size_t longest_line)
-    : settings_(settings(longest_line)), service_(mesh(), settings_), reference_([&] {
-        MotionConstraintSettings own = settings_.constraint;
-        own.capacity.extra_rows = settings_.limits.rows;
-        return make_motion_constraint(mesh(), own);
-      }()) {}
-
-std::string JudgedService::converse(std::string_view bytes, std::mt19937_64& random) {
-  app::Client client{service_};
-  std::string received;
-  std::string answers;
-  const auto take = [&](std::string_view piece) {
-    received += piece;
-    for (std::size_t done = 1; done > 0; received.erase(0, done)) {
-      std::string turn;
-      done = app::take_turn(client, received, turn);
-      answers += turn;
-    }
-  };
-  for (std::string_view rest = bytes; !rest.empty();) {
-    const std::size_t room = app::most_received(service_) - received.size();
-    if (room == 0) return "there is no room for more";
-    const std::size_t part = std::min({rest.size(), room, 1 + random() % 600});
-    take(rest.substr(0, part));
-    rest.remove_prefix(part);
-  }
-  take("\n");
-  if (!received.empty()) return "it does not end";
-
-  tip_ = {};
-  has_own_tip_ = has_instrument_ = false;
-  std::string_view rest = answers;
-  for (const std::string_view line : lines_of(bytes, settings_.longest_line)) {
-    const std::size_t end = rest.find('\n');
-    if (end == std::string_view::npos) return "no answer to: " + std::string(line);
-    ++lines_;
-    const std::string fault = judge(line, rest.substr(0, end));
-    if (!fault.empty()) {
-      return fault + "\n" + std::string(line) + "\n" + std::string(rest.substr(0, end));
-    }
-    rest.remove_prefix(end + 1);
-  }
-  return rest.empty() ? std::string() : "an answer to nothing: " + std::string(rest);
-}
-
-std::string JudgedService::judge(std::string_view line, std::string_view answer) {
-  const Json told = Json::parse(answer, nullptr, false);
-  if (!told.is_object() || !told.contains("id")) return "no answer but";
-  const bool is_too_long = line.size() > settings_.longest_line;
-  const Json request = is_too_long ? Json(Json::value_t::discarded) : parsed(line);
-  if (request.is_object() && request.contains("id") && is_id(request["id"]) &&
-      told["id"] != request["id"]) {
-    return "another id";
-  }
-  const app::Verb* verb = verb_of(request, fields());
-  if (verb != nullptr && !is_consistent(request)) verb = nullptr;
-  if (!told.contains("error")) {
-    return verb == nullptr ? "not refused" : judge_answer(request, *verb, answer);
-  }
-  const std::string kind = told["error"]["kind"];
-  if (told["error"]["message"].get<std::string>().empty() || told.size() != 2) return "no message";
-  if (verb != nullptr) return may_refuse(request, *verb, kind) ? "" : "refused";
-  ++refusals_;
-  const bool is_right =
-      is_too_long ? kind == "line_too_long" : kind == "not_json" || kind == "not_a_request";
-  return is_right ? "" : "another kind of error";
-}
-
-/// True if a request may be refused in this way: for a file, a text or a number that is none, or
-/// because of what was opened before.
-bool JudgedService::may_refuse(const Json& request, const app::Verb& verb,
-                               std::string_view kind) const {
-  if (verb.name == "joint_step" && has_instrument_) {
-    return kind == "not_a_request" && !has_six_joints(request);
-  }
-  const bool needs_instrument = verb.name == "joint_step" || !verb.refusal.empty();
-  return (kind == "no_instrument" && needs_instrument && !has_instrument_) ||
-         (kind == verb.refusal && !verb.refusal.empty());
-}
-
-/// Returns what is wrong with the answer to a request that was carried out; empty if nothing is.
-std::string JudgedService::judge_answer(const Json& request, const app::Verb& verb,
-                                        std::string_view answer) {
-  const Json told = Json::parse(answer);
-  ++done_[std::string(verb.name)];
-  if (verb.name == "joint_step") {
-    return has_instrument_ && has_six_joints(request) && is_joint_step(request, told)
-               ? ""
-               : "no step of joints";
-  }
-  if (verb.name == "ping" || !verb.refusal.empty()) {
-    has_instrument_ |= verb.name == "instrument";
-    has_own_tip_ |= verb.name == "tool" || (verb.name == "guides" && !request["guides"].empty() &&
-                                            request.value("of", "tip") == "tip");
-    return told.value("ok", false) ? "" : "not done";
-  }
-  if (has_own_tip_) return {};
-  std::string expected;
-  if (verb.name == "step") expected = step_text(request, reference_, tip_);
-  if (verb.name == "steps") expected = steps_text(request, reference_, tip_);
-  if (verb.name == "polytope") {
-    app::append_polytope(
-        expected, reference_.free_polytope(vector(request["tip"]), number(request["radius"])));
-  }
-  return answer.ends_with(expected + '}') ? "" : "another answer than " + expected;
-}
-
-constexpr std::size_t longest_line = 600;
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr std::size_t enough = 10'000;  // lines
@@ -507,7 +490,7 @@ TEST(ServeFuzz, EveryGarbledLineIsAnsweredOnceAndMovesNothing) {
   const std::string open = R"({"do":"instrument","urdf":)" + std::string(useful_value("urdf")) +
                            R"(,"capsules":)" + std::string(useful_value("capsules")) + "}\n";
   std::mt19937_64 random(20260728);
-  JudgedService service(longest_line);
+  JudgedService service;
   Garbler garbler(random, service.fields());
   while (service.lines() < enough) {
     std::string bytes = random() % 4 > 0 ? open : "";
@@ -530,7 +513,7 @@ TEST(ServeFuzz, EveryGarbledLineIsAnsweredOnceAndMovesNothing) {
 
 TEST(ServeFuzz, BytesThatAreNoTextAreAnsweredOnceALine) {
   std::mt19937_64 random(7);
-  JudgedService service(longest_line);
+  JudgedService service;
   while (service.lines() < enough / 5) {
     std::string bytes(random() % 4000, '\0');
     for (char& c : bytes) c = random() % 40 == 0 ? '\n' : static_cast<char>(random() % 256);

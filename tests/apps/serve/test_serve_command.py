@@ -2,6 +2,7 @@
 """'keepout serve' as other programs meet it: a process at the end of a pipe or a socket."""
 
 import csv
+import fnmatch
 import json
 import os
 import random
@@ -307,3 +308,14 @@ def test_the_clients_on_the_page_are_answered(servers, client):
     else:
         assert text.startswith(pong + '{"id":2,"ok":true')
         assert "'desired' is missing" in text
+
+
+def test_the_dialogue_on_the_page_is_what_the_command_answers(servers):
+    _, _, dialogue = (examples.parent / "docs/serve.md").read_text().partition("    $ keepout serve cube\n")
+    lines = dialogue.partition("\n\n")[0].splitlines()
+    talk = servers.start(mesh="cube")
+    assert len(lines) >= 8
+    for request, printed in zip(lines[0::2], lines[1::2], strict=True):
+        # "..." on the page stands for what it leaves out; brackets are meant as they are.
+        pattern = printed.strip().replace("[", "[[]").replace("...", "*")
+        assert fnmatch.fnmatchcase(talk.ask(request + "\n").strip(), pattern), printed
