@@ -266,8 +266,7 @@ class JudgedService {
       return verb == nullptr ? "not refused" : judge_answer(request, *verb, answer);
     }
     const std::string kind = told["error"]["kind"];
-    if (told["error"]["message"].get<std::string>().empty() || told.size() != 2)
-      return "no message";
+    if (told["error"]["message"] == "" || told.size() != 2) return "no message";
     if (verb != nullptr) return may_refuse(request, *verb, kind) ? "" : "refused";
     ++refusals_;
     const bool is_right =
@@ -430,11 +429,9 @@ class Garbler {
     const std::size_t optional = below(6);  // none, all, or any of them
     text += ",\"do\":\"" + std::string(verb->name) + '"';
     for (const app::Field& field : fields_) {
-      const auto takes = [&](const std::vector<std::string_view>& keys) {
-        return std::ranges::find(keys, field.name) != keys.end();
-      };
-      if (takes(verb->needed) ||
-          (takes(verb->optional) && (optional == 1 || (optional > 1 && below(3) == 0)))) {
+      const bool is_drawn = optional == 1 || (optional > 1 && below(3) == 0);
+      if (contains(verb->needed, field.name) ||
+          (is_drawn && contains(verb->optional, field.name))) {
         text += ",\"" + std::string(field.name) + "\":" + value(field);
       }
     }
