@@ -33,6 +33,7 @@
 #include "keepout/robot/instrument_options.h"
 #include "serve/answer.h"
 #include "shared/named_mesh.h"
+#include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
 #include "shared/stop_signal.h"
@@ -120,8 +121,6 @@ class UnixSocket {
       ::unlink(file_.c_str());
     }
   }
-  UnixSocket(const UnixSocket&) = delete;
-  UnixSocket& operator=(const UnixSocket&) = delete;
 
   Local::acceptor& acceptor() noexcept { return acceptor_; }
 
@@ -273,10 +272,6 @@ int serve(const ServeOptions& options, std::ostream& log) {
 }
 
 std::string protocol_help() {
-  std::string options;
-  for (const auto& option : instrument_options) {
-    options += (options.empty() ? "" : ", ") + std::string(option.name);
-  }
   return R"(One JSON object a line, answered in order by one line with the same id. Lengths in mm, in the
 frame of the mesh. Lines for people go to stderr.
 
@@ -291,7 +286,7 @@ steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "
 polytope  tip, radius: normals and offsets of the free space around it, normal . d >= offset.
 instrument  urdf, a file, and capsules, arrays of [link,x,y,z,link,x,y,z,radius]: opens an
           instrument of this client's. Its options: )" +
-         options + R"(.
+         enumerated(names(instrument_options)) + R"(.
 joint_step  q, and linear and angular of its flange, or an increment: the increment of the joints.
 tool      tool, as --tool takes it, and narrow_phase: from now on this client's steps guard it.
 guides    guides, texts as --guide of 'keepout replay' takes them, of this client's tip; or with of,
