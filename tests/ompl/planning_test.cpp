@@ -207,8 +207,9 @@ TEST(Planning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
   EXPECT_CONTAINS(make(poses), "6 dimensions");
   const auto unbounded = std::make_shared<base::RealVectorStateSpace>(3);
   EXPECT_CONTAINS(make(unbounded), "setBounds");
-  EXPECT_CONTAINS(error_of([&] { make_motion_validator(space_around(*mesh), nullptr); }),
-                  "GuardPool");
+  EXPECT_CONTAINS(
+      error_of([&] { make_motion_validator(space_around(*mesh), std::shared_ptr<GuardPool>()); }),
+      "GuardPool");
   EXPECT_THROW(set_certified_checkers(nullptr, guards), Error);
   EXPECT_THROW(make_sliding_connect(space_around(*mesh), guards, {.sliding_step = 6.0}), Error);
 }
