@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "plan/ompl_run.h"
-
 #include <ompl/base/DiscreteMotionValidator.h>
 #include <ompl/base/objectives/PathLengthOptimizationObjective.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -14,15 +12,36 @@
 #include <ompl/util/RandomNumbers.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "keepout/error.h"
+#include "plan/planning.h"
+#include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {
 
 namespace base = ompl::base;
 namespace geometric = ompl::geometric;
+
+/// Time spent in checking. What is checked on the way of a check is part of it.
+struct CheckTimer {
+  bool running = false;
+  double seconds = 0.0;
+  std::uint64_t motions = 0;
+
+  template <class Check>
+  bool time(const Check& check) {
+    if (running) return check();
+    running = true;
+    const auto start = std::chrono::steady_clock::now();
+    const bool result = check();
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    running = false;
+    return result;
+  }
+};
 
 class TimedMotions final : public base::MotionValidator {
  public:
@@ -46,41 +65,45 @@ class TimedMotions final : public base::MotionValidator {
   CheckTimer* timer_;
 };
 
-}  // namespace
-
-void set_timed_checkers(const base::SpaceInformationPtr& space,
-                        const base::StateValidityCheckerPtr& states,
-                        base::MotionValidatorPtr motions, CheckTimer& timer) {
-  space->setStateValidityChecker([states, &timer](const base::State* state) {
+/// The timer must outlive the space.
+base::SpaceInformationPtr space_with(Planning& planning, const Checker& checker,
+                                     CheckTimer& timer) {
+  const auto space = std::make_shared<base::SpaceInformation>(planning.space());
+  auto [states, motions] = planning.checks(space, checker);
+  space->setStateValidityChecker([states = states, &timer](const base::State* state) {
     return timer.time([&] { return states->isValid(state); });
   });
-  if (!motions) motions = std::make_shared<base::DiscreteMotionValidator>(space);
+  if (!motions) {
+    space->setStateValidityCheckingResolution(checker.resolution);
+    motions = std::make_shared<base::DiscreteMotionValidator>(space);
+  }
   space->setMotionValidator(std::make_shared<TimedMotions>(space, std::move(motions), timer));
   space->setup();
+  return space;
 }
 
-void set_planning_seed(std::uint64_t seed) {
-  ompl::msg::noOutputHandler();  // also of its complaint that a seed is set anew, which is meant
-  ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(1 + seed % 0x7FFFFFFF));  // 0 would be none
-}
-
-base::PlannerPtr named_planner(const std::string& name, const base::SpaceInformationPtr& space,
-                               double range) {
-  const auto with_range = [range](const auto& planner) -> base::PlannerPtr {
-    if (range > 0.0) planner->setRange(range);
-    return planner;
-  };
-  if (name == "RRTConnect") return with_range(std::make_shared<geometric::RRTConnect>(space));
-  if (name == "RRT") return with_range(std::make_shared<geometric::RRT>(space));
-  // These have no range.
+/// One of ompl_planners. Throws Error for another name.
+base::PlannerPtr named_planner(const std::string& name, const base::SpaceInformationPtr& space) {
+  if (name == "RRTConnect") return std::make_shared<geometric::RRTConnect>(space);
+  if (name == "RRT") return std::make_shared<geometric::RRT>(space);
   if (name == "PRM") return std::make_shared<geometric::PRM>(space);
   if (name == "BITstar") return std::make_shared<geometric::BITstar>(space);
   throw Error("plan: there is no planner '" + name + "'");
 }
 
-SolvedPath solve(const base::PlannerPtr& planner, const PlanningProblem& problem,
-                 const PlanOptions& options, const std::function<bool()>& interrupted) {
-  const base::SpaceInformationPtr& space = planner->getSpaceInformation();
+/// With the range of the options, unless the planner has no such thing.
+base::PlannerPtr planner_of(Planning& planning, const Checker& checker, const PlanOptions& options,
+                            const base::SpaceInformationPtr& space) {
+  const base::PlannerPtr planner =
+      checker.slides() ? planning.sliding(space) : named_planner(options.planner, space);
+  if (options.range > 0.0 && planner->params().hasParam("range")) {
+    planner->params().setParam("range", formatted("%.17g", options.range));
+  }
+  return planner;
+}
+
+base::ProblemDefinitionPtr definition_of(const PlanningProblem& problem,
+                                         const base::SpaceInformationPtr& space) {
   base::ScopedState<base::RealVectorStateSpace> from(space), to(space);
   std::ranges::copy(problem.start, from->values);
   std::ranges::copy(problem.goal, to->values);
@@ -90,7 +113,29 @@ SolvedPath solve(const base::PlannerPtr& planner, const PlanningProblem& problem
   const auto objective = std::make_shared<base::PathLengthOptimizationObjective>(space);
   objective->setCostThreshold(objective->infiniteCost());
   definition->setOptimizationObjective(objective);
+  return definition;
+}
 
+/// Adds the steering time and count that a planner reports; most planners report none.
+void add_steering(const base::Planner& planner, SolvedPath& path) {
+  const auto& properties = planner.getPlannerProgressProperties();
+  const auto seconds = properties.find("steering time REAL");
+  const auto ways = properties.find("ways INTEGER");
+  if (seconds != properties.end()) path.checking_seconds += std::stod(seconds->second());
+  if (ways != properties.end()) path.checks += std::stoull(ways->second());
+}
+
+}  // namespace
+
+SolvedPath solve(Planning& planning, const Checker& checker, const PlanningProblem& problem,
+                 const PlanOptions& options, std::uint64_t seed,
+                 const std::function<bool()>& interrupted) {
+  ompl::msg::noOutputHandler();  // also of its complaint that a seed is set anew, which is meant
+  ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(1 + seed % 0x7FFFFFFF));  // 0 would be none
+  CheckTimer timer;
+  const base::SpaceInformationPtr space = space_with(planning, checker, timer);
+  const base::PlannerPtr planner = planner_of(planning, checker, options, space);
+  const base::ProblemDefinitionPtr definition = definition_of(problem, space);
   planner->setProblemDefinition(definition);
   planner->setup();
   const auto begin = std::chrono::steady_clock::now();
@@ -111,6 +156,9 @@ SolvedPath solve(const base::PlannerPtr& planner, const PlanningProblem& problem
     }
   }
   result.seconds = gone();
+  result.checking_seconds = timer.seconds;
+  result.checks = timer.motions;
+  add_steering(*planner, result);
   return result;
 }
 

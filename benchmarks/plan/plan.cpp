@@ -16,26 +16,13 @@
 namespace keepout::app {
 namespace {
 
-/// Adds the steering time and count that a planner reports; most planners report none.
-void add_steering(const ompl::base::PlannerPtr& planner, CheckTimer& timer) {
-  const auto& properties = planner->getPlannerProgressProperties();
-  const auto seconds = properties.find("steering time REAL");
-  const auto ways = properties.find("ways INTEGER");
-  if (seconds != properties.end()) timer.seconds += std::stod(seconds->second());
-  if (ways != properties.end()) timer.motions += std::stoull(ways->second());
-}
-
-/// Runs the planner of the options, and has the path judged. The same seed yields the same path,
-/// unless time runs out. Not for two threads at once: OMPL's seed is the process's.
+/// Runs the planner of the options, and has the path judged.
 Json run_planner(const PlanOptions& options, Planning& planning, const PlanningProblem& problem,
                  const Checker& checker, std::size_t repetition, const StopSignal& stop) {
   const bool is_tip = options.robot.empty();
   const std::uint64_t seed = options.seed + (is_tip ? problem.number : repetition);
-  set_planning_seed(seed);
-  CheckTimer timer;
-  const ompl::base::PlannerPtr planner = planning.planner(checker, timer);
-  const SolvedPath path = solve(planner, problem, options, [&stop] { return stop.has_come(); });
-  add_steering(planner, timer);
+  const SolvedPath path =
+      solve(planning, checker, problem, options, seed, [&stop] { return stop.has_come(); });
   Json run{{"mesh", planning.scene().name()}, {"problem", problem.number}};
   if (is_tip) {
     run.update(problem.members);
@@ -48,8 +35,8 @@ Json run_planner(const PlanOptions& options, Planning& planning, const PlanningP
   }
   run["solved"] = !path.states.empty();
   run["seconds"] = path.seconds;
-  run["checking_seconds"] = timer.seconds;
-  run["checks"] = timer.motions;
+  run["checking_seconds"] = path.checking_seconds;
+  run["checks"] = path.checks;
   run.update(planning.judge(path.states));
   return run;
 }

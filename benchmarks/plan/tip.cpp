@@ -12,6 +12,7 @@
 #include "keepout/ompl/planning.h"
 #include "keepout/ompl/straight_way.h"
 #include "plan/planning.h"
+#include "shared/named_mesh.h"
 #include "verify/judge.h"
 
 namespace keepout::app {
@@ -54,24 +55,13 @@ class ClearPlaces final : public base::StateValidityChecker {
   mutable HitBuffer hits_;
 };
 
-base::SpaceInformationPtr space_of(const Box& bounds) {
-  auto space = std::make_shared<base::RealVectorStateSpace>(3);
-  base::RealVectorBounds limits(3);
-  for (unsigned int i = 0; i < 3; ++i) {
-    limits.setLow(i, bounds.low[i]);
-    limits.setHigh(i, bounds.high[i]);
-  }
-  space->setBounds(limits);
-  return std::make_shared<base::SpaceInformation>(space);
-}
-
 class TipPlanning final : public Planning {
  public:
-  TipPlanning(const PlanOptions& options, PlanningScene where)
+  TipPlanning(const PlanOptions& options, TipScene where)
       : options_(&options), where_(std::move(where)) {}
 
   const Scene& scene() const override { return where_.scene; }
-  bool is_within() const override { return where_.space == PlanningScene::Space::within; }
+  bool is_within() const override { return where_.is_within; }
 
   std::vector<PlanningProblem> draw() override {
     return draw_problems(where_, options_->clearance(), options_->problems, options_->seed);
@@ -95,45 +85,41 @@ class TipPlanning final : public Planning {
     });
   }
 
-  base::PlannerPtr planner(const Checker& checker, CheckTimer& timer) override {
-    const base::SpaceInformationPtr space = space_of(where_.bounds);
-    set_checkers(space, checker, timer);
-    const double range = options_->range;
-    if (!checker.slides()) return named_planner(options_->planner, space, range);
-    base::PlannerPtr planner = make_sliding_connect(space, steering_);
-    if (range > 0.0) planner->params().setParam("range", std::to_string(range));
-    return planner;
+  base::StateSpacePtr space() const override {
+    auto space = std::make_shared<base::RealVectorStateSpace>(3);
+    base::RealVectorBounds limits(3);
+    std::ranges::copy(where_.bounds.low, limits.low.begin());
+    std::ranges::copy(where_.bounds.high, limits.high.begin());
+    space->setBounds(limits);
+    return space;
+  }
+
+  Checks checks(const base::SpaceInformationPtr& space, const Checker& checker) override {
+    if (checker.is_keepouts()) {
+      const std::shared_ptr<GuardPool>& guards = checker.slides() ? steering_ : validating_;
+      return {make_state_validity_checker(space, guards), make_motion_validator(space, guards)};
+    }
+    // Between two places so far apart no distance falls by more than half of it.
+    const double apart = checker.resolution * space->getStateSpace()->getMaximumExtent();
+    const bool is_widened = checker.kind == Checker::Kind::widened;
+    const double clearance = options_->clearance() + (is_widened ? 0.5 * apart : 0.0);
+    return {std::make_shared<ClearPlaces>(space, scene(), clearance)};
+  }
+
+  base::PlannerPtr sliding(const base::SpaceInformationPtr& space) override {
+    return make_sliding_connect(space, steering_);
   }
 
   Json judge(const Path& path) override;
 
  private:
-  void set_checkers(const base::SpaceInformationPtr& space, const Checker& checker,
-                    CheckTimer& timer) const;
   double least_distance() const;
   Json lengths_too_near(const std::vector<Vec3>& points) const;
 
   const PlanOptions* options_;
-  PlanningScene where_;
+  TipScene where_;
   std::shared_ptr<GuardPool> steering_, validating_;
 };
-
-void TipPlanning::set_checkers(const base::SpaceInformationPtr& space, const Checker& checker,
-                               CheckTimer& timer) const {
-  if (checker.is_keepouts()) {
-    const std::shared_ptr<GuardPool>& guards = checker.slides() ? steering_ : validating_;
-    set_timed_checkers(space, make_state_validity_checker(space, guards),
-                       make_motion_validator(space, guards), timer);
-    return;
-  }
-  // Between two places so far apart no distance falls by more than half of it.
-  const double apart = checker.resolution * space->getStateSpace()->getMaximumExtent();
-  const bool is_widened = checker.kind == Checker::Kind::widened;
-  const double clearance = options_->clearance() + (is_widened ? 0.5 * apart : 0.0);
-  space->setStateValidityCheckingResolution(checker.resolution);
-  set_timed_checkers(space, std::make_shared<ClearPlaces>(space, scene(), clearance), nullptr,
-                     timer);
-}
 
 /// The least distance that docs/certified-step.md promises of the clearance: m - 3 tau. [mm]
 double TipPlanning::least_distance() const {
@@ -201,17 +187,22 @@ Json TipPlanning::judge(const Path& path) {
 }  // namespace
 
 std::vector<std::unique_ptr<Planning>> plannings_of_a_tip(const PlanOptions& options) {
-  using Space = PlanningScene::Space;
   std::vector<std::unique_ptr<Planning>> all;
-  const auto add = [&](auto... where) {
-    all.push_back(std::make_unique<TipPlanning>(options, load_planning_scene(where...)));
+  const auto add = [&](const std::filesystem::path& mesh, bool is_within, bool starts_below) {
+    TipScene where{.scene = {mesh.filename().string(), load_named_mesh(mesh).mesh, "wide_bvh"},
+                   .is_within = is_within,
+                   .starts_below = starts_below};
+    constexpr double room_around = 10.0;  // [mm]
+    const Vec3 room = Vec3::Constant(is_within ? 0.0 : room_around);
+    const Box& bounds = where.scene.mesh()->bounds();
+    where.bounds = {bounds.low - room, bounds.high + room};
+    all.push_back(std::make_unique<TipPlanning>(options, std::move(where)));
   };
   if (!options.meshes.empty()) {
-    add(options.meshes.front(), options.inside ? Space::within : Space::around);
+    add(options.meshes.front(), options.inside, false);
   } else {
-    // From the throat up into nose and sinuses.
-    add("airway", Space::within, PlanningScene::Starts::below);
-    add("skull", Space::around);
+    add("airway", true, true);  // from the throat up into nose and sinuses
+    add("skull", false, false);
   }
   return all;
 }
