@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "bench/bench.h"
-#include "bench/parts_on_mesh.h"
 #include "compare/compare.h"
 #include "plan/plan.h"
 #include "user_commands.h"

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <ostream>
 
-#include "bench/benchmark.h"
 #include "compare/compare.h"
-#include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
@@ -262,6 +261,37 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
         << '\n';
   if (failure) std::rethrow_exception(failure);
   return exit_interrupted;
+}
+
+PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
+                       std::ostream& out) {
+  const StopSignal stop;
+  Benchmark benchmark;
+  run_benchmark({.command = options.command,
+                 .subjects = {{.mesh = options.mesh.string()}},
+                 .combinations = combinations_of({.radii = {5.0, 1.0}}),
+                 .queries = 1500,
+                 .seconds = 0.3},
+                stop, benchmark, out);
+  Comparison comparison;
+  const std::size_t rows = benchmark.rows.size();
+  if (!stop.has_come()) {
+    comparison = compare_parts(options.mesh.stem().string(), mesh,
+                               {.poses = 12, .problems = 400, .pairs = 100},
+                               [&stop] { return stop.has_come(); });
+    print(out, comparison);
+  } else if (rows == 0) {
+    std::cerr << "keepout: stopped before any row of the benchmark was finished: the report is of "
+                 "the simulation alone\n";
+  } else {
+    std::cerr << "keepout: stopped; " << grouped(rows) << " of "
+              << counted(benchmark.planned, "row")
+              << " of the benchmark were finished, and are kept in the report\n";
+  }
+  return {.benchmark = rows == 0 ? Json() : json_of(benchmark),
+          .comparison = json_of(comparison),
+          .combinations = rows,
+          .complete = rows >= benchmark.planned && comparison.complete};
 }
 
 }  // namespace keepout::app

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/combination.h"
-#include "bench/run_benchmark.h"
+#include "bench/benchmark.h"
 #include "record/record.h"
+#include "simulate/simulate.h"
 
 namespace CLI {
 class App;
@@ -58,5 +58,10 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes);
 /// after the family of rows at hand: what is measured is written, and said to be a part. The exit
 /// status. Throws Error before any work when a file could not be written, or a fixture is missing.
 int bench_speed(const BenchOptions& options, std::ostream& out);
+
+/// Times all indices, rules and solvers on the mesh of a simulation, quickly, and compares their
+/// answers. A signal stops it, and it keeps what is finished.
+PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
+                       std::ostream& out);
 
 }  // namespace keepout::app

@@ -7,17 +7,16 @@
 #include <optional>
 #include <utility>
 
-#include "compare/agreement.h"
-#include "compare/reference.h"
+#include "compare/compare.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/oracle/distance.h"
 #include "keepout/registry.h"
-#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {
@@ -138,6 +137,12 @@ void judge_closest_points(const Mesh& mesh, std::span<const Motion> motions, Fin
 
 }  // namespace
 
+bool is_same(const Hit& one, const Hit& other) {
+  return one.triangle == other.triangle && one.closest.offset == other.closest.offset &&
+         one.closest.distance == other.closest.distance &&
+         one.closest.feature == other.closest.feature;
+}
+
 std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
                                             const Stopped& stopped) {
   const std::shared_ptr<const Mesh>& mesh = comparison.mesh;
@@ -154,20 +159,20 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
     Budget budget;
     Neighborhood around(mesh, index, mesh->triangle_count(), budget);
     Findings findings{.searched = !guard.makes_queries()};
-    for (const Motion& motion : motions) {
-      if (stopped()) return std::nullopt;
+    const auto find = [&](std::size_t i) -> Finding {
+      const Motion& motion = motions[i];
       const bool fits = around.gather({motion.tip, reach});  // unless some come twice
       const Step step = guard.step(motion);
       TriangleBuffer& candidates = around.candidates();
       std::ranges::sort(candidates);
-      findings.at.push_back(
-          {.hits = {around.hits().begin(), around.hits().end()},
-           .planes = {step.planes.begin(), step.planes.end()},
-           .status = step.status,
-           .motion = step.motion,
-           .repeats = !fits || std::ranges::adjacent_find(candidates) != candidates.end()});
-      progress.advance();
-    }
+      return {.hits = {around.hits().begin(), around.hits().end()},
+              .planes = {step.planes.begin(), step.planes.end()},
+              .status = step.status,
+              .motion = step.motion,
+              .repeats = !fits || std::ranges::adjacent_find(candidates) != candidates.end()};
+    };
+    const auto keep = [&](std::size_t, Finding found) { findings.at.push_back(std::move(found)); };
+    if (!ask_all(motions.size(), progress, stopped, find, keep)) return std::nullopt;
     return findings;
   };
 

@@ -53,7 +53,6 @@ class ContinuousCollision : public Sweep {
 }  // namespace
 
 std::unique_ptr<Sweep> continuous_collision(const Mesh& mesh, double radius) {
-  if (!(radius > 0.0)) throw Error("the ball needs a radius > 0");
   return std::make_unique<ContinuousCollision>(mesh, radius);
 }
 

@@ -68,7 +68,6 @@ class ConvexSweep : public Sweep {
 }  // namespace
 
 std::unique_ptr<Sweep> convex_sweep(const Mesh& mesh, double radius) {
-  if (!(radius > 0.0)) throw Error("the ball needs a radius > 0");
   // In Bullet's tree 21 bits hold the number of a triangle.
   constexpr std::size_t most_triangles = std::size_t{1} << 21;
   if (mesh.triangle_count() > most_triangles) throw Error("more triangles than Bullet can number");

@@ -9,7 +9,6 @@
 #include "keepout/ompl/joint_planning.h"
 #include "plan/judge_joint_path.h"
 #include "plan/planning.h"
-#include "shared/named_mesh.h"
 #include "verify/robot/hand.h"
 #include "verify/robot/robot_scene.h"
 
@@ -71,11 +70,8 @@ std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& sta
 /// All checkers ask the same guards.
 class InstrumentPlanning final : public Planning {
  public:
-  InstrumentPlanning(const PlanOptions& options, const std::filesystem::path& mesh)
-      : options_(&options),
-        on_{{mesh.filename().string(), load_named_mesh(mesh).mesh, "wide_bvh"},
-            options.margin,
-            robot_named(options.robot)} {}
+  InstrumentPlanning(const PlanOptions& options, Scene scene)
+      : options_(&options), on_{std::move(scene), options.margin, robot_named(options.robot)} {}
 
   const Scene& scene() const override { return on_.scene; }
 
@@ -123,10 +119,6 @@ class InstrumentPlanning final : public Planning {
   }
 
   Json judge(const Path& path) override {
-    if (path.empty()) {
-      return {{"motions", nullptr},  {"too_close", nullptr},    {"entering", nullptr},
-              {"unproven", nullptr}, {"clearance_mm", nullptr}, {"length_mm", nullptr}};
-    }
     const JointPathVerdict verdict = judge_joint_path(*oracle_, *guards_->borrow(), path);
     base::ScopedState<> a(space()), b(a);
     double length = 0.0;
@@ -153,13 +145,8 @@ class InstrumentPlanning final : public Planning {
 
 }  // namespace
 
-std::vector<std::unique_ptr<Planning>> plannings_of_an_instrument(const PlanOptions& options) {
-  std::vector<std::filesystem::path> meshes = options.meshes;
-  if (meshes.empty()) meshes = {"airway", "skull"};
-  std::vector<std::unique_ptr<Planning>> all;
-  for (const auto& mesh : meshes)
-    all.push_back(std::make_unique<InstrumentPlanning>(options, mesh));
-  return all;
+std::unique_ptr<Planning> planning_of_an_instrument(const PlanOptions& options, Scene scene) {
+  return std::make_unique<InstrumentPlanning>(options, std::move(scene));
 }
 
 }  // namespace keepout::app

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <span>
@@ -71,14 +70,13 @@ class Planning {
   virtual Checks checks(const ompl::base::SpaceInformationPtr& space, const Checker& checker) = 0;
   /// Makes the planner of a checker that slides; null: such a checker has none here.
   virtual ompl::base::PlannerPtr sliding(const ompl::base::SpaceInformationPtr&) { return {}; }
-  /// Returns what the oracle finds on a path, by its name in the record; null if the path is empty.
+  /// Returns what the oracle finds on a path of one state or more, by its name in the record.
   virtual Json judge(const Path& path) = 0;
 };
 
-/// The meshes that the options name, each to be planned for a tip. `options` must outlive them.
-std::vector<std::unique_ptr<Planning>> plannings_of_a_tip(const PlanOptions& options);
-/// Like plannings_of_a_tip, but for the instrument of options.robot.
-std::vector<std::unique_ptr<Planning>> plannings_of_an_instrument(const PlanOptions& options);
+/// Plans in a scene for a tip, or for the instrument of options.robot. `options` must outlive it.
+std::unique_ptr<Planning> planning_of_a_tip(const PlanOptions& options, Scene scene);
+std::unique_ptr<Planning> planning_of_an_instrument(const PlanOptions& options, Scene scene);
 
 /// The scene of a plan for a tip: a mesh, and its free side.
 struct TipScene {
@@ -104,21 +102,6 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
 /// The checkers that are compared: for a tip sampled at each resolution, the same widened, then
 /// both of keepout's; for an instrument sampled and certified.
 std::vector<Checker> checkers_of(const PlanOptions& options);
-
-/// What became of a search for a path.
-struct SolvedPath {
-  Path states = {};               // empty unless solved
-  double seconds = 0.0;           // of the planner, and of the simplifier
-  double checking_seconds = 0.0;  // of these, in checks
-  std::uint64_t checks = 0;       // of motions
-};
-
-/// Has the planner of the options look for its first path under a checker, in a space of its own,
-/// and simplifies it if the options say so. The same seed yields the same path, unless time runs
-/// out. Not for two threads at once: OMPL's seed is the process's.
-SolvedPath solve(Planning& planning, const Checker& checker, const PlanningProblem& problem,
-                 const PlanOptions& options, std::uint64_t seed,
-                 const std::function<bool()>& interrupted);
 
 // A run is an entry of the record's "runs": one planner on one problem under one checker.
 

@@ -12,7 +12,6 @@
 #include "keepout/ompl/planning.h"
 #include "keepout/ompl/straight_way.h"
 #include "plan/planning.h"
-#include "shared/named_mesh.h"
 #include "verify/judge.h"
 
 namespace keepout::app {
@@ -110,101 +109,84 @@ class TipPlanning final : public Planning {
     return make_sliding_connect(space, steering_);
   }
 
-  Json judge(const Path& path) override;
+  /// Over the whole of each straight piece.
+  Json judge(const Path& path) override {
+    std::vector<Vec3> points;
+    for (const std::vector<double>& tip : path) points.emplace_back(tip.data());
+    oracle::SafetyOracle oracle = scene().oracle();
+    // No piece is farther off than its ends, so the search for the nearest need not reach farther.
+    double clearance = std::numeric_limits<double>::infinity();
+    for (const Vec3& point : points) clearance = std::min(clearance, oracle.distance(point));
+    bool enters = false;
+    std::size_t bad_pieces = 0;  // that touch the mesh or come too near
+    double length = 0.0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const oracle::Finding finding =
+          oracle.check(points[i - 1], points[i], least_distance(), clearance);
+      clearance = std::min(clearance, finding.distance);
+      enters |= finding.crosses;
+      bad_pieces += finding.crosses || finding.below;
+      length += (points[i] - points[i - 1]).norm();
+    }
+    return {{"valid", bad_pieces == 0},
+            {"enters", enters},
+            {"bad_pieces", bad_pieces},
+            {"pieces", points.size() - 1},
+            {"clearance_mm", clearance},
+            {"length_mm", length},
+            {"path", path},
+            {"too_near", bad_pieces == 0 ? Json::array() : lengths_too_near(points)}};
+  }
 
  private:
-  double least_distance() const;
-  Json lengths_too_near(const std::vector<Vec3>& points) const;
+  /// The least distance that docs/certified-step.md promises of the clearance: m - 3 tau. [mm]
+  double least_distance() const {
+    // The tip may be 10 mm beyond the mesh along each axis.
+    const Vec3 farthest(scene().farthest() + 30.0, 0.0, 0.0);
+    const double margin = options_->clearance();
+    return margin -
+           3.0 * tolerance(scene(), {.radius = options_->radius, .margin = margin}, farthest);
+  }
+
+  /// The lengths of a path that is not valid that come too near: to half a millimetre.
+  Json lengths_too_near(const std::vector<Vec3>& points) const {
+    constexpr double longest = 0.5;  // of what is judged at once [mm]
+    oracle::SafetyOracle oracle = scene().oracle();
+    Json lengths = Json::array();
+    bool was_bad = false;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const Vec3 along = points[i] - points[i - 1];
+      const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / longest)));
+      for (int k = 0; k < pieces; ++k) {
+        const Vec3 from = points[i - 1] + along * (static_cast<double>(k) / pieces);
+        const Vec3 to = points[i - 1] + along * (static_cast<double>(k + 1) / pieces);
+        const bool is_bad = oracle.check(from, to, least_distance()).below;
+        if (is_bad && !was_bad) lengths.push_back(Json::array({json_of(from)}));
+        if (is_bad) lengths.back().push_back(json_of(to));
+        was_bad = is_bad;
+      }
+    }
+    return lengths;
+  }
 
   const PlanOptions* options_;
   TipScene where_;
   std::shared_ptr<GuardPool> steering_, validating_;
 };
 
-/// The least distance that docs/certified-step.md promises of the clearance: m - 3 tau. [mm]
-double TipPlanning::least_distance() const {
-  // The tip may be 10 mm beyond the mesh along each axis.
-  const Vec3 farthest(scene().farthest() + 30.0, 0.0, 0.0);
-  const double margin = options_->clearance();
-  return margin -
-         3.0 * tolerance(scene(), {.radius = options_->radius, .margin = margin}, farthest);
-}
-
-/// The lengths of a path that is not valid that come too near: to half a millimetre.
-Json TipPlanning::lengths_too_near(const std::vector<Vec3>& points) const {
-  constexpr double longest = 0.5;  // of what is judged at once [mm]
-  oracle::SafetyOracle oracle = scene().oracle();
-  Json lengths = Json::array();
-  bool was_bad = false;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const Vec3 along = points[i] - points[i - 1];
-    const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / longest)));
-    for (int k = 0; k < pieces; ++k) {
-      const Vec3 from = points[i - 1] + along * (static_cast<double>(k) / pieces);
-      const Vec3 to = points[i - 1] + along * (static_cast<double>(k + 1) / pieces);
-      const bool is_bad = oracle.check(from, to, least_distance()).below;
-      if (is_bad && !was_bad) lengths.push_back(Json::array({json_of(from)}));
-      if (is_bad) lengths.back().push_back(json_of(to));
-      was_bad = is_bad;
-    }
-  }
-  return lengths;
-}
-
-/// Over the whole of each straight piece.
-Json TipPlanning::judge(const Path& path) {
-  if (path.empty()) {
-    return {{"valid", nullptr},  {"enters", nullptr},       {"bad_pieces", nullptr},
-            {"pieces", nullptr}, {"clearance_mm", nullptr}, {"length_mm", nullptr}};
-  }
-  std::vector<Vec3> points;
-  for (const std::vector<double>& tip : path) points.emplace_back(tip.data());
-  oracle::SafetyOracle oracle = scene().oracle();
-  // No piece is farther off than its ends, so the search for the nearest need not reach farther.
-  double clearance = std::numeric_limits<double>::infinity();
-  for (const Vec3& point : points) clearance = std::min(clearance, oracle.distance(point));
-  bool enters = false;
-  std::size_t bad_pieces = 0;  // that touch the mesh or come too near
-  double length = 0.0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const oracle::Finding finding =
-        oracle.check(points[i - 1], points[i], least_distance(), clearance);
-    clearance = std::min(clearance, finding.distance);
-    enters |= finding.crosses;
-    bad_pieces += finding.crosses || finding.below;
-    length += (points[i] - points[i - 1]).norm();
-  }
-  return {{"valid", bad_pieces == 0},
-          {"enters", enters},
-          {"bad_pieces", bad_pieces},
-          {"pieces", points.size() - 1},
-          {"clearance_mm", clearance},
-          {"length_mm", length},
-          {"path", path},
-          {"too_near", bad_pieces == 0 ? Json::array() : lengths_too_near(points)}};
-}
-
 }  // namespace
 
-std::vector<std::unique_ptr<Planning>> plannings_of_a_tip(const PlanOptions& options) {
-  std::vector<std::unique_ptr<Planning>> all;
-  const auto add = [&](const std::filesystem::path& mesh, bool is_within, bool starts_below) {
-    TipScene where{.scene = {mesh.filename().string(), load_named_mesh(mesh).mesh, "wide_bvh"},
-                   .is_within = is_within,
-                   .starts_below = starts_below};
-    constexpr double room_around = 10.0;  // [mm]
-    const Vec3 room = Vec3::Constant(is_within ? 0.0 : room_around);
-    const Box& bounds = where.scene.mesh()->bounds();
-    where.bounds = {bounds.low - room, bounds.high + room};
-    all.push_back(std::make_unique<TipPlanning>(options, std::move(where)));
-  };
-  if (!options.meshes.empty()) {
-    add(options.meshes.front(), options.inside, false);
-  } else {
-    add("airway", true, true);  // from the throat up into nose and sinuses
-    add("skull", false, false);
-  }
-  return all;
+std::unique_ptr<Planning> planning_of_a_tip(const PlanOptions& options, Scene scene) {
+  // From the throat up into nose and sinuses, unless the user names a mesh.
+  const bool is_airway = options.meshes.empty() && scene.name() == "airway";
+  TipScene where{.scene = std::move(scene),
+                 .is_within = is_airway || options.inside,
+                 .starts_below = is_airway};
+  constexpr double room_around = 10.0;  // [mm]
+  const Vec3 room = Vec3::Constant(where.is_within ? 0.0 : room_around);
+  const Box& bounds = where.scene.mesh()->bounds();
+  where.bounds = {bounds.low - room, bounds.high + room};
+  return std::make_unique<TipPlanning>(options, std::move(where));
 }
 
 }  // namespace keepout::app

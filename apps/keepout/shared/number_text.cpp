@@ -50,15 +50,8 @@ std::string length_text(double mm) {
   return "under 1\u00a0nm";
 }
 
-std::string mean_text(double mean) {
-  if (!(mean >= 1e3) || mean > 1e15) return rounded(mean);
-  return grouped(static_cast<std::size_t>(std::llround(mean)));
-}
-
 std::string time_text(double us) {
   return us >= 1e4 ? rounded(1e-3 * us) + "\u00a0ms" : rounded(us) + "\u00a0µs";
 }
-
-std::string ratio_text(double ratio) { return rounded(ratio, 2); }
 
 }  // namespace keepout::app

@@ -18,7 +18,6 @@
 #include "shared/output_file.h"
 #include "shared/progress.h"
 #include "shared/stop_signal.h"
-#include "shared/wrapped_text.h"
 #include "simulate/audit.h"
 #include "simulate/simulation.h"
 

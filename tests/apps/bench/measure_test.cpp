@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is wrong is not timed, by whatever part, and however rarely.
-#include "bench/measure.h"
-
 #include <bit>
 #include <functional>
 
+#include "bench/benchmark.h"
 #include "keepout/activation/registry.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/queries_only.h"

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "bench/benchmark.h"
-#include "bench/speed/time_histogram.h"
+#include "bench/speed/speed.h"
 #include "keepout/fixtures/random.h"
 
 namespace keepout::app {

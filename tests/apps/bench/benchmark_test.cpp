@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a benchmark finds: which rows its headline compares, which it leaves out, and equal steps.
+// What a benchmark measures and what it finds: which rows its headline compares, which it leaves
+// out, and equal steps.
+#include "bench/benchmark.h"
+
+#include <algorithm>
+#include <set>
 #include <utility>
 
-#include "bench/benchmark.h"
+#include "keepout/activation/registry.h"
+#include "keepout/adapters/index_registry.h"
+#include "keepout/solvers/registry.h"
 #include "messages.h"
 
 namespace keepout::app {
@@ -110,6 +117,38 @@ TEST(BenchmarkJson, HasEveryRowAndEveryFinding) {
     EXPECT_EQ(json["rows"][i]["index"], benchmark.rows[i].index);
     EXPECT_EQ(json["rows"][i]["rate_khz"], 1e3 / benchmark.rows[i].step->p50);
   }
+}
+
+TEST(Combinations, OfNothingAskedForHaveEveryPartOnceAndThoseOfAnIndexTogether) {
+  const std::vector<Combination> all = combinations_of({});
+  std::set<std::string> seen_indices, seen_rules, seen_solvers;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const bool is_new = seen_indices.insert(all[i].index).second;
+    EXPECT_EQ(is_new, i == 0 || all[i].index != all[i - 1].index) << "would be built twice";
+    seen_rules.insert(all[i].activation);
+    seen_solvers.insert(all[i].solver);
+    EXPECT_EQ(std::ranges::count(all, all[i]), 1);
+  }
+  EXPECT_EQ(seen_indices.size(), index_backends().size() - 1) << "all but the oracle";
+  EXPECT_EQ(seen_rules.size(), activation_rules().size());
+  EXPECT_EQ(seen_solvers.size(), solver_backends().size());
+  const std::size_t quick = combinations_of({.radii = {5.0, 1.0}}).size();
+  EXPECT_LT(quick, all.size());
+  EXPECT_GE(quick, 5u);
+}
+
+TEST(Combinations, CrossWhatWasAskedForAndTakeTheReferenceForTheRest) {
+  const std::vector<Combination> expected = {{"brute_force", "paper", "active_set", 2.0},
+                                             {"brute_force", "certified", "active_set", {}},
+                                             {"pd_tree", "paper", "active_set", 2.0},
+                                             {"pd_tree", "certified", "active_set", {}}};
+  EXPECT_EQ(combinations_of({.indices = {"pd_tree", "brute_force"}, .radii = {2.0}}), expected);
+}
+
+TEST(Combinations, ListTheCertifiedRuleOnceWhateverTheRadii) {
+  const auto all = combinations_of({.activations = {"certified"}, .radii = {5.0, 1.0}});
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].radius, std::nullopt);
 }
 
 }  // namespace
