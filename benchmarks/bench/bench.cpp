@@ -202,7 +202,7 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
 }
 
-int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
+int bench(const BenchOptions& options, std::ostream& out) {
   if (options.list) {
     list_parts(out);
     return EXIT_SUCCESS;
@@ -234,7 +234,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
     failure = std::current_exception();
   }
   if (benchmark.rows.empty()) {
-    notes << "keepout: stopped before any row was finished: nothing was written\n";
+    std::cerr << "keepout: stopped before any row was finished: nothing was written\n";
     return exit_interrupted;
   }
   // What has been measured is safe before anything else is tried.
@@ -248,7 +248,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   }
   outputs.reset();
   outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
-  write_record(*outputs, record, files, notes);
+  write_record(*outputs, record, files, std::cerr);
   print_headline(out, benchmark);
   out << "report: " << files.page->string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
@@ -256,9 +256,9 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   for (const auto& path : {files.kept_json(), files.csv}) {
     if (path) kept.push_back(path->string());
   }
-  notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
-        << counted(benchmark.planned, "row") << " were finished, and are kept in " << listed(kept)
-        << '\n';
+  std::cerr << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
+            << counted(benchmark.planned, "row") << " were finished, and are kept in "
+            << listed(kept) << '\n';
   if (failure) std::rethrow_exception(failure);
   return exit_interrupted;
 }

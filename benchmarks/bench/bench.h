@@ -48,10 +48,10 @@ void add_bench(CLI::App& app, BenchOptions& options);
 /// work when one could not be written, or there is no mesh of a name.
 ///
 /// Gives the exit status: 0, or exit_interrupted when a signal stopped it. The rows that were
-/// finished are then written all the same, marked as incomplete, and `notes` is told what was kept
-/// and where; where there is none, nothing is written. The same goes for a mesh that turns out to
+/// finished are then written all the same, marked as incomplete, and stderr tells what was kept and
+/// where; where there is none, nothing is written. The same goes for a mesh that turns out to
 /// be broken: its error is thrown after the rows of those before it are written.
-int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes);
+int bench(const BenchOptions& options, std::ostream& out);
 
 /// Measures the table of ratios that the engine is held to, prints it as it goes, and writes a
 /// report and JSON, if asked for. What falls short is said, and is no error. A wish to stop ends it

@@ -65,46 +65,12 @@ struct BenchmarkPlan {
   std::uint64_t seed = 1;  // of the motions, which are the same for all combinations on a mesh
 };
 
-/// One combination of parts on one mesh.
-struct BenchmarkRow {
-  std::string mesh = {};
-  std::size_t triangles = 0;
-  std::size_t vertices = 0;
-  double load_s = 0.0;                // from the mesh's file, before it is resampled
-  double load_cores = 0.0;            // kept busy meanwhile, in the mean
-  std::optional<double> radius = {};  // of the motion sphere [mm]; none: as far as motions lead
-  std::string index = {}, activation = {}, solver = {};
+/// One combination of parts on one mesh, as docs/records.md describes a row of `bench`.
+using BenchmarkRow = Json;
 
-  std::size_t queries = 0;  // and steps: of the same motions, the first so many
-  double build_s = 0.0;
-  double build_cores = 0.0;  // kept busy meanwhile, in the mean
-  double bytes_per_triangle = 0.0;
-  double candidates_mean = 0.0;  // of the query: that the index proposed
-  double hits_mean = 0.0;        // of the query: of them, truly in reach
-  double reaching_share = 0.0;   // of the queries: that find a triangle
-  double planes_mean = 0.0;      // of the step: that the solver was given in the end
-  double unsolved_share = 0.0;   // of the steps: ended in a status that is not ok
-
-  /// Of the steps, with a solver other than the reference's, under a rule that accepts a motion for
-  /// its proof alone: right, but farther from what was asked for than the reference's, by more than
-  /// a thousandth of it.
-  double worse_share = 0.0;
-
-  // The query, apart from the step: the same work for every index.
-  std::optional<Timing> collect = {};  // candidates only
-  std::optional<Timing> query = {};    // all triangles in the ball, exact, with closest points
-
-  // The step.
-  std::optional<Timing> step = {};        // all of it, by itself
-  std::optional<Timing> step_query = {};  // none under a rule that searches the index by itself
-  std::optional<Timing> activate = {};
-  std::optional<Timing> solve = {};
-
-  std::uint64_t hash = 0;                     // of all steps: equal if they are equal, bit for bit
-  std::vector<std::uint64_t> first_hashes{};  // of the first 1, 2, 4, 8, ... of them
-  bool verified = false;                      // what is not, is not timed
-  std::string remark = {};                    // why it was not timed, or is not ranked
-};
+/// A row with all of its members: zero, or null for what is not known. A row that is not verified
+/// has no times, and a remark that says why.
+BenchmarkRow new_row();
 
 struct Benchmark {
   std::string date;     // ISO 8601, UTC
@@ -153,10 +119,10 @@ struct Answer {
 /// sample of the places; everywhere, the reference's guard, which is held to brute force too.
 class Reference {
  public:
-  /// The guard is one with these settings, but that its radius may be another, on an index that is
-  /// right and with our own solver. Guard and motions must outlive this. Throws Error when the
-  /// guard's own parts are not right: a fault of ours.
-  Reference(MotionConstraint& guard, std::shared_ptr<const Mesh> mesh,
+  /// The guard is one with these settings on an index that is right; its solver is our own. The
+  /// motions must outlive this. Throws Error when the guard's own parts are not right: a fault of
+  /// ours.
+  Reference(std::shared_ptr<const SpatialIndex> right, std::shared_ptr<const Mesh> mesh,
             const MotionConstraintSettings& settings, std::span<const Motion> motions);
 
   /// Whether there is room for all triangles in reach. If not, ask no more of it.
@@ -191,8 +157,7 @@ class Reference {
 
   std::span<const Hit> hits_of(const SpatialIndex& index, const Ball& ball);
 
-  MotionConstraint& guard_;
-  StepOptions options_;
+  MotionConstraint guard_;
   bool proves_motions_;
   std::span<const Motion> motions_;
   std::vector<Ball> balls_;
@@ -212,6 +177,10 @@ class Reference {
 /// so much of the length of the motion. A solver may give up, but not be wrong. Under a rule that
 /// proves each motion, another solver's may be worse, of which the row tells. Triangles and their
 /// closest points must be those of the reference bit for bit.
+///
+/// Of the `worse_share` of a row: with a solver other than the reference's, under a rule that
+/// accepts a motion for its proof alone, a motion may be right, but farther from what was asked for
+/// than the reference's, by more than a thousandth of it.
 ///
 /// Fills the row from its queries on. Of no use when it was stopped meanwhile.
 void measure(MotionConstraint& constraint, double accuracy, std::span<const Motion> motions,

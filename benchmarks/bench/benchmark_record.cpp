@@ -23,15 +23,17 @@ using Rows = std::vector<const BenchmarkRow*>;  // in their order
 /// Returns all conditions of a row but its index and solver. The largest mesh with the largest
 /// sphere sorts last.
 auto conditions(const BenchmarkRow& row) {
-  return std::tie(row.triangles, row.radius, row.activation, row.mesh);
+  return std::tie(row["triangles"], row["radius"], row["activation"], row["mesh"]);
 }
 
-double median(const BenchmarkRow* row) { return row->step->p50; }
+double median(const BenchmarkRow* row) { return (*row)["step_us"]["p50"]; }
 
 /// Returns the hash over all steps of a row, or over the first of them, a power of two.
-std::uint64_t hash_over(const BenchmarkRow& row, std::size_t steps) {
-  return row.queries == steps ? row.hash : row.first_hashes[std::bit_width(steps) - 1];
+Json hash_over(const BenchmarkRow& row, std::size_t steps) {
+  return row["queries"] == steps ? row["hash"] : row["hashes_of_first"].at(std::to_string(steps));
 }
+
+std::size_t queries_of(const BenchmarkRow* row) { return (*row)["queries"]; }
 
 /// Rates of the whole control step that Li et al. 2020 give in words for the Stanford bunny
 /// (section on run time). They ran on an Intel Core i7-8700; the radius is not given.
@@ -48,87 +50,65 @@ std::string share(double value, const char* of_what) {
   return value > 0.0 ? "  " + rounded(100.0 * value, 2) + " % " + of_what : "";
 }
 
-/// JSON has no 64-bit whole numbers that every reader keeps.
-std::string hexadecimal(std::uint64_t value) {
-  return formatted("%016llx", static_cast<unsigned long long>(value));
-}
-
-Json hashes_of_first(const BenchmarkRow& row) {
-  Json hashes = Json::object();
-  for (std::size_t k = 0; k < row.first_hashes.size(); ++k) {
-    hashes[std::to_string(std::size_t{1} << k)] = hexadecimal(row.first_hashes[k]);
-  }
-  return hashes;
-}
-
-Json rate_khz(const BenchmarkRow& row) {
-  return row.step && row.step->p50 > 0.0 ? Json(1e3 / row.step->p50) : Json();
-}
-
 std::string median_text(const Json& us) { return us.is_null() ? "-" : figure_text(us["p50"]); }
 
-template <std::optional<double> Timing::*percentile>
-Json of_step(const BenchmarkRow& row) {
-  return row.step ? Json((*row.step).*percentile) : Json();
+using Row = BenchmarkRow;
+
+Column<Row> column(const char* key, const char* heading, int width,
+                   std::string (*text)(const Json&) = &plain) {
+  return {key, [key](const Row& row) { return row[key]; }, heading, width, text};
 }
 
-using Row = BenchmarkRow;
+/// A percentile of the step.
+Column<Row> of_step(const char* percentile, const char* heading) {
+  return {"", [percentile](const Row& row) { return row["step_us"][percentile]; }, heading, 8,
+          figure_text};
+}
+
 const Column<Row> bar{"", [](const Row&) { return Json("|"); }, "|", 1};
 
 /// What is measured; and what comes of it, which the table has only of rows that were timed.
 const Columns<Row> name_columns{
-    {"mesh", &Row::mesh},
-    {"triangles", &Row::triangles},
-    {"vertices", &Row::vertices},
-    {"load_s", &Row::load_s},
-    {"load_cores", &Row::load_cores},
-    {"radius", &Row::radius, "r mm", -6,
-     [](const Json& mm) { return mm.is_null() ? "motion" : trimmed(mm.get<double>()); }},
-    {"queries", &Row::queries},
-    {"index", &Row::index, "index", -18},
-    {"activation", &Row::activation, "rule", -9},
-    {"solver", &Row::solver, "solver", -12}};
-const Columns<Row> figure_columns{
-    {"build_s", &Row::build_s, "build", 6, figure_text<2>},
-    {"build_cores", &Row::build_cores, "cores", 5, figure_text<2>},
-    {"bytes_per_triangle", &Row::bytes_per_triangle, "B/tri", 6, figure_text},
-    {"candidates_mean", &Row::candidates_mean, "cand.", 7, figure_text<2>},
-    {"hits_mean", &Row::hits_mean, "hits", 7, figure_text},
-    {"reaching_share", &Row::reaching_share},
-    {"planes_mean", &Row::planes_mean, "planes", 7, figure_text},
-    {"unsolved_share", &Row::unsolved_share},
-    {"worse_share", &Row::worse_share},
-    bar,
-    {"collect_us", &Row::collect, "collect", 8, median_text},
-    {"query_us", &Row::query, "query", 8, median_text},
-    bar,
-    {"step_us", &Row::step},
-    {"step_query_us", &Row::step_query, "find", 8, median_text},
-    {"activate_us", &Row::activate, "activate", 8, median_text},
-    {"solve_us", &Row::solve, "solve", 8, median_text},
-    {"", &Row::step, "step p50", 8, median_text},
-    {"", of_step<&Timing::p99>, "p99", 8, figure_text},
-    {"", of_step<&Timing::p999>, "p99.9", 8, figure_text},
-    {"rate_khz", rate_khz},
-    {"hash", [](const Row& row) { return Json(hexadecimal(row.hash)); }},
-    {"hashes_of_first", hashes_of_first},
-    {"verified", &Row::verified},
-    {"remark", &Row::remark}};
-
-Json rows_of(const Benchmark& benchmark) {
-  Json rows = json_of(name_columns, benchmark.rows);
-  for (std::size_t i = 0; i < benchmark.rows.size(); ++i) {
-    rows[i].update(json_of(figure_columns, benchmark.rows[i]));
-  }
-  return rows;
-}
+    column("radius", "r mm", -6,
+           [](const Json& mm) { return mm.is_null() ? "motion" : trimmed(mm.get<double>()); }),
+    column("index", "index", -18), column("activation", "rule", -9),
+    column("solver", "solver", -12)};
+const Columns<Row> figure_columns{column("build_s", "build", 6, figure_text<2>),
+                                  column("build_cores", "cores", 5, figure_text<2>),
+                                  column("bytes_per_triangle", "B/tri", 6, figure_text),
+                                  column("candidates_mean", "cand.", 7, figure_text<2>),
+                                  column("hits_mean", "hits", 7, figure_text),
+                                  column("planes_mean", "planes", 7, figure_text),
+                                  bar,
+                                  column("collect_us", "collect", 8, median_text),
+                                  column("query_us", "query", 8, median_text),
+                                  bar,
+                                  column("step_query_us", "find", 8, median_text),
+                                  column("activate_us", "activate", 8, median_text),
+                                  column("solve_us", "solve", 8, median_text),
+                                  of_step("p50", "step p50"),
+                                  of_step("p99", "p99"),
+                                  of_step("p999", "p99.9")};
 
 }  // namespace
+
+BenchmarkRow new_row() {
+  return Json::parse(R"({
+    "mesh": "", "triangles": 0, "vertices": 0, "load_s": 0.0, "load_cores": 0.0,
+    "radius": null, "queries": 0, "index": "", "activation": "", "solver": "",
+    "build_s": 0.0, "build_cores": 0.0, "bytes_per_triangle": 0.0,
+    "candidates_mean": 0.0, "hits_mean": 0.0, "reaching_share": 0.0,
+    "planes_mean": 0.0, "unsolved_share": 0.0, "worse_share": 0.0,
+    "collect_us": null, "query_us": null, "step_us": null, "step_query_us": null,
+    "activate_us": null, "solve_us": null, "rate_khz": null,
+    "hash": "0000000000000000", "hashes_of_first": {}, "verified": false, "remark": ""})");
+}
 
 Ranking ranking_of(const Benchmark& benchmark) {
   Rows rows;
   for (const BenchmarkRow& row : benchmark.rows) {
-    if (row.step && row.step->p50 > 0.0 && row.remark.empty()) rows.push_back(&row);
+    if (!row["step_us"].is_null() && median(&row) > 0.0 && row["remark"] == "")
+      rows.push_back(&row);
   }
   if (rows.empty()) return {};
   const auto largest = std::ranges::max(
@@ -137,7 +117,7 @@ Ranking ranking_of(const Benchmark& benchmark) {
   Rows both;
   std::ranges::copy_if(rows, std::back_inserter(both), [](const auto* row) {
     return std::ranges::any_of(pairs, [&](const Pair& pair) {
-      return row->index == pair.index && row->solver == pair.solver;
+      return (*row)["index"] == pair.index && (*row)["solver"] == pair.solver;
     });
   });
   const auto [fastest, slowest] =
@@ -146,12 +126,12 @@ Ranking ranking_of(const Benchmark& benchmark) {
 }
 
 Json step_groups_of(const Benchmark& benchmark) {
-  using Problem = decltype(std::pair(conditions(benchmark.rows[0]), std::string()));
+  using Problem = decltype(std::pair(conditions(benchmark.rows[0]), Json()));
   std::map<Problem, Rows> groups;
   std::size_t not_verified = 0, single = 0, members = 0, compared = 0, same = 0;
   for (const BenchmarkRow& row : benchmark.rows) {
-    if (row.verified && row.queries > 0) {
-      groups[{conditions(row), row.solver}].push_back(&row);
+    if (row["verified"] && row["queries"] > 0) {
+      groups[{conditions(row), row["solver"]}].push_back(&row);
     } else {
       ++not_verified;
     }
@@ -162,12 +142,12 @@ Json step_groups_of(const Benchmark& benchmark) {
       ++single;
       continue;
     }
-    const BenchmarkRow& longest = **std::ranges::max_element(rows, {}, &BenchmarkRow::queries);
+    const BenchmarkRow& longest = **std::ranges::max_element(rows, {}, queries_of);
     bool all = true;
     for (const BenchmarkRow* row : rows) {
       if (row == &longest) continue;
-      const std::size_t steps =
-          row->queries == longest.queries ? row->queries : std::bit_floor(row->queries);
+      const std::size_t queries = queries_of(row);
+      const std::size_t steps = longest["queries"] == queries ? queries : std::bit_floor(queries);
       fewest = std::min(fewest, steps);
       most = std::max(most, steps);
       all = all && hash_over(*row, steps) == hash_over(longest, steps);
@@ -189,10 +169,11 @@ std::string headline(const Benchmark& benchmark) {
   const auto [fastest, slowest] = ranking_of(benchmark);
   if (fastest == nullptr) return "No combination was timed that can be ranked.";
   const auto time = [](const BenchmarkRow* row) {
-    return time_text(median(row)) + " with " + row->index + " and " + row->solver;
+    return time_text(median(row)) + " with " + plain((*row)["index"]) + " and " +
+           plain((*row)["solver"]);
   };
-  return "Under rule " + fastest->activation + " on " + fastest->mesh + " (" +
-         counted(fastest->triangles, "triangle") + "), a step takes " + time(fastest) +
+  return "Under rule " + plain((*fastest)["activation"]) + " on " + plain((*fastest)["mesh"]) +
+         " (" + counted((*fastest)["triangles"], "triangle") + "), a step takes " + time(fastest) +
          (fastest == slowest
               ? "."
               : ", " + time(slowest) + ": " + rounded(median(slowest) / median(fastest), 2) +
@@ -230,13 +211,14 @@ void print_table_head(std::ostream& out) {
 void print_table_row(std::ostream& out, const BenchmarkRow& row) {
   print_row(out, name_columns, row);
   out << ' ';
-  if (!row.step) {
-    out << row.remark << '\n';
+  if (row["step_us"].is_null()) {
+    out << plain(row["remark"]) << '\n';
     return;
   }
   print_row(out, figure_columns, row);
-  out << share(1.0 - row.reaching_share, "reach nothing")
-      << share(row.unsolved_share, "without an answer") << share(row.worse_share, "worse") << '\n';
+  out << share(1.0 - row["reaching_share"].get<double>(), "reach nothing")
+      << share(row["unsolved_share"], "without an answer") << share(row["worse_share"], "worse")
+      << '\n';
 }
 
 Json json_of(const Benchmark& benchmark) {
@@ -264,11 +246,11 @@ Json json_of(const Benchmark& benchmark) {
           {"fastest", number(fastest)},
           {"slowest", number(slowest)},
           {"step_groups", step_groups_of(benchmark)},
-          {"rows", rows_of(benchmark)}};
+          {"rows", benchmark.rows}};
 }
 
 void write_csv(std::ostream& out, const Benchmark& benchmark) {
-  Json rows = rows_of(benchmark);
+  Json rows = benchmark.rows;
   for (Json& row : rows) {
     row.erase("hashes_of_first");
     // The same columns whatever was timed, so that files can be put together.

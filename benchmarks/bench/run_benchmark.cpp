@@ -51,28 +51,8 @@ void add(std::vector<Combination>& all, const Names& index_names, const Names& r
   }
 }
 
-/// By index, as the table has them.
-std::vector<Combination> sorted(std::vector<Combination> all) {
-  std::ranges::stable_sort(all, {}, [](const Combination& combination) {
-    const auto& table = index_backends();
-    return std::ranges::find(table, combination.index, &IndexBackend::name) - table.begin();
-  });
-  return all;
-}
-
 Names or_else(const Names& asked, const Names& otherwise) {
   return asked.empty() ? otherwise : asked;
-}
-
-std::vector<Combination> default_matrix(const Radii& radii) {
-  Names fast_indices = index_names();
-  std::erase(fast_indices, "brute_force");  // takes a thousand times as long
-  std::vector<Combination> all;
-  add(all, fast_indices, {"paper", certified}, {reference_solver}, radii);
-  add(all, {reference_index}, {"all_faces"}, {reference_solver}, radii);
-  add(all, {reference_index}, {"paper", certified}, solver_names(), radii);
-  add(all, {usual_index}, {"paper"}, {usual_solver}, radii);
-  return sorted(std::move(all));
 }
 
 /// Room for every step that shall be timed.
@@ -109,11 +89,11 @@ class Trial {
 
   /// Builds the index unless the combination before had the same. Of no use once it was stopped.
   BenchmarkRow measure(const Combination& combination) {
-    if (row_.index != combination.index) build(combination.index);
+    if (row_["index"] != combination.index) build(combination.index);
     BenchmarkRow row = row_;
-    row.radius = combination.radius;
-    row.activation = combination.activation;
-    row.solver = combination.solver;
+    if (combination.radius) row["radius"] = *combination.radius;
+    row["activation"] = combination.activation;
+    row["solver"] = combination.solver;
     if (!index_) return row;
 
     // The certified rule looks only where the motion leads, and the paper's take the tip as it is.
@@ -123,10 +103,13 @@ class Trial {
                     .margin = combination.activation == "certified" ? margin : 0.0},
         .inside = Inside::taken_as_is,
         .capacity = room};
-    Reference& expected = reference(settings);
+    Reference& expected = references_
+                              .try_emplace({settings.activation, settings.options.radius},
+                                           reference_index_, loaded_.mesh, settings, motions_)
+                              .first->second;
     if (!expected.fits()) {
-      row.remark = "not timed: more than " + grouped(expected.candidates.capacity()) +
-                   " triangles are in reach; ask for a smaller radius";
+      row["remark"] = "not timed: more than " + grouped(expected.candidates.capacity()) +
+                      " triangles are in reach; ask for a smaller radius";
       return row;
     }
     const double accuracy = combination.solver == settings.solver
@@ -141,20 +124,22 @@ class Trial {
  private:
   void build(const std::string& index) {
     index_.reset();  // two large ones need not fit
-    row_ = {.mesh = label_of(subject_),
-            .triangles = loaded_.mesh->triangle_count(),
-            .vertices = loaded_.mesh->vertex_count(),
-            .load_s = loaded_.seconds,
-            .load_cores = loaded_.cores,
-            .index = index};
-    const auto count = static_cast<double>(row_.triangles);
+    const std::size_t triangles = loaded_.mesh->triangle_count();
+    row_ = new_row();
+    row_.update({{"mesh", label_of(subject_)},
+                 {"triangles", triangles},
+                 {"vertices", loaded_.mesh->vertex_count()},
+                 {"load_s", loaded_.seconds},
+                 {"load_cores", loaded_.cores},
+                 {"index", index}});
+    const auto count = static_cast<double>(triangles);
     constexpr double while_building = 1.5;  // some hold more then
     if (const auto taken = memory_.find(index); taken != memory_.end()) {
       const double needed = while_building * taken->second * count;
       const auto available = static_cast<double>(available_memory());
       if (needed > available) {
-        row_.remark = "not built: needs up to " + rounded(1e-9 * needed, 2) + " GB, and " +
-                      rounded(1e-9 * available, 2) + " GB are free";
+        row_["remark"] = "not built: needs up to " + rounded(1e-9 * needed, 2) + " GB, and " +
+                         rounded(1e-9 * available, 2) + " GB are free";
         return;
       }
     }
@@ -162,28 +147,15 @@ class Trial {
       const IndexBackend& backend = index_backends().named(index);
       const UsedCores used;
       index_ = backend.make(loaded_.mesh);
-      row_.build_s = used.seconds();
-      row_.build_cores = used.own();
-      row_.bytes_per_triangle = memory_[index] = static_cast<double>(index_->memory()) / count;
+      row_["build_s"] = used.seconds();
+      row_["build_cores"] = used.own();
+      memory_[index] = static_cast<double>(index_->memory()) / count;
+      row_["bytes_per_triangle"] = memory_[index];
     } catch (const Error& error) {
-      row_.remark = std::string("not built: ") + error.what();
+      row_["remark"] = std::string("not built: ") + error.what();
     } catch (const std::bad_alloc&) {
-      row_.remark = "not built: out of memory";
+      row_["remark"] = "not built: out of memory";
     }
-  }
-
-  Reference& reference(const MotionConstraintSettings& settings) {
-    auto guard = guards_.find(settings.activation);
-    if (guard == guards_.end()) {
-      guard = guards_
-                  .emplace(settings.activation,
-                           make_motion_constraint(loaded_.mesh, reference_index_, settings))
-                  .first;
-    }
-    return references_
-        .try_emplace({settings.activation, settings.options.radius}, guard->second, loaded_.mesh,
-                     settings, motions_)
-        .first->second;
   }
 
   Subject subject_;
@@ -193,10 +165,10 @@ class Trial {
   LoadedSubject loaded_;
   std::vector<Motion> motions_;
   std::shared_ptr<const SpatialIndex> reference_index_;
-  std::map<std::string, MotionConstraint> guards_;                  // of each rule
   std::map<std::pair<std::string, double>, Reference> references_;  // of each rule and radius
   std::shared_ptr<const SpatialIndex> index_;                       // at hand; null: not built
-  BenchmarkRow row_;  // so much of it as is the same for all combinations with that index
+  BenchmarkRow row_ =
+      new_row();  // so much of it as is the same for all combinations with that index
 };
 
 void run_trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
@@ -254,12 +226,25 @@ bool names_parts(const Selection& selection) {
 
 std::vector<Combination> combinations_of(const Selection& selection) {
   const Radii radii = selection.radii.empty() ? Radii{5.0, 1.0, 0.25} : selection.radii;
-  if (!names_parts(selection)) return default_matrix(radii);
   std::vector<Combination> all;
-  add(all, or_else(selection.indices, {reference_index}),
-      or_else(selection.activations, {"paper", certified}),
-      or_else(selection.solvers, {reference_solver}), radii);
-  return sorted(std::move(all));
+  if (names_parts(selection)) {
+    add(all, or_else(selection.indices, {reference_index}),
+        or_else(selection.activations, {"paper", certified}),
+        or_else(selection.solvers, {reference_solver}), radii);
+  } else {
+    Names fast_indices = index_names();
+    std::erase(fast_indices, "brute_force");  // takes a thousand times as long
+    add(all, fast_indices, {"paper", certified}, {reference_solver}, radii);
+    add(all, {reference_index}, {"all_faces"}, {reference_solver}, radii);
+    add(all, {reference_index}, {"paper", certified}, solver_names(), radii);
+    add(all, {usual_index}, {"paper"}, {usual_solver}, radii);
+  }
+  // By index, as the table has them.
+  std::ranges::stable_sort(all, {}, [](const Combination& combination) {
+    const auto& table = index_backends();
+    return std::ranges::find(table, combination.index, &IndexBackend::name) - table.begin();
+  });
+  return all;
 }
 
 void run_benchmark(const BenchmarkPlan& plan, const StopSignal& stop, Benchmark& benchmark,

@@ -124,8 +124,7 @@ bool is_valid(const Json& run) {
 }
 
 bool is_keepouts(const Json& run) {
-  return run["checker"] == Checker{Checker::Kind::certified}.name() ||
-         run["checker"] == Checker{Checker::Kind::sliding}.name();
+  return run["checker"] == "certified" || run["checker"] == "sliding";
 }
 
 std::string Checker::name() const {

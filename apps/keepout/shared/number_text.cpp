@@ -17,8 +17,9 @@ std::string grouped(std::size_t count) {
 std::string counted(std::size_t count, std::string_view noun) {
   std::string result = grouped(count) + ' ';
   result += noun;
-  if (count != 1) result += noun.ends_with("s") || noun.ends_with("sh") ? "es" : "s";
-  return result;
+  if (count == 1) return result;
+  if (noun.ends_with("ex")) return result.replace(result.size() - 2, 2, "ices");
+  return result + (noun.ends_with("s") || noun.ends_with("sh") ? "es" : "s");
 }
 
 std::string how_often(std::size_t count) {

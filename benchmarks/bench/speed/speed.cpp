@@ -74,7 +74,7 @@ Timing least_of(const Timing& one, const Timing& other) {
           .samples = one.samples};
 }
 
-SpeedRow ratio(std::string work, std::string compared, const Demand& demand,
+SpeedRow ratio(std::string work, std::string compared, const Json& demand,
                const MeasuredSide& numerator, const MeasuredSide& denominator) {
   SpeedRow row{.work = std::move(work), .compared = std::move(compared), .demand = demand};
   for (const MeasuredSide* side : {&numerator, &denominator}) {

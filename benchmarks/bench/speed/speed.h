@@ -116,34 +116,28 @@ MeasuredSide attempted(std::string name, Work&& work) {
 }
 
 /// What a figure must come to.
-struct Demand {
-  enum class Sense : std::uint8_t { at_least, at_most };
-  Sense sense = Sense::at_least;
-  double value = 0.0;
-
-  bool is_met_by(double figure) const {
-    return sense == Sense::at_least ? figure >= value : figure <= value;
-  }
-};
-constexpr Demand at_least(double value) { return {Demand::Sense::at_least, value}; }
-constexpr Demand at_most(double value) { return {Demand::Sense::at_most, value}; }
+inline Json at_least(double value) { return {{"at_least", value}}; }
+inline Json at_most(double value) { return {{"at_most", value}}; }
 
 /// One line of the table: a figure, what it must come to, and what it was made of.
 struct SpeedRow {
-  std::string work = {};      // what is done, on what
-  std::string compared = {};  // "FCL's tree / wide_bvh"
-  Demand demand = {};
+  std::string work = {};              // what is done, on what
+  std::string compared = {};          // "FCL's tree / wide_bvh"
+  Json demand = {};                   // at_least() or at_most()
   std::string unit = "x";             // of the figure; x: a ratio
   std::optional<double> figure = {};  // none: not measured, and the remark says why
   std::vector<MeasuredSide> sides = {};
   std::string remark = {};
 
-  bool is_met() const { return figure && demand.is_met_by(*figure); }
+  bool is_met() const {
+    return figure && (demand.contains("at_least") ? *figure >= demand["at_least"]
+                                                  : *figure <= demand["at_most"]);
+  }
 };
 
 /// numerator / denominator, of the medians. Where a side is missing, so is the figure, and the
 /// remark says why.
-SpeedRow ratio(std::string work, std::string compared, const Demand& demand,
+SpeedRow ratio(std::string work, std::string compared, const Json& demand,
                const MeasuredSide& numerator, const MeasuredSide& denominator);
 
 /// What one index takes for a sphere query, for information.
@@ -154,12 +148,6 @@ struct QueryFigures {
   MeasuredSide candidates = {};
   MeasuredSide answer = {};       // those of them within the ball, by the engine's kernel: ids only
   MeasuredSide lean_answer = {};  // the same by the least code that decides the same
-};
-
-/// The times of a great many steps, beside those of an empty loop.
-struct StepHistogram {
-  TimeHistogram steps;
-  TimeHistogram nothing;
 };
 
 /// How much of everything is measured.
@@ -186,7 +174,8 @@ struct SpeedRun {
   Machine machine = this_machine();
   std::vector<SpeedRow> rows = {};
   std::vector<QueryFigures> queries = {};
-  std::optional<StepHistogram> histogram = {};
+  Json histogram = nullptr;  // the times of a great many steps, beside those of an empty loop
+  std::string histogram_words = {};  // how long these steps took
   bool complete = true;  // or interrupted: the rows are those that were measured until then
 
   // Figures that other rows are set against.
@@ -207,6 +196,7 @@ struct SpeedRun {
 
   /// Takes down a row, and prints it.
   void add(SpeedRow row);
+  void set_histogram(const TimeHistogram& steps, const TimeHistogram& nothing);
 };
 
 /// For a terminal: where it ran; and in the end what every index takes for a query, and which rows

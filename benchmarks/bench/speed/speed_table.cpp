@@ -20,8 +20,9 @@ std::string name_of(const SpeedRow& row) { return row.work + ": " + row.compared
 
 /// "at least 38x", "at most 45 bytes".
 std::string demand_text(const SpeedRow& row) {
-  const bool least = row.demand.sense == Demand::Sense::at_least;
-  return (least ? "at least " : "at most ") + trimmed(row.demand.value) + unit_of(row);
+  const bool least = row.demand.contains("at_least");
+  return (least ? "at least " : "at most ") + trimmed(row.demand.front().get<double>()) +
+         unit_of(row);
 }
 
 /// "41.2x"; "-" where nothing was measured.
@@ -53,18 +54,13 @@ const Columns<MeasuredSide> side_columns{{"name", &MeasuredSide::name, "", -32},
                                          {"us", &MeasuredSide::us, "", 1, times_text},
                                          {"batch", &MeasuredSide::batch}};
 
-Json demanded(const SpeedRow& row) {
-  const bool least = row.demand.sense == Demand::Sense::at_least;
-  return {{least ? "at_least" : "at_most", row.demand.value}};
-}
-
 Json met(const SpeedRow& row) { return row.figure ? Json(row.is_met()) : Json(); }
 
 const Columns<SpeedRow> row_columns{
     {"work", &SpeedRow::work},
     {"compared", &SpeedRow::compared},
     {"", name_of, "", -100},
-    {"demanded", demanded},
+    {"demanded", &SpeedRow::demand},
     {"", demand_text, "demanded", 18},
     {"unit", &SpeedRow::unit},
     {"figure", &SpeedRow::figure},
@@ -113,31 +109,14 @@ Json json_of(const TimeHistogram& histogram) {
 
 /// How many demands are met, in a sentence.
 std::string headline(const SpeedRun& run) {
-  const auto met = static_cast<std::size_t>(std::ranges::count_if(run.rows, &SpeedRow::is_met));
-  const auto measured = static_cast<std::size_t>(
-      std::ranges::count_if(run.rows, [](const SpeedRow& row) { return row.figure.has_value(); }));
-  std::string text = grouped(met) + " of " + counted(run.rows.size(), "demand") + " met, " +
-                     grouped(measured - met) + " fall short, " +
-                     grouped(run.rows.size() - measured) + " not measured";
-  return text + (run.complete ? "." : "; interrupted, so only a part of the table.");
-}
-
-/// How long the steps of the histogram took; empty where there is none.
-std::string histogram_words(const SpeedRun& run) {
-  if (!run.histogram) return {};
-  const auto& [steps, nothing] = *run.histogram;
-  const auto within = [&](double share) {
-    return time_text(1e-3 * steps.percentile(share).value_or(0.0));
-  };
-  const auto longest = [](const TimeHistogram& times) {
-    return time_text(1e-3 * static_cast<double>(times.longest()));
-  };
-  return grouped(steps.total()) + " certified steps in contact: 99 % within " + within(0.99) +
-         ", 99.9 % within " + within(0.999) + ", 99.999 % within " + within(0.99999) +
-         ", the longest " + longest(steps) +
-         ". The empty loop waits as often and as long as the median step and does nothing: its "
-         "longest took " +
-         longest(nothing) + ", which is the machine's doing.";
+  std::size_t met = 0, missing = 0;
+  for (const SpeedRow& row : run.rows) {
+    met += row.is_met() ? 1 : 0;
+    missing += row.figure ? 0 : 1;
+  }
+  return grouped(met) + " of " + counted(run.rows.size(), "demand") + " met, " +
+         grouped(run.rows.size() - met - missing) + " fall short, " + grouped(missing) +
+         " not measured" + (run.complete ? "." : "; interrupted, so only a part of the table.");
 }
 
 }  // namespace
@@ -154,6 +133,23 @@ void SpeedRun::add(SpeedRow row) {
   if (!row.remark.empty()) out << "    " << row.remark << '\n';
   out.flush();
   rows.push_back(std::move(row));
+}
+
+void SpeedRun::set_histogram(const TimeHistogram& steps, const TimeHistogram& nothing) {
+  const auto within = [&](double share) {
+    return time_text(1e-3 * steps.percentile(share).value_or(0.0));
+  };
+  const auto longest = [](const TimeHistogram& times) {
+    return time_text(1e-3 * static_cast<double>(times.longest()));
+  };
+  histogram = {{"steps", json_of(steps)}, {"nothing", json_of(nothing)}};
+  histogram_words =
+      grouped(steps.total()) + " certified steps in contact: 99 % within " + within(0.99) +
+      ", 99.9 % within " + within(0.999) + ", 99.999 % within " + within(0.99999) +
+      ", the longest " + longest(steps) +
+      ". The empty loop waits as often and as long as the median step and does nothing: its "
+      "longest took " +
+      longest(nothing) + ", which is the machine's doing.";
 }
 
 void print_head(const SpeedRun& run) {
@@ -180,7 +176,7 @@ void print_summary(const SpeedRun& run) {
       short_ones.push_back(name_of(row) + ": " + figure_of(row) + ", demanded " + demand_text(row));
     }
   }
-  if (run.histogram) out << '\n' << histogram_words(run) << '\n';
+  if (!run.histogram.is_null()) out << '\n' << run.histogram_words << '\n';
   out << '\n' << headline(run) << '\n';
   list(out, "Short of what is demanded:", short_ones);
   list(out, "Not measured:", missing);
@@ -196,16 +192,12 @@ Json record_of(const SpeedRun& run) {
        .headline = headline(run),
        .machine = run.machine,
        .settings = {{"seed", std::to_string(run.options.seed)}}});
-  if (run.histogram) all["account"].push_back(histogram_words(run));
+  if (!run.histogram.is_null()) all["account"].push_back(run.histogram_words);
   all["mesh"] = run.mesh;
   all["seed"] = run.options.seed;
   all["rows"] = json_of(row_columns, run.rows);
   all["queries"] = json_of(query_columns, run.queries);
-  all["histogram"] = nullptr;
-  if (run.histogram) {
-    all["histogram"] = {{"steps", json_of(run.histogram->steps)},
-                        {"nothing", json_of(run.histogram->nothing)}};
-  }
+  all["histogram"] = run.histogram;
   return all;
 }
 

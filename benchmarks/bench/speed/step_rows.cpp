@@ -161,10 +161,10 @@ void measure_steadiness(SpeedRun& run) {
   MotionConstraint ours = certified(on, MotionKind{}.clearance);
   for (const Motion& motion : motions) ours.step(motion);
 
-  StepHistogram histogram;
+  TimeHistogram times, nothing;
   const std::uint64_t faults = page_faults();
   const CallCounts calls = calls_of_this_thread();
-  fill(histogram.steps, steps,
+  fill(times, steps,
        [&](std::size_t i, BenchClock::time_point) { ours.step(motions[i % motions.size()]); });
   const CallCounts calls_after = calls_of_this_thread();
   const auto add_count = [&](const std::string& what, std::uint64_t count) {
@@ -182,13 +182,13 @@ void measure_steadiness(SpeedRun& run) {
 
   // Nothing but waiting, as often and as long as the median step: what it shows beyond that is the
   // machine's doing.
-  const auto median = std::chrono::nanoseconds(
-      static_cast<std::int64_t>(histogram.steps.percentile(0.5).value_or(0.0)));
-  fill(histogram.nothing, steps, [&](std::size_t, BenchClock::time_point last) {
+  const auto median =
+      std::chrono::nanoseconds(static_cast<std::int64_t>(times.percentile(0.5).value_or(0.0)));
+  fill(nothing, steps, [&](std::size_t, BenchClock::time_point last) {
     while (BenchClock::now() - last < median) {
     }
   });
-  run.histogram = histogram;
+  run.set_histogram(times, nothing);
 }
 
 }  // namespace keepout::app
