@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "bench/benchmark.h"
+#include "bench/bench.h"
 #include "record/flat_rows.h"
 #include "record/json_parts.h"
 #include "shared/number_text.h"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/benchmark.h"
+#include "bench/bench.h"
 #include "compare/compare.h"
 #include "keepout/error.h"
 #include "keepout/index/brute_force.h"

@@ -7,7 +7,7 @@
 #include <ostream>
 #include <utility>
 
-#include "bench/benchmark.h"
+#include "bench/bench.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"

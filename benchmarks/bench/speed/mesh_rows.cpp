@@ -8,7 +8,6 @@
 #include <system_error>
 #include <utility>
 
-#include "bench/speed/process.h"
 #include "bench/speed/speed.h"
 #include "compare/subject.h"
 #include "keepout/adapters/index_registry.h"

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/speed/process.h"
-
 #include <dlfcn.h>
 #include <pthread.h>
 #include <sys/resource.h>
@@ -8,6 +6,8 @@
 #include <atomic>
 #include <cerrno>
 #include <fstream>
+
+#include "bench/speed/speed.h"
 
 namespace keepout::app {
 namespace {

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "bench/speed/process.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "shared/number_text.h"
 #include "shared/stop_signal.h"

@@ -7,7 +7,6 @@
 #include <memory>
 #include <utility>
 
-#include "bench/speed/process.h"
 #include "bench/speed/speed.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/shapes.h"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a benchmark measures and what it finds: which rows its headline compares, which it leaves
 // out, and equal steps.
-#include "bench/benchmark.h"
-
 #include <algorithm>
 #include <set>
 #include <utility>
 
+#include "bench/bench.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/solvers/registry.h"

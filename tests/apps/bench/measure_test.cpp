@@ -3,7 +3,7 @@
 #include <bit>
 #include <functional>
 
-#include "bench/benchmark.h"
+#include "bench/bench.h"
 #include "keepout/activation/registry.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/queries_only.h"

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "apps/command_process.h"
-#include "bench/speed/process.h"
+#include "bench/speed/speed.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/real_mesh.h"
 
