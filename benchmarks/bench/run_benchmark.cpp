@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* reference_index = "wide_bvh";
 constexpr const char* reference_solver = "active_set";
-constexpr const char* certified = "certified";
+constexpr const char* certified_rule = "certified";
 constexpr const char* usual_index = "fcl_obbrss";
 constexpr const char* usual_solver = "nlopt_slsqp";
 
@@ -42,7 +42,7 @@ void add(std::vector<Combination>& all, const Names& index_names, const Names& r
             !solver_backends().has(solver)) {
           continue;
         }
-        for (const std::optional<double>& radius : rule == certified ? none : any) {
+        for (const std::optional<double>& radius : rule == certified_rule ? none : any) {
           const Combination combination{index, rule, solver, radius};
           if (std::ranges::find(all, combination) == all.end()) all.push_back(combination);
         }
@@ -56,7 +56,7 @@ Names or_else(const Names& asked, const Names& otherwise) {
 }
 
 /// Room for every step that shall be timed.
-constexpr Capacity room{
+constexpr Capacity bench_capacity{
     .triangles = std::size_t{1} << 18, .planes = std::size_t{1} << 16, .variables = 3};
 
 constexpr double margin = 0.2;  // of the certified rule, and from the tip to the surface [mm]
@@ -100,9 +100,9 @@ class Trial {
     MotionConstraintSettings settings{
         .activation = combination.activation,
         .options = {.radius = combination.radius.value_or(5.0),
-                    .margin = combination.activation == "certified" ? margin : 0.0},
+                    .margin = combination.activation == certified_rule ? margin : 0.0},
         .inside = Inside::taken_as_is,
-        .capacity = room};
+        .capacity = bench_capacity};
     Reference& expected = references_
                               .try_emplace({settings.activation, settings.options.radius},
                                            reference_index_, loaded_.mesh, settings, motions_)
@@ -229,14 +229,14 @@ std::vector<Combination> combinations_of(const Selection& selection) {
   std::vector<Combination> all;
   if (names_parts(selection)) {
     add(all, or_else(selection.indices, {reference_index}),
-        or_else(selection.activations, {"paper", certified}),
+        or_else(selection.activations, {"paper", certified_rule}),
         or_else(selection.solvers, {reference_solver}), radii);
   } else {
     Names fast_indices = index_names();
     std::erase(fast_indices, "brute_force");  // takes a thousand times as long
-    add(all, fast_indices, {"paper", certified}, {reference_solver}, radii);
+    add(all, fast_indices, {"paper", certified_rule}, {reference_solver}, radii);
     add(all, {reference_index}, {"all_faces"}, {reference_solver}, radii);
-    add(all, {reference_index}, {"paper", certified}, solver_names(), radii);
+    add(all, {reference_index}, {"paper", certified_rule}, solver_names(), radii);
     add(all, {usual_index}, {"paper"}, {usual_solver}, radii);
   }
   // By index, as the table has them.

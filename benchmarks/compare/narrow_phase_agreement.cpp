@@ -35,7 +35,7 @@ std::vector<std::pair<std::string_view, ConvexTool>> tools_to_compare() {
 }
 
 constexpr double overlapping = 1e-3;    // at least [mm]
-constexpr double farthest = 5.0;        // [mm]
+constexpr double farthest_apart = 5.0;  // [mm]
 constexpr double deepest_wanted = 1.5;  // what is asked for; what comes of it may be less [mm]
 constexpr std::size_t orientations = 16;
 
@@ -47,7 +47,7 @@ struct Relation {
 };
 
 constexpr Relation relations[] = {
-    {"apart", [](Random& r) { return r.uniform(2.0 * overlapping, farthest); },
+    {"apart", [](Random& r) { return r.uniform(2.0 * overlapping, farthest_apart); },
      [](double d) { return d >= overlapping; }},
     {"touching",
      [](Random& r) {
