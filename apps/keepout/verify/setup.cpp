@@ -234,7 +234,7 @@ SurfacePoint on_face(const Mesh& mesh, Random& random) {
 }
 
 double least_distance_kept(const Scene& scene, double radius) noexcept {
-  return 1e-8 * (scene.longest_edge() + radius) + 1e-14 * (scene.farthest() + radius);
+  return 1e-8 * (scene.judged().longest_edge() + radius) + 1e-14 * (scene.farthest() + radius);
 }
 
 std::string_view name(Route route) noexcept { return routes[static_cast<std::size_t>(route)].name; }

@@ -5,8 +5,8 @@
 #include <span>
 
 #include "keepout/fixtures/random.h"
+#include "keepout/judges/robot_judge.h"
 #include "keepout/robot/instrument_constraint.h"
-#include "verify/robot/judge.h"
 
 namespace keepout::app {
 
@@ -46,6 +46,6 @@ struct Search {
 /// Searches for a better motion than the one that was made, locally and at random, among joint
 /// increments that the judge would allow in the coming cycle.
 Search search(const RobotTask& task, std::span<const double> positions,
-              std::span<const double> made, RobotJudge& judge, Random& random);
+              std::span<const double> made, oracle::RobotJudge& judge, Random& random);
 
 }  // namespace keepout::app
