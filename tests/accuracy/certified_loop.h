@@ -35,10 +35,16 @@ class Loop {
 
   double distance(const Vec3& tip) const { return oracle_.distance(tip); }
 
+  /// Returns the unit vector to the nearest point of the surface.
+  Vec3 towards_surface(const Vec3& tip) const {
+    const TriangleId nearest = oracle_.tree()->nearest(tip).triangle;
+    return closest_point(mesh_->triangle(nearest), tip).offset.normalized();
+  }
+
   /// Returns the loss of distance on the motion from `from` to `to` against the margin or, if that
   /// is less, the distance at the start. In tolerances; at most 3 are promised.
-  double loss(const Vec3& from, const Vec3& to, double distance_before) {
-    const double due = std::min(margin(), distance_before);
+  double loss(const Vec3& from, const Vec3& to) {
+    const double due = std::min(margin(), distance(from));
     const double tau = tolerance(from);
     const oracle::Finding finding = oracle_.check(from, to, std::max(due - 3.0 * tau, 0.0), due);
     return finding.crosses ? infinity : (due - finding.distance) / tau;
@@ -67,7 +73,7 @@ inline void expect_safe(Loop& loop, const Vec3& tip, const Step& step, int& move
     ASSERT_TRUE(step.increment.empty()) << name(step.status);
     return;
   }
-  ASSERT_LE(loop.loss(tip, tip + step.motion, loop.distance(tip)), 3.0)
+  ASSERT_LE(loop.loss(tip, tip + step.motion), 3.0)
       << name(step.status) << " from " << tip.transpose() << " by " << step.motion.transpose();
   moved += step.motion.isZero(0.0) ? 0 : 1;
 }

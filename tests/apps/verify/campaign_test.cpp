@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "small_campaign.h"
@@ -78,16 +79,7 @@ TEST(Campaign, EachTipIsGuardedAsByAMotionConstraintOfItsOwn) {
     Joints joints(setup, random);
     guard.begin(setup.options, setup.inside);
     MotionConstraint constraint =
-        make_motion_constraint(scene.mesh(), {.options = {.radius = setup.options.radius,
-                                                          .tool_radius = setup.options.tool_radius,
-                                                          .margin = setup.options.margin,
-                                                          .damping = setup.options.damping,
-                                                          .recovery = setup.options.recovery,
-                                                          .deepest = setup.options.deepest,
-                                                          .refinements = setup.options.refinements,
-                                                          .nodes = setup.options.nodes,
-                                                          .query = setup.options.query},
-                                              .inside = setup.inside});
+        make_motion_constraint(scene.mesh(), {.options = setup.options, .inside = setup.inside});
     Vec3 tip = setup.tip;
     for (int cycle = 0; cycle < 60; ++cycle) {
       Motion motion{.tip = tip, .desired = path.next(tip)};

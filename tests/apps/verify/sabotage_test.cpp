@@ -146,12 +146,9 @@ void widen_guides(RobotSetup& setup) {
 
 /// Removes the first of three points or more of the last body.
 void cut_off_a_corner(RobotSetup& setup) {
-  RobotUnderTest& robot = setup.robot;
-  std::vector<Body> bodies(robot.instrument.bodies().begin(), robot.instrument.bodies().end());
-  bodies.back().points.erase(bodies.back().points.begin());
-  robot.instrument = Instrument(robot.instrument.chain(), std::move(bodies));
-  auto& points = robot.model.bodies.back().points;
-  points.erase(points.begin());
+  const auto cut = [](auto& points) { points.erase(points.begin()); };
+  cut(setup.robot.bodies.back().points);
+  cut(setup.robot.model.bodies.back().points);
 }
 
 void forget_a_mesh(RobotSetup& setup) { setup.meshes.pop_back(); }

@@ -123,17 +123,17 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
                           "guides_left", "strayed", "least_beyond_tau"}) {
     total[key] = sums[key];
   }
-  total.update(
-      {{"blocked", 0}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
-  std::uint64_t broken = 0;
+  std::uint64_t broken = 0, blocked = 0;
   std::vector<std::string> account;
   for (const Tally& t : findings.rows) {
-    total["blocked"] = total["blocked"].get<std::uint64_t>() + t.blocked;
+    blocked += t.blocked;
     broken += t.broken();
     if (!t.is_out_of_starts) continue;
     account.push_back("On " + t.mesh + ", " + t.scenario + ", only " + counted(t.cycles, "cycle") +
                       ": no other place was found to begin.");
   }
+  total.update(
+      {{"blocked", blocked}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
   if (!is_actual) account.emplace_back("The linearised motion was certified: unsafe, to compare.");
   const auto count = [&](const char* key) { return total[key].get<std::uint64_t>(); };

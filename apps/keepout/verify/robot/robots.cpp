@@ -33,38 +33,48 @@ Body body_of(const oracle::JudgedBody& judged) {
   return body;
 }
 
-Instrument instrument_of(const Drawn& drawn) {
+RobotUnderTest robot_of(Drawn drawn) {
   constexpr double right = std::numbers::pi / 2.0;
+  RobotUnderTest robot{.name = "drawn", .description = ""};
   std::vector<DenavitHartenberg> table;
   for (std::size_t k = 0; k < drawn.judged.table.size(); ++k) {
     const oracle::TableRow& row = drawn.judged.table[k];
+    const JointLimits& limits = drawn.limits[k];
     table.push_back({.name = "joint",
                      .kind = row.slides ? JointKind::prismatic : JointKind::revolute,
                      .a = row.a,
                      .alpha = right * row.alpha_quarters,
                      .d = row.d,
                      .theta = right * row.theta_quarters,
-                     .limits = drawn.limits[k]});
-  }
-  std::vector<Body> bodies;
-  for (const oracle::JudgedBody& body : drawn.judged.bodies) bodies.push_back(body_of(body));
-  const Vec3 tip = drawn.judged.bodies.back().points.back().position;
-  return {Chain(joints_of(table, DhConvention::modified).joints, {}, {tip, Mat3::Identity()}),
-          std::move(bodies)};
-}
-
-RobotUnderTest robot_of(Drawn drawn) {
-  std::vector<RobotUnderTest::Range> starts;
-  for (const JointLimits& limits : drawn.limits) {
+                     .limits = limits});
     const double middle = 0.5 * (limits.lower + limits.upper);
     const double half = 0.3 * (limits.upper - limits.lower);
-    starts.push_back({middle - half, middle + half});
+    robot.starts.push_back({middle - half, middle + half});
   }
-  return {.name = "drawn",
-          .description = "",
-          .instrument = instrument_of(drawn),
-          .model = std::move(drawn.judged),
-          .starts = std::move(starts)};
+  robot.joints = joints_of(table, DhConvention::modified).joints;
+  robot.flange.position = drawn.judged.bodies.back().points.back().position;
+  for (const oracle::JudgedBody& body : drawn.judged.bodies) robot.bodies.push_back(body_of(body));
+  robot.model = std::move(drawn.judged);
+  return robot;
+}
+
+/// Returns the joints of a chain, whose rotations and axes are normalized.
+std::vector<Joint> all_joints(const Chain& chain) {
+  std::vector<Joint> joints;
+  for (int k = 1; k <= chain.size(); ++k) joints.push_back(chain.joint(k));
+  return joints;
+}
+
+RobotUnderTest known_robot(std::string_view name, std::string_view description,
+                           const Instrument& instrument, oracle::JudgedRobot model,
+                           std::vector<RobotUnderTest::Range> starts) {
+  return {name,
+          description,
+          all_joints(instrument.chain()),
+          instrument.chain().flange(),
+          {instrument.bodies().begin(), instrument.bodies().end()},
+          std::move(model),
+          std::move(starts)};
 }
 
 JointLimits turning(double range) {
@@ -111,37 +121,16 @@ RobotUnderTest tip_with(oracle::JudgedBody body) {
   return robot;
 }
 
-std::vector<Joint> all_joints(const Instrument& instrument) {
-  std::vector<Joint> joints;
-  for (int k = 1; k <= instrument.chain().size(); ++k) {
-    joints.push_back(instrument.chain().joint(k));
-  }
-  return joints;
-}
-
-Instrument with_chain(const Instrument& instrument, std::vector<Joint> joints, const Pose& base) {
-  return {Chain(std::move(joints), base, instrument.chain().flange()),
-          {instrument.bodies().begin(), instrument.bodies().end()}};
-}
-
 }  // namespace
-
-Instrument RobotUnderTest::make(const Pose& base) const {
-  return with_chain(instrument, all_joints(instrument), base);
-}
 
 std::span<const RobotUnderTest> robots_under_test() {
   static const std::array<RobotUnderTest, 2> robots{
-      {{"psm",
-        "six joints about a port: a da Vinci manipulator with an 8 mm instrument",
-        psm(),
-        oracle::judged_psm(),
-        {{-0.6, 0.6}, {-0.5, 0.5}, {90.0, 125.0}, {-2.0, 2.0}, {-0.6, 0.6}, {-0.6, 0.6}}},
-       {"seven_joint_arm",
-        "seven revolute joints and a straight shaft, held by no port",
-        seven_joint_arm(),
-        oracle::judged_seven_joint_arm(),
-        {{-1, 1}, {0.2, 0.9}, {-1, 1}, {-1.6, -0.8}, {-1, 1}, {0.3, 1.2}, {-1, 1}}}}};
+      known_robot("psm", "six joints about a port: a da Vinci manipulator with an 8 mm instrument",
+                  psm(), oracle::judged_psm(),
+                  {{-0.6, 0.6}, {-0.5, 0.5}, {90.0, 125.0}, {-2.0, 2.0}, {-0.6, 0.6}, {-0.6, 0.6}}),
+      known_robot("seven_joint_arm", "seven revolute joints and a straight shaft, held by no port",
+                  seven_joint_arm(), oracle::judged_seven_joint_arm(),
+                  {{-1, 1}, {0.2, 0.9}, {-1, 1}, {-1.6, -0.8}, {-1, 1}, {0.3, 1.2}, {-1, 1}})};
   return robots;
 }
 
@@ -219,16 +208,15 @@ RobotUnderTest robot_with_stuck_bodies(Random& random) {
 RobotUnderTest with_blade(RobotUnderTest robot, Random& random) {
   const oracle::JudgedPoint tip = robot.model.bodies.back().points.back();
   robot.model.bodies.push_back(blade_at(tip.link, tip.position, random.uniform(2.0, 12.0), random));
-  std::vector<Body> bodies(robot.instrument.bodies().begin(), robot.instrument.bodies().end());
-  bodies.push_back(body_of(robot.model.bodies.back()));
-  robot.instrument = Instrument(robot.instrument.chain(), std::move(bodies));
+  robot.bodies.push_back(body_of(robot.model.bodies.back()));
   return robot;
 }
 
 RobotUnderTest without_velocity_limits(RobotUnderTest robot) {
-  std::vector<Joint> joints = all_joints(robot.instrument);
-  for (Joint& joint : joints) joint.limits.velocity = std::numeric_limits<double>::infinity();
-  robot.instrument = with_chain(robot.instrument, std::move(joints), {});
+  robot.joints = all_joints(robot.make({}).chain());
+  for (Joint& joint : robot.joints) {
+    joint.limits.velocity = std::numeric_limits<double>::infinity();
+  }
   return robot;
 }
 

@@ -19,12 +19,14 @@ struct RobotUnderTest {
   };
   std::string_view name;
   std::string_view description;
-  Instrument instrument;      // its base at the origin
-  oracle::JudgedRobot model;  // the same robot in the terms of the judge
-  std::vector<Range> starts;  // of each joint, where motions begin [rad or length]
+  std::vector<Joint> joints = {};
+  Pose flange = {};
+  std::vector<Body> bodies = {};
+  oracle::JudgedRobot model = {};  // the same robot in the terms of the judge
+  std::vector<Range> starts = {};  // of each joint, where motions begin [rad or length]
 
   /// Returns the instrument on a base.
-  Instrument make(const Pose& base) const;
+  Instrument make(const Pose& base) const { return {Chain(joints, base, flange), bodies}; }
   const oracle::JudgedRobot& judged() const noexcept { return model; }
 };
 std::span<const RobotUnderTest> robots_under_test();
