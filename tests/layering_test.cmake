@@ -61,20 +61,25 @@ foreach(part engine solvers control robot factory fixtures oracle adapters/inclu
          "the library is not to depend on the GPL")
 endforeach()
 
-# The oracle believes nobody: of the engine it takes the data, and none of the geometry.
-forbid(oracle "${include}keepout/(adapters|solvers|factory|fixtures)/" "the oracle knows no other part")
-forbid(oracle "${include}keepout/(index|activation|step)/" "the oracle shares no algorithm with the engine")
+# The oracle takes the data of the engine, and none of its geometry. Judges take steps as well, as data.
+forbid(oracle "${include}keepout/(adapters|solvers|factory)/" "the oracle knows no other part")
+forbid(oracle "${include}keepout/(index|activation)/" "the oracle shares no algorithm with the engine")
 forbid(oracle "${include}keepout/geometry/(closest_point|orientation)" "the oracle has a geometry of its own")
-forbid(python "${include}keepout/(fixtures|oracle)/" "the module is the library, and no more")
+foreach(part include src)
+  forbid(oracle/${part} "${include}keepout/(fixtures|judges|robot|step)/" "the oracle knows no other part")
+endforeach()
+forbid(oracle/judges "${include}keepout/(mesh/doctor|step/(motion_|[^mo])|robot/([^i]|instrument(\\.|_[^os])))"
+       "a judge takes motions, steps and options, and computes by the oracle alone")
+forbid(python "${include}keepout/(fixtures|judges|oracle)/" "the module is the library, and no more")
 foreach(part engine adapters solvers control robot factory fixtures)
   forbid(${part} "${include}(pybind11/|Python.h)" "the library knows no Python")
 endforeach()
 foreach(part engine adapters solvers control robot factory fixtures)
-  forbid(${part} "${include}keepout/oracle/" "the oracle is for tests and the command")
+  forbid(${part} "${include}keepout/(judges|oracle)/" "the oracle is for tests and the command")
 endforeach()
 
 # In public headers: ours, Eigen's, and the standard library's, whose names have no dot or slash.
-foreach(part engine adapters adapters/ompl adapters/urdf solvers control robot factory fixtures oracle)
+foreach(part engine adapters adapters/ompl adapters/urdf solvers control robot factory fixtures oracle oracle/judges)
   file(GLOB_RECURSE headers "${SOURCE}/${part}/include/*.h")
   foreach(header IN LISTS headers)
     file(STRINGS "${header}" lines REGEX "${include}")
@@ -130,12 +135,12 @@ endforeach()
 
 # What a page calls is the library, what is found wrong with a mesh, and no study.
 forbid(apps/web "${include}\"(bench|compare|live|plan|record|serve|simulate|verify)/" "a page knows no study")
-forbid(apps/web "${include}keepout/oracle/" "the oracle is for tests and the command")
+forbid(apps/web "${include}keepout/(judges|oracle)/" "the oracle is for tests and the command")
 
 # What tests, shows and compares is above everything, and nothing may need it.
-forbid(examples "${include}(keepout/(fixtures|oracle)/|\"\\.\\./)" "an example is a program of a user")
+forbid(examples "${include}(keepout/(fixtures|judges|oracle)/|\"\\.\\./)" "an example is a program of a user")
 forbid(benchmarks/native "${include}\"(\\.\\./|shared/|bench/|verify/)" "experiments know the libraries, and not the command")
-forbid(benchmarks/python "${include}keepout/(fixtures|oracle)/" "the loop that Python is held to is the library's")
+forbid(benchmarks/python "${include}keepout/(fixtures|judges|oracle)/" "the loop that Python is held to is the library's")
 
 # Every folder with sources has a rule, but for those that may include everything: tests and docs.
 get_property(ruled GLOBAL PROPERTY folders_with_rules)

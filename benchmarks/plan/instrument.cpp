@@ -10,7 +10,7 @@
 #include "plan/judge_joint_path.h"
 #include "plan/planning.h"
 #include "verify/robot/hand.h"
-#include "verify/robot/robot_scene.h"
+#include "verify/robot/start.h"
 
 namespace keepout::app {
 namespace {

@@ -12,7 +12,6 @@
 #include "keepout/ompl/planning.h"
 #include "keepout/ompl/straight_way.h"
 #include "plan/planning.h"
-#include "verify/judge.h"
 
 namespace keepout::app {
 namespace {
@@ -144,8 +143,8 @@ class TipPlanning final : public Planning {
     // The tip may be 10 mm beyond the mesh along each axis.
     const Vec3 farthest(scene().farthest() + 30.0, 0.0, 0.0);
     const double margin = options_->clearance();
-    return margin -
-           3.0 * tolerance(scene(), {.radius = options_->radius, .margin = margin}, farthest);
+    return margin - 3.0 * scene().judged().tolerance({.radius = options_->radius, .margin = margin},
+                                                     farthest);
   }
 
   /// The lengths of a path that is not valid that come too near: to half a millimetre.

@@ -31,12 +31,7 @@ TEST_P(CertifiedDrift, TheMarginIsKeptInEveryCycleOfManyUnderPressure) {
     Vec3 press = Vec3::Zero();
     for (std::size_t cycle = 0; cycle < scene.cycles / starts.size(); ++cycle) {
       if (cycle % 64 == 0) drift = random.direction();
-      if (cycle % 8 == 0) {  // towards the nearest place of the surface
-        const oracle::Finding nearest = loop.oracle().check(tip, tip, 0.0, 4.0 * margin);
-        if (nearest.triangle != no_triangle) {
-          press = closest_point(loop.mesh().triangle(nearest.triangle), tip).offset.normalized();
-        }
-      }
+      if (cycle % 8 == 0) press = loop.towards_surface(tip);
       const Vec3 desired = 0.1 * (press + 0.7 * drift + 0.3 * random.direction());
       const Step step = loop.step(tip, desired);
       ASSERT_TRUE(step.ok()) << step.reason() << ", cycle " << cycle;

@@ -6,51 +6,28 @@
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/oracle/safety_oracle.h"
+#include "keepout/judges/tip_judge.h"
 #include "meshes.h"
 #include "trials.h"
 
 namespace keepout::test {
 
-/// What the certified step promises to tell distances apart to, as its specification says: taken
-/// from there, not from the engine. [length]
-class Tolerance {
- public:
-  Tolerance(const Mesh& mesh, const MotionConstraintSettings& settings)
-      : lengths_(settings.options.radius * (1.0 + 1e-9) + settings.options.tool_radius +
-                 settings.options.margin) {
-    double longest2 = 0.0;
-    for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-      const Triangle corner = mesh.triangle(t);
-      for (int e = 0; e < 3; ++e) {
-        longest2 = std::max(longest2, (corner[(e + 1) % 3] - corner[e]).squaredNorm());
-      }
-    }
-    lengths_ += std::sqrt(longest2);
-  }
-
-  double operator()(const Vec3& tip) const { return 2e-10 * lengths_ + 4e-16 * tip.lpNorm<1>(); }
-
- private:
-  double lengths_;
-};
-
-/// A mesh and what guards it, judged by the oracle, which shares nothing with the engine.
+/// A mesh and its guard, judged by the oracle, which shares no code with the engine.
 class Loop {
  public:
   Loop(Surface surface, const MotionConstraintSettings& settings)
       : mesh_(mesh_of(std::move(surface))),
         guard_(make_motion_constraint(mesh_, settings)),
-        tolerance_(*mesh_, settings),
-        oracle_(mesh_),
-        margin_(settings.options.tool_radius + settings.options.margin) {}
+        judged_(mesh_),
+        oracle_(judged_.oracle()),
+        options_(settings.options) {}
 
   const Mesh& mesh() const { return *mesh_; }
   const std::shared_ptr<const Mesh>& shared_mesh() const { return mesh_; }
   oracle::SafetyOracle& oracle() { return oracle_; }
   MotionConstraint& guard() { return guard_; }
-  double margin() const { return margin_; }
-  double tolerance(const Vec3& tip) const { return tolerance_(tip); }
+  double margin() const { return required_clearance(options_); }
+  double tolerance(const Vec3& tip) const { return judged_.tolerance(options_, tip); }
 
   Step step(const Vec3& tip, const Vec3& desired) {
     return guard_.step({.tip = tip, .desired = desired});
@@ -58,11 +35,17 @@ class Loop {
 
   double distance(const Vec3& tip) const { return oracle_.distance(tip); }
 
-  /// How much nearer than promised the way from `from` to `to` comes: the loss against the margin
-  /// or, if that is less, the distance at the start. In tolerances; no more than 3 are promised.
-  double loss(const Vec3& from, const Vec3& to, double distance_before) {
-    const double due = std::min(margin_, distance_before);
-    const double tau = tolerance_(from);
+  /// Returns the unit vector to the nearest point of the surface.
+  Vec3 towards_surface(const Vec3& tip) const {
+    const TriangleId nearest = oracle_.tree()->nearest(tip).triangle;
+    return closest_point(mesh_->triangle(nearest), tip).offset.normalized();
+  }
+
+  /// Returns the loss of distance on the motion from `from` to `to` against the margin or, if that
+  /// is less, the distance at the start. In tolerances; at most 3 are promised.
+  double loss(const Vec3& from, const Vec3& to) {
+    const double due = std::min(margin(), distance(from));
+    const double tau = tolerance(from);
     const oracle::Finding finding = oracle_.check(from, to, std::max(due - 3.0 * tau, 0.0), due);
     return finding.crosses ? infinity : (due - finding.distance) / tau;
   }
@@ -70,12 +53,12 @@ class Loop {
  private:
   std::shared_ptr<const Mesh> mesh_;
   MotionConstraint guard_;
-  Tolerance tolerance_;
+  oracle::JudgedSurface judged_;
   oracle::SafetyOracle oracle_;
-  double margin_;
+  StepOptions options_;
 };
 
-/// What a step comes to.
+/// The result of a step.
 struct Cycle {
   Status status;
   Vec3 motion;
@@ -90,7 +73,7 @@ inline void expect_safe(Loop& loop, const Vec3& tip, const Step& step, int& move
     ASSERT_TRUE(step.increment.empty()) << name(step.status);
     return;
   }
-  ASSERT_LE(loop.loss(tip, tip + step.motion, loop.distance(tip)), 3.0)
+  ASSERT_LE(loop.loss(tip, tip + step.motion), 3.0)
       << name(step.status) << " from " << tip.transpose() << " by " << step.motion.transpose();
   moved += step.motion.isZero(0.0) ? 0 : 1;
 }

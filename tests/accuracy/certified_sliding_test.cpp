@@ -103,9 +103,8 @@ TEST_P(CertifiedRetreat, IsNeverSlowed) {
   std::size_t contacts = 0, retreats = 0, within_tolerance = 0;
   for (Vec3 tip : surface_points(loop.mesh(), 150, 1.5 * margin, random)) {
     if (loop.distance(tip) < margin) continue;
-    const oracle::Finding nearest = loop.oracle().check(tip, tip, 0.0, 2.0 * margin);
-    const Vec3 press = closest_point(loop.mesh().triangle(nearest.triangle), tip).offset;
-    Vec3 desired = random.uniform(0.3, 0.8) * (press.normalized() + 0.5 * random.direction());
+    const Vec3 press = loop.towards_surface(tip);
+    Vec3 desired = random.uniform(0.3, 0.8) * (press + 0.5 * random.direction());
     Step step;
     for (int i = 0; i < 4; ++i) {
       step = loop.step(tip, 0.6 * desired);

@@ -30,22 +30,14 @@ MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh,
   return make_motion_constraint(mesh, index, {.options = {.radius = radius, .margin = margin}});
 }
 
-/// Fails if a step does what it must not, by an oracle of the mesh as it is now. Returns where it
-/// led.
-Vec3 stepped(MotionConstraint& guard, oracle::SafetyOracle& oracle, const Vec3& tip,
+/// Fails if a step breaks a promise. Returns the place of the tip after it.
+Vec3 stepped(MotionConstraint& guard, oracle::TipJudge& judge, const Vec3& tip,
              const Vec3& desired) {
-  const Step step = guard.step({.tip = tip, .desired = desired});
-  const double before = oracle.distance(tip);
-  const bool was_inside = oracle.inside(tip).value();
-  const Vec3 to = tip + step.motion;
-  if (was_inside) {
-    EXPECT_TRUE(step.status == Status::recovering || step.motion.isZero(0.0));
-    EXPECT_TRUE(!oracle.inside(to).value() || oracle.distance(to) <= before + 1e-9);
-  } else {
-    const double due = std::min(margin, before) - 1e-7;
-    EXPECT_FALSE(oracle.check(tip, to, std::max(due, 0.0)).below) << name(step.status);
-  }
-  return to;
+  const Motion motion{.tip = tip, .desired = desired};
+  const Step step = guard.step(motion);
+  const oracle::TipVerdict verdict = judge.judge(motion, step);
+  EXPECT_FALSE(verdict.breach.has_value()) << name(*verdict.breach) << ", " << name(step.status);
+  return tip + step.motion;
 }
 
 TEST(MovingAnatomy, IsFollowedOnAnIndexThatIsRefit) {
@@ -72,10 +64,11 @@ TEST(MovingAnatomy, IsFollowedOnAnIndexThatIsRefit) {
       ASSERT_TRUE(guard.is_current());
       ASSERT_EQ(&guard.mesh(), mesh.get());
       MotionConstraint anew = guard_of(mesh, tree);
-      oracle::SafetyOracle oracle(mesh);
+      const oracle::JudgedSurface judged(mesh);
+      oracle::TipJudge judge(judged, guard.options(), true, tip);
       for (int cycle = 0; cycle < 20; ++cycle) {
         const Vec3 desired = 0.5 * (random.direction() - tip.normalized());
-        const Vec3 to = stepped(guard, oracle, tip, desired);
+        const Vec3 to = stepped(guard, judge, tip, desired);
         ASSERT_EQ(to, tip + anew.step({.tip = tip, .desired = desired}).motion);
         held += to != tip + desired;
         tip = to;
@@ -134,17 +127,19 @@ TEST(MovingAnatomy, IsFollowedTenTimesASecondUnderARunningLoop) {
   Watcher watcher(still, {mesh, tree}, std::chrono::milliseconds(100));
   Random random(2);
   Vec3 tip = surface_points(*mesh, 1, 2.0 * margin, random).front();
-  auto oracle = std::make_unique<oracle::SafetyOracle>(mesh);
+  auto judged = std::make_unique<oracle::JudgedSurface>(mesh);
+  oracle::TipJudge judge(*judged, guard.options(), true, tip);
   int follows = 0, held = 0;
   while (follows < trials(20)) {
     const Watcher::Anatomy now = watcher.now();
     if (&guard.mesh() != now.mesh.get()) {
       guard.follow(now.mesh, now.index);
-      oracle = std::make_unique<oracle::SafetyOracle>(now.mesh);
+      judged = std::make_unique<oracle::JudgedSurface>(now.mesh);
+      judge = {*judged, guard.options(), true, tip};
       ++follows;
     }
     const Vec3 desired = 0.2 * (random.direction() - tip.normalized());
-    const Vec3 to = stepped(guard, *oracle, tip, desired);
+    const Vec3 to = stepped(guard, judge, tip, desired);
     held += to != tip + desired;
     tip = to;
     if (HasFailure()) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The judge's distance of hull and triangle against a reference that shares nothing with it: the
+// The oracle's distance of hull and triangle against a reference that shares no code with it: the
 // point of least norm of the Minkowski difference, over all subsets of its points.
 #include "keepout/oracle/hull.h"
 
@@ -7,8 +7,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "keepout/oracle/instrument_oracle.h"
-#include "meshes.h"
+#include "keepout/fixtures/random.h"
 #include "trials.h"
 
 namespace keepout::oracle {
@@ -111,63 +110,6 @@ TEST(Hull, HasOneToEightPoints) {
   nine.emplace_back(0.5, 0.5, 0.5);
   EXPECT_THROW(Hull{nine}, std::invalid_argument);
 }
-
-/// A blade that one joint turns about an axis through the origin, and another moves along it.
-JudgedRobot blade(double size, double radius, Random& random) {
-  JudgedBody body{.points = {}, .radius = radius};
-  const std::size_t count = 3 + random.below(6);
-  for (std::size_t i = 0; i < count; ++i) {
-    body.points.push_back({2, size * random.uniform() * random.direction()});
-  }
-  return {.table = {{}, {.slides = true}}, .bodies = {body}};
-}
-
-class BladeOnEveryShape : public testing::TestWithParam<Shape> {};
-
-TEST_P(BladeOnEveryShape, ClearanceIsThatOfAPlainLoopHoweverItGotThere) {
-  const auto mesh = mesh_of(GetParam().make());
-  const auto tree = std::make_shared<const TriangleTree>(mesh);
-  const double size = mesh->bounds().size().norm();
-  Random random(20261124);
-  int near = 0;
-  for (int path = 0; path < test::trials(3); ++path) {
-    const double radius = random.uniform(0.0, 0.01) * size;
-    const JudgedRobot robot = blade(random.uniform(0.005, 0.05) * size, radius, random);
-    const Vec3 on = random_points(*mesh, 1, random).front();
-    InstrumentOracle oracle(tree, robot, {on});
-    std::array<double, 2> q{};
-    for (int step = 0; step < 10; ++step) {
-      const double pace = step % 5 == 4 ? 1.0 : 0.02;
-      q[0] += pace * random.uniform(-1.0, 1.0);
-      q[1] += pace * random.uniform(-0.1, 0.1) * size;
-      oracle.move_to(q);
-      const std::vector<LinkFrame> links = place(robot, {on}, q);
-      std::vector<Vec3> points;
-      for (const JudgedPoint& p : robot.bodies[0].points) points.push_back(links[2].at(p.position));
-      const Hull hull(points);
-      double expected = test::infinity;
-      for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
-        const Triangle triangle = mesh->triangle(t);
-        const double far =
-            std::max((triangle[1] - triangle[0]).norm(), (triangle[2] - triangle[0]).norm());
-        if (hull.least_distance(triangle[0]) - far > expected) continue;
-        expected = std::min(expected, hull.distance(triangle).estimate);
-      }
-      expected -= radius;
-      const double reach = expected + random.uniform(-0.1, 0.1) * size;
-      const double found = oracle.clearance(0, reach);
-      if (reach < expected) {
-        EXPECT_EQ(found, test::infinity);
-        continue;
-      }
-      ++near;
-      EXPECT_NEAR(found, expected, 1e-9 * (expected + radius) + 1e-14 * size);
-    }
-  }
-  EXPECT_GT(near, 0);
-}
-
-INSTANTIATE_TEST_SUITE_P(Hull, BladeOnEveryShape, testing::ValuesIn(shapes()), by_name);
 
 }  // namespace
 }  // namespace keepout::oracle

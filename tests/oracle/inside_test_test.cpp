@@ -40,7 +40,7 @@ TEST(InsideTest, AgreesWithTheSolidAngleOnEverySolid) {
     ASSERT_TRUE(test.closed());
     const Mesh mesh(surface);
     Random random(20261120);
-    std::vector<Vec3> points = random_points(mesh, 40, random);
+    std::vector<Vec3> points = random_points(mesh, 200, random);
     for (const double offset : {-0.3, 0.3}) {
       for (const Vec3& p : surface_points(mesh, 20, offset, random)) points.push_back(p);
     }
@@ -60,7 +60,7 @@ TEST(InsideTest, KnowsTheCubeTheSphereAndTheGear) {
   const Surface far_surface = make_shape("far_cube");
   const Vec3 middle = Mesh(far_surface).bounds().center();
   Random random(1);
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 20'000; ++i) {
     const Vec3 p(random.uniform(-60, 60), random.uniform(-60, 60), random.uniform(-60, 60));
     ASSERT_EQ(cube.inside(p), p.lpNorm<Eigen::Infinity>() < 50.0);
     ASSERT_EQ(far_cube.inside(middle + p), p.lpNorm<Eigen::Infinity>() < 50.0);
@@ -77,10 +77,12 @@ TEST(InsideTest, KnowsTheCubeTheSphereAndTheGear) {
 
 TEST(InsideTest, OfAPointInLineWithVerticesAndEdgesIsRight) {
   const InsideTest cube = test_of(make_shape("cube"));  // a regular grid of vertices 5 apart
-  for (int x = -60; x <= 60; x += 5) {
-    for (int y = -60; y <= 60; y += 20) {
-      const Vec3 p(x, y, 10);
-      ASSERT_EQ(cube.inside(p), std::abs(x) < 50 && std::abs(y) < 50);
+  for (const double x : {-60.0, -51.0, -50.1, -45.0, 0.5, 5.0, 49.9, 50.1, 55.0}) {
+    for (int y = -60; y <= 60; y += 5) {
+      for (int z = -45; z < 50; z += 5) {
+        if (std::abs(y) == 50) continue;
+        ASSERT_EQ(cube.inside(Vec3(x, y, z)), std::abs(x) < 50 && std::abs(y) < 50);
+      }
     }
   }
 }

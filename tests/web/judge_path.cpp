@@ -35,10 +35,10 @@
 #include "keepout/error.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/index/index_cache.h"
+#include "keepout/judges/robot_judge.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/oracle/safety_oracle.h"
-#include "verify/robot/judge.h"
-#include "verify/robot/start.h"
+#include "verify/robot/robots.h"
 
 namespace {
 
@@ -112,7 +112,7 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
       keepout::make_instrument_constraint(mesh, instrument, {.options = options}).tolerance();
   const auto tree = std::make_shared<const keepout::oracle::TriangleTree>(mesh);
   const std::size_t joints = static_cast<std::size_t>(instrument.chain().size());
-  std::optional<keepout::app::RobotJudge> judge;
+  std::optional<keepout::oracle::RobotJudge> judge;
   keepout::Random random(1);
   std::vector<double> positions;
   Vec3 tip = Vec3::Zero(), first_way = Vec3::Zero();
@@ -132,7 +132,7 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
     const auto increment = numbers.begin() + static_cast<std::ptrdiff_t>(joints);
     const std::vector<double> from(numbers.begin(), increment);
     if (!judge) {
-      judge.emplace(keepout::app::JudgedScene{robot.judged(), base_of(head), {{tree}}},
+      judge.emplace(keepout::oracle::JudgedScene{robot.judged(), base_of(head), {{tree}}},
                     instrument.chain(), random, from, options, tolerance);
       tip = tip_now();
       first_way = jaw_now();
@@ -140,7 +140,7 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
     }
     jumps += from == positions ? 0 : 1;
     for (std::size_t k = 0; k < joints; ++k) positions[k] = from[k] + numbers[joints + k];
-    const keepout::app::RobotVerdict verdict = judge->judge(positions);
+    const keepout::oracle::RobotVerdict verdict = judge->judge(positions);
     below += verdict.is_below ? 1 : 0;
     in_mesh += verdict.least < 0.0 ? 1 : 0;
     limits += verdict.limits_broken ? 1 : 0;

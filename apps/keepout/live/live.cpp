@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "live/live.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "keepout/activation/registry.h"
+#include "keepout/error.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/index/index_cache.h"
 #include "keepout/version.h"
 #include "live/browser.h"
-#include "live/instrument_start.h"
 #include "page/base64.h"
 #include "page/gzip.h"
 #include "page/packed_mesh.h"
@@ -24,6 +25,7 @@
 #include "shared/number_text.h"
 #include "shared/output_file.h"
 #include "shared/progress.h"
+#include "verify/robot/start.h"
 
 namespace keepout::app {
 namespace {
@@ -78,6 +80,33 @@ std::string command_name(const std::filesystem::path& mesh, const LoadOptions& l
     words.append(" ").append(option).append(" ").append(name(space));
   }
   return words;
+}
+
+constexpr std::uint64_t starts_tried = 64;
+
+/// Returns the start of an instrument before a mesh, all of it farther away than the margin. The
+/// start is drawn as campaigns draw it, if possible with the port outside of the mesh's box, where
+/// people put it. The same on every run. Throws Error, naming the mesh, if there is no room. [mm]
+RobotStart instrument_start(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
+                            const RobotUnderTest& robot, double margin) {
+  Scene scene(mesh_name, mesh, "wide_bvh");
+  const Box box = mesh->bounds();
+  std::optional<RobotStart> first;
+  for (std::uint64_t seed = 1; seed <= starts_tried; ++seed) {
+    Random random(seed);
+    auto start = find_start(scene, robot, Begin::apart, margin, random);
+    if (!start) break;  // none of thousands of places has room
+    const Vec3& port = start->base.position;
+    if ((port.array() < box.low.array()).any() || (port.array() > box.high.array()).any()) {
+      return *start;
+    }
+    if (!first) first = std::move(start);
+  }
+  if (!first) {
+    throw Error(mesh_name + ": there is no room for the instrument of '" + std::string(robot.name) +
+                "' before its surface: lower --margin");
+  }
+  return *first;
 }
 
 Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options) {

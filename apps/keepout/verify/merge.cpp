@@ -5,14 +5,13 @@
 
 #include "keepout/error.h"
 #include "record/record.h"
-#include "result.h"
 #include "shared/machine.h"
+#include "verify/result.h"
 
 namespace keepout::app {
 namespace {
 
-/// Returns the property that differs though the shards of one campaign have it in common; else
-/// empty.
+/// Returns the property that all shards of one campaign share and that differs here; else empty.
 std::string difference(const Json& a, const Json& b) {
   using Named = std::pair<const char*, const char*>;
   for (const auto& [key, what] : {Named{"version", "versions of keepout"}, Named{"seed", "seeds"},
@@ -34,14 +33,14 @@ std::string difference(const Json& a, const Json& b) {
   return {};
 }
 
-/// JSON has negative numbers and fractions, which get() would turn into counts, and which could
-/// hide a breach in a sum.
+/// Returns true for a count. get() would turn negative numbers and fractions into counts, which
+/// could hide a breach in a sum.
 bool is_count(const Json& value) {
   constexpr std::uint64_t most = std::uint64_t{1} << 53;
   return value.is_number_unsigned() && value.get<std::uint64_t>() <= most;
 }
 
-/// True if the figures of a row may be what they are.
+/// Returns true if each number of a row is possible.
 bool are_possible(const Json& row) {
   const auto figures = row.items();
   return std::all_of(figures.begin(), figures.end(), [](const auto& figure) {
@@ -54,7 +53,7 @@ bool are_possible(const Json& row) {
   });
 }
 
-/// True if a record agrees with itself.
+/// Returns true if the numbers of a record agree with each other.
 bool is_sound(const Json& record) {
   const Json& meshes = record.at("meshes");
   const Json& count = record.at("shard_count");
@@ -90,13 +89,13 @@ Json read(const std::filesystem::path& path) {
                   std::to_string(written) + ", not " + std::to_string(campaign_format) + ")");
     }
     if (!is_sound(record)) throw damaged;
-    return finished(record).record;  // which misses what is not there
+    return finished(record).record;  // throws if a member is missing
   } catch (const Json::exception&) {
     throw damaged;
   }
 }
 
-/// Appends as many incidents as are kept of a kind.
+/// Appends incidents up to the largest number that is recorded.
 void append(Json& to, const Json& from, std::size_t most) {
   for (const Json& incident : from) {
     if (to.size() < most) to.push_back(incident);
@@ -140,7 +139,7 @@ CampaignResult merged(const std::vector<std::filesystem::path>& files, const std
   sum["command"] = command;
   sum["date"] = date_now();
   CampaignResult result = finished(std::move(sum));
-  result.is_interrupted = false;  // adding up was not
+  result.is_interrupted = false;  // the addition was not
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "result.h"
+#include "verify/result.h"
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,7 @@ Column<Json> column(const char* place, const char* heading, int width,
           width, text};
 }
 
-Columns<Json> columns() {
+Columns<Json> tip_columns() {
   const auto contact = [](const Json& row) {
     const auto steps = std::max(row.at("steps").get<double>(), 1.0);
     return Json(100.0 * row.at("statuses").at("limited").get<double>() / steps);
@@ -69,14 +69,14 @@ Columns<Json> columns() {
           column("/seconds", "seconds", 8, &number_text<"%.1f">)};
 }
 
-constexpr const char* legend =
+constexpr const char* tip_legend =
     R"(contact: share of limited steps. led out: of the recovering ones, those from the
 forbidden side, which may cross. other: steps without a motion. crossed, broken: breaches
 of the theorem. least: smallest distance of any way, less tool radius and margin, in
 tau and as it is.
 )";
 
-/// An incident in a few lines, but without Jacobian and rows.
+/// Returns an incident in a few lines, without Jacobian and rows.
 std::string text(const Json& incident) {
   constexpr std::array<std::string_view, 6> first_of_a_line{"start",   "radius", "tip",
                                                             "desired", "motion", "distance"};
@@ -91,13 +91,13 @@ std::string text(const Json& incident) {
   return text + '\n';
 }
 
-/// The rows and their total, the machines of the shards, and the first breaches.
+/// Returns the rows and their total, the machines of the shards, and the first breaches.
 std::string table_of(const Json& record) {
   std::ostringstream out;
   auto rows = record.at("meshes").get<std::vector<Json>>();
   rows.push_back(record.at("total"));
-  print_rows(out, columns(), rows);
-  out << legend;
+  print_rows(out, tip_columns(), rows);
+  out << tip_legend;
   for (const Json& shard : record.at("shards")) {
     out << "shard " << shard.at("index") << '/' << record.at("shard_count") << ": "
         << number_text<"%.1f">(shard.at("seconds")) << " s on "
@@ -177,48 +177,44 @@ void CampaignResult::print(std::ostream& out) const {
   for (const Json& text : record.at("account")) out << text.get<std::string>() << '\n';
 }
 
-CampaignResult result_of(const CampaignRun& run, const Findings& findings) {
-  const auto& [index, count] = run.settings.shard;
-  const std::uint64_t all = trajectory_count(run.settings.steps);
-  std::uint64_t trajectories = 0;
+CampaignResult result_of(const Campaign& campaign, const Findings& findings) {
+  if (campaign.is_of_instruments()) return result_of_instruments(campaign, findings);
   Json meshes = Json::array();
-  for (const Tally& t : findings.meshes) {
-    trajectories += t.trajectories;
+  for (const Tally& t : findings.rows) {
     meshes.push_back({{"mesh", t.mesh},
                       {"triangles", t.triangles},
-                      {"trajectories", t.trajectories},
-                      {"steps", t.steps},
+                      {"trajectories", t.starts},
+                      {"steps", t.cycles},
                       {"tips", t.tips},
                       {"led_out", t.led_out},
                       {"statuses", json_of<Status>(t.statuses)},
-                      {"breaches", json_of<Breach>(t.breaches)},
-                      {"least_beyond_margin", or_null(t.least)},
+                      {"breaches", json_of<oracle::Breach>(
+                                       std::span(t.breaches).first(oracle::tip_breach_kinds))},
+                      {"least_beyond_margin", or_null(t.least_beyond)},
                       {"least_beyond_margin_in_tau", or_null(t.least_in_tau)},
                       {"seconds", t.seconds}});
   }
-  // A signal that came after the last trajectory has interrupted nothing.
-  const bool is_whole = trajectories == (all + count - index) / count;
-  const Json shard{{"index", index},
-                   {"seconds", run.seconds},
+  const Json shard{{"index", campaign.shard.index},
+                   {"seconds", findings.seconds},
                    {"machine", processor() + ", " + std::string(simd_target()) + ", " +
                                    KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE},
-                   {"complete", is_whole}};
+                   {"complete", findings.is_complete}};
   Json record = new_record({.kind = "verify",
-                            .command = run.command,
+                            .command = campaign.command,
                             .subject = "Adversarial closed-loop motion over " +
-                                       counted(findings.meshes.size(), "mesh") +
+                                       counted(findings.rows.size(), "mesh") +
                                        ", each step judged by an exact oracle",
-                            .settings = {{"seed", std::to_string(run.settings.seed)},
-                                         {"steps", grouped(run.settings.steps)},
-                                         {"index", run.index}}});
+                            .settings = {{"seed", std::to_string(campaign.seed)},
+                                         {"steps", grouped(campaign.steps)},
+                                         {"index", campaign.index}}});
   record.update({{"campaign_format", campaign_format},
-                 {"seed", run.settings.seed},
-                 {"steps", run.settings.steps},
+                 {"seed", campaign.seed},
+                 {"steps", campaign.steps},
                  {"steps_done", 0},
-                 {"index", run.index},
-                 {"shard_count", count},
+                 {"index", campaign.index},
+                 {"shard_count", campaign.shard.count},
                  {"shards", Json::array({shard})},
-                 {"missing", run.missing},
+                 {"missing", findings.missing},
                  {"meshes", meshes},
                  {"total", nullptr},
                  {"breaches", findings.breaches},

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "campaign.h"
-#include "verify/robot/campaign.h"
+#include "verify/campaign.h"
 
 namespace keepout::app {
 
@@ -18,52 +17,41 @@ namespace keepout::app {
 struct CampaignResult {
   Json record;
   std::string table;            // of the rows, with what its columns mean, for a terminal
-  bool is_broken = false;       // something that is promised did not hold
-  bool is_interrupted = false;  // before all of it was done
+  bool is_broken = false;       // a promise did not hold
+  bool is_interrupted = false;  // the campaign was stopped before its end
 
-  /// The table, and what the record says in words.
+  /// Prints the table, and the headline and account of the record.
   void print(std::ostream& out) const;
 };
 
-/// The conditions of a campaign with a tip.
-struct CampaignRun {
-  CampaignSettings settings;
-  std::string command;                    // that does it again
-  std::string index;                      // that the engine searched with
-  std::vector<std::string> missing = {};  // meshes that could not be had
-  double seconds = 0.0;                   // wall time, loading included
-};
+/// Raised if the trajectories of a seed, or tallies, change.
+inline constexpr int campaign_format = 3;
 
-inline constexpr int campaign_format =
-    3;  // raised if the trajectories of a seed, or tallies, change
-
-/// Adds up rows, figure by figure: of "least" figures the smallest counts, of "deepest" ones and of
+/// Adds up rows, number by number: of "least" numbers the smallest counts, of "deepest" ones and of
 /// triangles the largest. The first row may be null.
 void add(Json& sum, const Json& row);
 Json total_of(const Json& rows);
 
-/// The counts by the names of what they count.
-template <class Enum, std::size_t n>
-Json json_of(const std::array<std::uint64_t, n>& counts) {
+/// Returns the counts by the names of the enumerators.
+template <class Enum>
+Json json_of(std::span<const std::uint64_t> counts) {
   Json json = Json::object();
-  for (std::size_t i = 0; i < n; ++i) json[std::string(name(static_cast<Enum>(i)))] = counts[i];
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    json[std::string(name(static_cast<Enum>(i)))] = counts[i];
+  }
   return json;
 }
 
-/// Writes into a record of some shards what its meshes have come to, in numbers and in words.
+/// Writes totals, headline and account into a record of some shards.
 CampaignResult finished(Json record);
 
-/// The result of one shard.
-CampaignResult result_of(const CampaignRun& run, const Findings& findings);
+/// Returns the result of a campaign with instruments, or of one shard of a campaign with tips.
+CampaignResult result_of(const Campaign& campaign, const Findings& findings);
+CampaignResult result_of_instruments(const Campaign& campaign, const Findings& findings);
 
-/// Adds up records of one campaign, as a record that `command` makes. Throws Error, naming files,
-/// when one is not such a record, or its numbers do not agree with each other, when they are of
-/// different campaigns or versions, or share a shard.
+/// Adds up the records of shards of one campaign, into a record that `command` makes. Throws Error,
+/// naming files, if a file is not such a record, if its numbers contradict each other, or if two
+/// files are of different campaigns or versions, or share a shard.
 CampaignResult merged(const std::vector<std::filesystem::path>& files, const std::string& command);
-
-/// The result of a campaign with an instrument, on so many meshes.
-CampaignResult result_of(const RobotCampaign& campaign, const std::string& command,
-                         const std::string& index, const std::vector<RobotTally>& tallies,
-                         std::size_t meshes);
 
 }  // namespace keepout::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "setup.h"
+#include "verify/setup.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 namespace keepout::app {
 namespace {
 
-/// One of the rows, each as often as its weight says.
+/// Draws a row with a probability proportional to its weight.
 template <class Rows>
 const auto& draw(const Rows& rows, Random& random) {
   double total = 0.0;
@@ -47,13 +47,14 @@ double log_uniform(double low, double high, Random& random) {
   return low * std::pow(high / low, random.uniform());
 }
 
-/// Half of the tools are points; of the others some are kept off by their radius alone.
+/// Draws the fraction of the required clearance that is the tool radius. Half of the tools are
+/// points; some of the others have no margin.
 double draw_tool_share(Random& random) {
   const double kind = random.uniform();
   return kind < 0.5 ? 0.0 : kind < 0.6 ? 1.0 : random.uniform();
 }
 
-/// Makes way for the index: no step shall have more triangles in its motion sphere at the start.
+/// Reduces radius and clearance until at most 1500 triangles are in the motion sphere at the start.
 void limit_reach(const Scene& scene, Setup& setup) {
   TriangleBuffer found(1500);
   for (int halvings = 0; halvings < 40; ++halvings) {
@@ -96,7 +97,8 @@ SurfacePoint on_any(const Mesh& mesh, Random& random) {
   }
 }
 
-/// Off the surface at some slant: half of the time straight. Either side, if the surface has none.
+/// Draws a unit vector off the surface, along the normal in half of the cases. If tips are taken as
+/// they are, it leads to either side.
 Vec3 way_off(const Setup& setup, const SurfacePoint& place, Random& random) {
   const bool two_sided = setup.inside == Inside::taken_as_is;
   const double sign = two_sided && random.uniform() < 0.5 ? -1.0 : 1.0;
@@ -106,7 +108,7 @@ Vec3 way_off(const Setup& setup, const SurfacePoint& place, Random& random) {
   return length > 0.0 ? Vec3(way / length) : random.direction();
 }
 
-/// Moves the point until its nearest triangle is `distance` away, if that comes to an end.
+/// Moves the point until its nearest triangle is `distance` away, in a few iterations.
 Vec3 at_distance(Scene& scene, Vec3 point, double distance) {
   for (int i = 0; i < 6; ++i) {
     const Hit hit = scene.nearest(point, 1.01 * distance);
@@ -117,7 +119,7 @@ Vec3 at_distance(Scene& scene, Vec3 point, double distance) {
   return point;
 }
 
-/// What is to be kept, to the last digit or nearly so, or up to several of it.
+/// Draws the required clearance itself, up to 1e-6 more, or up to 6 times as much.
 double draw_distance(double kept, Random& random) {
   const double kind = random.uniform();
   if (kind < 0.3) return kept;
@@ -133,7 +135,7 @@ Vec3 off_the_surface(Scene& scene, Setup& setup, Random& random) {
     const SurfacePoint on = place(*scene.mesh(), random);
     const double distance = draw_distance(kept, random);
     tip = on.point + distance * way_off(setup, on, random);
-    // Other walls may be nearer than the one it was put off from.
+    // Other walls may be nearer than the first one.
     const double now = scene.nearest(tip, distance).closest.distance;
     if (now < kept) tip = at_distance(scene, tip, distance);
     if (scene.nearest(tip, distance).closest.distance >= kept * (1.0 - 1e-12)) break;
@@ -141,8 +143,8 @@ Vec3 off_the_surface(Scene& scene, Setup& setup, Random& random) {
   return tip;
 }
 
-/// The centre of the largest ball that touches the surface in a point and nowhere cuts it: as far
-/// from another wall. Source: Ma, Bae, Choi, "3D medial axis point approximation using nearest
+/// Returns the center of the largest ball that touches the surface in a point and nowhere cuts it.
+/// Source: Ma, Bae, Choi, "3D medial axis point approximation using nearest
 /// neighbors and the normal field", The Visual Computer 28, 2012 (shrinking balls).
 Vec3 in_a_gap(Scene& scene, Setup& setup, Random& random) {
   Vec3 center = Vec3::Zero();
@@ -201,20 +203,20 @@ Vec3 anywhere(Scene& scene, Setup& setup, Random& random) {
   return tip;
 }
 
-/// A kind of place where a tip is put down.
+/// A kind of place where a tip is placed.
 struct Start {
   std::string_view name;
-  double weight;  // how often it is drawn, beside the others
-  /// Finds such a place. In a gap, the setup is changed to keep a distance that all but fills it.
+  double weight;  // of the probability that it is drawn
+  /// Finds such a place. In a gap, changes the required clearance so that it almost fills the gap.
   Vec3 (*place)(Scene& scene, Setup& setup, Random& random);
 };
 constexpr std::array<Start, 8> starts{{
-    {"vertex", 0.18, off_the_surface<on_vertex>},  // at the distance to be kept or a little more
+    {"vertex", 0.18, off_the_surface<on_vertex>},  // at the required clearance or a little more
     {"edge", 0.18, off_the_surface<on_edge>},
     {"face", 0.14, off_the_surface<on_face>},
-    {"gap", 0.25, in_a_gap},  // in the middle between two walls, which what is kept all but fills
+    {"gap", 0.25, in_a_gap},  // in the middle between two walls, with almost no room left
     {"open_space", 0.1, anywhere},
-    {"too_close", 0.06, too_close},    // nearer than may be
+    {"too_close", 0.06, too_close},    // closer than the required clearance
     {"on_surface", 0.03, on_surface},  // on a vertex, an edge or a face, up to rounding
     {"behind", 0.06, behind},          // on the side that the normals point away from
 }};
@@ -234,7 +236,7 @@ SurfacePoint on_face(const Mesh& mesh, Random& random) {
 }
 
 double least_distance_kept(const Scene& scene, double radius) noexcept {
-  return 1e-8 * (scene.longest_edge() + radius) + 1e-14 * (scene.farthest() + radius);
+  return 1e-8 * (scene.judged().longest_edge() + radius) + 1e-14 * (scene.farthest() + radius);
 }
 
 std::string_view name(Route route) noexcept { return routes[static_cast<std::size_t>(route)].name; }
@@ -261,7 +263,7 @@ Setup draw_setup(Scene& scene, Random& random) {
   if (random.uniform() < 0.125) {
     setup.joints = 3 + static_cast<int>(random.below(5));
     setup.has_limits = random.uniform() < 0.5;
-    // More joints than the tip has directions: only a damping makes their motion unique.
+    // With more joints than the tip has directions, only damping makes the motion unique.
     const bool is_damped = setup.joints > 3 || random.uniform() < 0.5;
     if (is_damped) setup.options.damping = log_uniform(1e-6, 1.0, random);
   }

@@ -10,7 +10,7 @@
 
 namespace keepout::app {
 
-/// Where a tip is asked to go.
+/// The kind of motion that an operator commands.
 enum class Route : std::uint8_t {
   push,       // straight into the surface
   slide,      // into the surface and along it
@@ -19,23 +19,23 @@ enum class Route : std::uint8_t {
   ping_pong,  // from wall to wall
   tremor,     // to a place behind the surface, trembling
   come_back,  // away from the surface, and back into it
-  through     // to places far away, through whatever is in between
+  through     // to places far away, through the surface
 };
 std::string_view name(Route route) noexcept;
 
-/// What a tip is guarded with, and asked to do.
+/// The options of a guarded tip, its start, and the commanded motion.
 struct Setup {
   StepOptions options;
   Inside inside = Inside::taken_as_is;
-  std::string_view start;  // the kind of place where the tip is put down
+  std::string_view start;  // the kind of place where the tip is placed
   Route route = Route::push;
-  double tool_share = 0.0;    // of the distance kept that is the tool's radius, 0 to 1
-  double longest_step = 0.0;  // asked for [length], <= options.radius
+  double tool_share = 0.0;    // fraction of the required clearance that is the tool radius
+  double longest_step = 0.0;  // commanded [length], <= options.radius
   int joints = 0;             // columns of the Jacobian; 0: without one
-  bool has_limits = false;    // on what each joint may do; only with joints
+  bool has_limits = false;    // of each joint; only with joints
   Vec3 tip = Vec3::Zero();    // where it begins
 
-  /// Shares a distance out to tool radius and margin.
+  /// Splits a required clearance into tool radius and margin.
   void keep(double distance) noexcept;
 };
 
@@ -44,17 +44,18 @@ struct SurfacePoint {
   Vec3 point;
   Vec3 normal;  // of a triangle there, to the free side
 };
-/// Anywhere on a triangle; each triangle is as likely.
+/// Draws a place on a triangle; all triangles have the same probability.
 SurfacePoint on_face(const Mesh& mesh, Random& random);
 
 /// The largest StepOptions::nodes of any setup.
 inline constexpr int most_nodes = 16;
 
-/// The smallest distance to keep: well above what the engine refuses as lost in rounding. [length]
+/// Returns the smallest required clearance, which is well above what the engine rejects as lost in
+/// rounding. [length]
 double least_distance_kept(const Scene& scene, double radius) noexcept;
 
-/// Draws a setup. Never are more than some 1500 triangles in the motion sphere at the start, so
-/// that a step takes microseconds.
+/// Draws a setup with at most 1500 triangles in the motion sphere at the start, so that a step
+/// takes microseconds.
 Setup draw_setup(Scene& scene, Random& random);
 
 }  // namespace keepout::app

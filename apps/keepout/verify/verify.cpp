@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verify.h"
+#include "verify/verify.h"
 
 #include <algorithm>
 #include <array>
@@ -9,76 +9,61 @@
 
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
-#include "result.h"
 #include "shared/command_line.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
 #include "shared/output_file.h"
 #include "shared/progress.h"
 #include "shared/stop_signal.h"
-#include "shared/timing.h"
+#include "verify/result.h"
 
 namespace keepout::app {
 namespace {
 
-bool is_of_instruments(const VerifyOptions& options) {
-  return !options.robot.robot.empty() || !options.robot.scenarios.empty();
-}
-
 /// Returns the meshes that are named, by the user or for a robot. Without a name, returns small
-/// hostile meshes that are drawn, for instruments, or else all sample meshes; adds those that are
-/// not there to `missing`.
+/// hostile meshes that are drawn, for instruments, or else all sample meshes; appends the error
+/// texts of those that are not there to `missing`.
 std::vector<Arena> arenas_of(const VerifyOptions& options, std::vector<std::string>& missing) {
+  const Campaign& campaign = options;
   std::vector<std::filesystem::path> named = options.meshes;
-  if (named.empty() && !options.robot.robot.empty()) named = {"skull", "airway", "brain", "femur"};
+  if (named.empty() && !campaign.robot.empty()) named = {"skull", "airway", "brain", "femur"};
   std::vector<Arena> arenas;
   for (const std::filesystem::path& mesh : named) {
-    file_of_mesh(mesh);  // before any work: is there such a one?
+    file_of_mesh(mesh);  // throws before any work if there is no such mesh
     if (std::ranges::find(arenas, mesh.string(), &Arena::mesh) != arenas.end()) {
       throw Error(mesh.string() + ": is named twice");
     }
-    arenas.push_back(named_arena(mesh.string(), options.index));
+    arenas.push_back(named_arena(mesh.string(), campaign.index));
   }
   if (!arenas.empty()) return arenas;
-  if (is_of_instruments(options)) return hostile_arenas(options.index);
-  arenas = generated_arenas(options.index);
-  for (Arena& arena : real_arenas(options.index, missing)) arenas.push_back(std::move(arena));
+  if (campaign.is_of_instruments()) return hostile_arenas(campaign.index);
+  arenas = generated_arenas(campaign.index);
+  for (Arena& arena : real_arenas(campaign.index, missing)) arenas.push_back(std::move(arena));
   return arenas;
 }
 
 CampaignResult run(const VerifyOptions& options, std::ostream& out) {
-  const bool is_robot = is_of_instruments(options);
-  const std::uint64_t trajectories = trajectory_count(options.steps);
-  if (!is_robot && options.shard.count > trajectories) {
+  const Campaign& campaign = options;
+  const std::uint64_t trajectories = trajectory_count(campaign.steps);
+  if (!campaign.is_of_instruments() && campaign.shard.count > trajectories) {
     throw Error("--shard: there are only " + std::to_string(trajectories) + " trajectories of " +
                 std::to_string(steps_of_a_trajectory) +
                 " steps to share out; ask for fewer shards or more steps");
   }
-  RobotCampaign robot = options.robot;
-  robot.seed = options.seed;
-  CampaignRun run{
-      .settings = {.seed = options.seed, .steps = options.steps, .shard = options.shard},
-      .command = options.command,
-      .index = options.index};
-  const std::vector<Arena> arenas = arenas_of(options, run.missing);
-  for (const std::string& mesh : run.missing) out << "note: " << mesh << '\n';
+  std::vector<std::string> missing;
+  const std::vector<Arena> arenas = arenas_of(options, missing);
+  for (const std::string& mesh : missing) out << "note: " << mesh << '\n';
   const StopSignal stop;
-  Progress progress(
-      "verify", is_robot ? cycle_count(robot, arenas.size()) : options.steps / options.shard.count);
-  const auto advanced = [&, shown = std::string()](std::uint64_t steps,
-                                                   const std::string& row) mutable {
-    progress.advance(steps);
-    if (row != shown) progress.show(shown = row);
-    return stop.has_come() ? Next::stop : Next::go_on;
-  };
-  if (is_robot) {
-    const std::vector<RobotTally> tallies = run_campaign(robot, arenas, advanced);
-    return result_of(robot, options.command, options.index, tallies, arenas.size());
-  }
-  const BenchClock::time_point start = BenchClock::now();
-  const Findings findings = run_campaign(run.settings, arenas, advanced);
-  run.seconds = microseconds_since(start) * 1e-6;
-  return result_of(run, findings);
+  Progress progress("verify", campaign.length(arenas.size()));
+  Findings findings =
+      run_campaign(campaign, arenas,
+                   [&, shown = std::string()](std::uint64_t steps, const std::string& row) mutable {
+                     progress.advance(steps);
+                     if (row != shown) progress.show(shown = row);
+                     return stop.has_come() ? Next::stop : Next::go_on;
+                   });
+  findings.missing = std::move(missing);
+  return result_of(campaign, findings);
 }
 
 /// Reads "I/N".
@@ -105,29 +90,31 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       "judged by an independent, exact oracle");
   command.add_option("MESH", options.meshes,
                      "Mesh files in mm, or fixtures; without one, all fixtures");
-  RobotCampaign& robot = options.robot;
+  Campaign& campaign = options;
   CLI::Option* named =
-      command.add_option("--robot", robot.robot, "Try it with a whole instrument, in joint space")
+      command
+          .add_option("--robot", campaign.robot, "Try it with a whole instrument, in joint space")
           ->check(one_of(names(robots_under_test())));
   CLI::Option* chosen =
-      command.add_option("--scenario", robot.scenarios, "Kinds of attack, in joint space as well")
+      command
+          .add_option("--scenario", campaign.scenarios, "Kinds of attack, in joint space as well")
           ->check(one_of(names(app::scenarios())))
           ->delimiter(',');
   const std::array of_joints{
-      command.add_option("--cycles", robot.cycles, "Cycles for each mesh, scenario and speed")
+      command.add_option("--cycles", campaign.cycles, "Cycles for each mesh, scenario and speed")
           ->type_name("NUMBER")
           ->transform(large_count())
           ->capture_default_str(),
       command
-          .add_option("--speed", robot.speeds,
+          .add_option("--speed", campaign.speeds,
                       "How fast, in multiples of 0.5 mm and 0.02 rad a cycle")
           ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
           ->delimiter(',')
           ->capture_default_str(),
-      command.add_option("--motion", robot.motion, "Which motion is certified")
+      command.add_option("--motion", campaign.motion, "Which motion is certified")
           ->transform(one_of<CertifiedMotion>(certified_motion_names))
           ->default_str("actual"),
-      add_length(command, "--margin", robot.margin, Zero::refused,
+      add_length(command, "--margin", campaign.margin, Zero::refused,
                  "Distance that bodies keep beyond their radius")};
   command.final_callback([named, chosen, of_joints] {
     for (const CLI::Option* option : of_joints) {
@@ -135,23 +122,23 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       throw CLI::RequiresError(option->get_name(), "--robot or --scenario");
     }
   });
-  command.add_option("--steps", options.steps, "Steps of the whole campaign")
+  command.add_option("--steps", campaign.steps, "Steps of the whole campaign")
       ->type_name("NUMBER")
       ->transform(large_count())
       ->capture_default_str()
       ->excludes(named)
       ->excludes(chosen);
-  add_number(command, "--seed", options.seed, 0, largest_seed,
+  add_number(command, "--seed", campaign.seed, 0, largest_seed,
              "Seed: same seed and steps, same campaign");
   command
       .add_option_function<std::string>(
-          "--shard", [&](const std::string& text) { options.shard = shard_of(text); },
+          "--shard", [&](const std::string& text) { campaign.shard = shard_of(text); },
           "Do part I of N of the campaign")
       ->type_name("I/N")
       ->default_str("1/1")
       ->excludes(named)
       ->excludes(chosen);
-  add_part(command, "--index", options.index, index_names(), index_backends,
+  add_part(command, "--index", campaign.index, index_names(), index_backends,
            "Index that finds triangles");
   const std::vector<CLI::Option*> of_a_run = command.get_options([&](const CLI::Option* option) {
     return option != command.get_help_ptr() && option != command.get_help_all_ptr();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The campaign can fail: each guard here is broken in a way of its own, and each is found out.
+// The campaigns can fail: each step here is broken in a way of its own, and its breach is found.
 
 #include <algorithm>
 #include <optional>
@@ -13,19 +13,36 @@
 namespace keepout::app {
 namespace {
 
-/// Goes wherever it is asked to.
-class NoGuard final : public Guard {
- public:
-  using Guard::Guard;
-  Step step(const Motion& motion) noexcept override {
-    Step step;
-    step.status = Status::free;
-    step.motion = motion.desired;
-    return step;
-  }
+using oracle::Breach;
+
+/// A step of a tip that is broken in a single respect. The judge goes on with what was drawn.
+struct TipDefect {
+  void (*of_options)(const Scene&, StepOptions&, Inside&) = [](auto&, auto&, auto&) {};
+  void (*of_step)(const Motion&, Step&) = [](auto&, auto&) {};
 };
 
-/// The paper's rule, which knows of no tolerance.
+class BrokenGuard final : public Guard {
+ public:
+  BrokenGuard(const Scene& scene, const TipDefect& defect)
+      : Guard(scene), scene_(&scene), defect_(defect) {}
+
+  void begin(const StepOptions& options, Inside inside) override {
+    StepOptions wrong = options;
+    defect_.of_options(*scene_, wrong, inside);
+    Guard::begin(wrong, inside);
+  }
+  Step step(const Motion& motion) noexcept override {
+    Step step = Guard::step(motion);
+    defect_.of_step(motion, step);
+    return step;
+  }
+
+ private:
+  const Scene* scene_;
+  TipDefect defect_;
+};
+
+/// The rule of Li et al. (2020), which has no tolerance.
 class PaperGuard final : public Guard {
  public:
   explicit PaperGuard(const Scene& scene) : Guard(scene), scene_(&scene) {}
@@ -45,116 +62,200 @@ class PaperGuard final : public Guard {
   std::optional<MotionConstraint> constraint_;
 };
 
-/// Keeps less than it should: by so little that only exact distances tell.
-class CarelessGuard final : public Guard {
- public:
-  explicit CarelessGuard(const Scene& scene) : Guard(scene), scene_(&scene) {}
-  void begin(const StepOptions& options, Inside inside) override {
-    StepOptions less = options;
-    double& part = options.margin > 0.0 ? less.margin : less.tool_radius;
-    part = std::max(0.0, part - 3.5 * tolerance(*scene_, options, Vec3::Zero()));
-    Guard::begin(less, inside);
-  }
+/// Goes wherever it is asked to.
+constexpr TipDefect no_guard{.of_step = [](const Motion& motion, Step& step) {
+  step = {};
+  step.status = Status::free;
+  step.motion = motion.desired;
+}};
 
- private:
-  const Scene* scene_;
-};
+/// Keeps less than it should, by so little that only exact distances show it.
+constexpr TipDefect careless{.of_options = [](const Scene& scene, StepOptions& options, Inside&) {
+  double& part = options.margin > 0.0 ? options.margin : options.tool_radius;
+  part = std::max(0.0, part - 3.5 * scene.judged().tolerance(options, Vec3::Zero()));
+}};
 
-/// Forgets that the tool is more than a point.
-class PointGuard final : public Guard {
- public:
-  using Guard::Guard;
-  void begin(const StepOptions& options, Inside inside) override {
-    StepOptions less = options;
-    if (less.margin > 0.0) less.tool_radius = 0.0;
-    Guard::begin(less, inside);
-  }
-};
+/// Treats the tool as a point.
+constexpr TipDefect point{.of_options = [](const Scene&, StepOptions& options, Inside&) {
+  if (options.margin > 0.0) options.tool_radius = 0.0;
+}};
 
-class OverlongGuard final : public Guard {
- public:
-  using Guard::Guard;
-  Step step(const Motion& motion) noexcept override {
-    Step step = Guard::step(motion);
-    if (step.status == Status::free) step.motion *= 1.0 + 1e-6;
-    return step;
-  }
-};
+constexpr TipDefect overlong{.of_step = [](const Motion&, Step& step) {
+  if (step.status == Status::free) step.motion *= 1.0 + 1e-6;
+}};
 
-class RestlessGuard final : public Guard {
- public:
-  using Guard::Guard;
-  Step step(const Motion& motion) noexcept override {
-    Step step = Guard::step(motion);
-    if (!step.ok()) step.motion = 1e-12 * motion.desired;
-    return step;
-  }
-};
+constexpr TipDefect restless{.of_step = [](const Motion& motion, Step& step) {
+  if (!step.ok()) step.motion = 1e-12 * motion.desired;
+}};
 
-/// Does not care which side a tip is on.
-class LenientGuard final : public Guard {
- public:
-  using Guard::Guard;
-  void begin(const StepOptions& options, Inside) override {
-    Guard::begin(options, Inside::taken_as_is);
-  }
-};
+/// Does not classify on which side a tip is.
+constexpr TipDefect lenient{
+    .of_options = [](const Scene&, StepOptions&, Inside& inside) { inside = Inside::taken_as_is; }};
 
 /// Leads tips that are inside the wrong way.
-class PerverseGuard final : public Guard {
- public:
-  using Guard::Guard;
-  Step step(const Motion& motion) noexcept override {
-    Step step = Guard::step(motion);
-    if (step.status == Status::recovering) step.motion = -step.motion;
-    return step;
-  }
+constexpr TipDefect perverse{.of_step = [](const Motion&, Step& step) {
+  if (step.status == Status::recovering) step.motion = -step.motion;
+}};
+
+/// A step of an instrument that is broken in a single respect.
+struct Defect {
+  void (*of_setup)(RobotSetup&) = [](RobotSetup&) {};
+  void (*of_step)(InstrumentStep&, std::vector<double>&) = [](auto&, auto&) {};
+  double margin_less = 0.0;  // [tolerances]
+  bool knows_velocities = true;
 };
 
-template <class Kind>
+class BrokenSubject final : public RobotSubject {
+ public:
+  BrokenSubject(RobotSetup setup, const Defect& defect) : defect_(defect) {
+    defect.of_setup(setup);
+    meshes_ = setup.meshes.size();
+    subject_ = make_subject(setup);
+  }
+  void set_options(const InstrumentOptions& options) override {
+    InstrumentOptions less = options;
+    less.margin -= defect_.margin_less * tolerance();
+    subject_->set_options(less);
+  }
+  void place(std::size_t mesh, const Pose& pose, const Twist& velocity) override {
+    if (mesh < meshes_) subject_->place(mesh, pose, defect_.knows_velocities ? velocity : Twist{});
+  }
+  InstrumentStep step(std::span<const double> q, const Twist& desired) override {
+    InstrumentStep step = subject_->step(q, desired);
+    defect_.of_step(step, increment_);
+    return step;
+  }
+  double tolerance() const override { return subject_->tolerance(); }
+
+ private:
+  Defect defect_;
+  std::size_t meshes_;
+  std::unique_ptr<RobotSubject> subject_;
+  std::vector<double> increment_;
+};
+
+void widen_guides(RobotSetup& setup) {
+  for (oracle::JudgedGuide& guide : setup.guides) {
+    guide.radius += 3.0 * guide.band;
+    if (guide.region == oracle::JudgedGuide::Region::half_space) {
+      guide.radius = 0.0;
+      guide.origin -= 3.0 * guide.band * guide.direction;
+    }
+  }
+}
+
+/// Removes the first of three points or more of the last body.
+void cut_off_a_corner(RobotSetup& setup) {
+  const auto cut = [](auto& points) { points.erase(points.begin()); };
+  cut(setup.robot.bodies.back().points);
+  cut(setup.robot.model.bodies.back().points);
+}
+
+void forget_a_mesh(RobotSetup& setup) { setup.meshes.pop_back(); }
+
+/// Stands still where it should give way.
+void freeze(InstrumentStep& step, std::vector<double>&) {
+  if (step.status != Status::free) step = {.status = Status::unsolved, .level = 0.0};
+}
+
+/// Makes twice the motion that is free.
+void overshoot(InstrumentStep& step, std::vector<double>& longer) {
+  if (step.status != Status::free) return;
+  longer.assign(step.increment.begin(), step.increment.end());
+  for (double& x : longer) x *= 2.2;
+  step.increment = longer;
+}
+
+using MakeGuard = std::unique_ptr<Guard> (*)(const Scene&);
+template <const TipDefect& defect>
 std::unique_ptr<Guard> make(const Scene& scene) {
-  return std::make_unique<Kind>(scene);
+  return std::make_unique<BrokenGuard>(scene, defect);
+}
+std::unique_ptr<Guard> make_paper(const Scene& scene) {
+  return std::make_unique<PaperGuard>(scene);
+}
+
+Campaign campaign_of(std::uint64_t steps, MakeGuard make_guard) {
+  return {.steps = steps, .make_guard = make_guard};
+}
+Campaign campaign_of(const std::string& scenario, std::uint64_t cycles, const Defect& defect) {
+  return {.scenarios = {scenario},
+          .cycles = test::trials(cycles),
+          .speeds = {1.0},
+          .make_subject = [defect](const RobotSetup& setup) {
+            return std::make_unique<BrokenSubject>(setup, defect);
+          }};
 }
 
 struct Sabotaged {
   const char* name;
-  std::string_view shape;
-  std::unique_ptr<Guard> (*make_guard)(const Scene&);
+  std::string_view mesh;
+  Campaign campaign;
   Breach breach;
   std::uint64_t at_least = 1;  // breaches
-  std::uint64_t steps = 10'000;
 };
+Sabotaged tip(const char* name, std::string_view mesh, MakeGuard make_guard, Breach breach,
+              std::uint64_t at_least = 1, std::uint64_t steps = 10'000) {
+  return {name, mesh, campaign_of(steps, make_guard), breach, at_least};
+}
+Sabotaged instrument(const char* name, const std::string& scenario, std::string_view mesh,
+                     const Defect& defect, Breach breach = Breach::too_near,
+                     std::uint64_t at_least = 1, std::uint64_t cycles = 10'000) {
+  return {name, mesh, campaign_of(scenario, cycles, defect), breach, at_least};
+}
+
 class Sabotage : public testing::TestWithParam<Sabotaged> {};
 INSTANTIATE_TEST_SUITE_P(
     Guards, Sabotage,
     testing::Values(
-        Sabotaged{"WithoutAGuardATipPenetrates", "sphere", make<NoGuard>, Breach::penetration, 11},
-        Sabotaged{"WithoutAGuardATipIsTooNear", "sphere", make<NoGuard>, Breach::too_near, 11},
-        Sabotaged{"ThePaperWithoutAMarginPenetrates", "triangle_soup", make<PaperGuard>,
-                  Breach::penetration},
-        Sabotaged{"ThePaperWithoutAMarginIsTooNear", "saddle_terrain", make<PaperGuard>,
-                  Breach::too_near, 11},
-        Sabotaged{"AFewTolerancesTooLittle", "cube", make<CarelessGuard>, Breach::too_near, 6},
-        Sabotaged{"AFewTolerancesTooLittleInFolds", "cortex", make<CarelessGuard>, Breach::too_near,
-                  6},
-        Sabotaged{"AToolTakenForAPoint", "cortex", make<PointGuard>, Breach::too_near, 11, 20'000},
-        Sabotaged{"AStepLongerThanAskedFor", "sphere", make<OverlongGuard>, Breach::too_long, 11},
-        Sabotaged{"AMotionOfAFailedStep", "sphere", make<RestlessGuard>, Breach::moved_anyway, 1,
-                  50'000},
-        Sabotaged{"ATipLeftInside", "sphere", make<LenientGuard>, Breach::left_inside},
-        Sabotaged{"ATipLedDeeper", "sphere", make<PerverseGuard>, Breach::led_deeper}),
+        tip("WithoutAGuardATipPenetrates", "sphere", make<no_guard>, Breach::penetration, 11),
+        tip("WithoutAGuardATipIsTooNear", "sphere", make<no_guard>, Breach::too_near, 11),
+        tip("ThePaperWithoutAMarginPenetrates", "triangle_soup", make_paper, Breach::penetration),
+        tip("ThePaperWithoutAMarginIsTooNear", "saddle_terrain", make_paper, Breach::too_near, 11),
+        tip("AFewTolerancesTooLittle", "cube", make<careless>, Breach::too_near, 6),
+        tip("AFewTolerancesTooLittleInFolds", "cortex", make<careless>, Breach::too_near, 6),
+        tip("AToolTakenForAPoint", "cortex", make<point>, Breach::too_near, 11, 20'000),
+        tip("AStepLongerThanAskedFor", "sphere", make<overlong>, Breach::too_long, 11),
+        tip("AMotionOfAFailedStep", "sphere", make<restless>, Breach::moved_anyway, 1, 50'000),
+        tip("ATipLeftInside", "sphere", make<lenient>, Breach::left_inside),
+        tip("ATipLedDeeper", "sphere", make<perverse>, Breach::led_deeper)),
+    by_name);
+INSTANTIATE_TEST_SUITE_P(
+    Scenarios, Sabotage,
+    testing::Values(
+        instrument("GuidesThatAreTooWide", "guides", "saddle", {.of_setup = widen_guides},
+                   Breach::guide_left),
+        instrument("GuidesOfATipThatAreTooWide", "tip_guides", "saddle", {.of_setup = widen_guides},
+                   Breach::guide_left),
+        instrument("AMeshWhoseVelocityIsNotKnown", "moving", "bowl", {.knows_velocities = false}),
+        instrument("AMeshThatIsForgotten", "meshes", "bowl", {.of_setup = forget_a_mesh}),
+        instrument("ACornerOfABladeThatIsForgotten", "blade", "saddle",
+                   {.of_setup = cut_off_a_corner}),
+        instrument("ACornerOfAConvexToolThatIsForgotten", "convex_tool", "saddle",
+                   {.of_setup = cut_off_a_corner}),
+        instrument("AToolThatDoesNotGiveWay", "stuck", "saddle", {.of_step = freeze}),
+        instrument("AMarginThatIsTenTolerancesTooSmall", "convex_tool", "saddle",
+                   {.margin_less = 10.0}),
+        instrument("AMotionThatOvershoots", "unlimited", "saddle", {.of_step = overshoot},
+                   Breach::strayed, test::trials(std::uint64_t{100}) + 1, 2000)),
     by_name);
 
 TEST_P(Sabotage, IsCaught) {
   const Sabotaged& row = GetParam();
-  const Findings findings =
-      campaign_on(row.shape, {.steps = row.steps, .make_guard = row.make_guard});
-  EXPECT_GE(count(findings, row.breach), row.at_least);
+  const Findings findings = campaign_on(row.mesh, row.campaign);
+  const Tally& tally = findings.rows.at(0);
+  EXPECT_GE(tally[row.breach], row.at_least);
+  EXPECT_GE(tally.broken(), tally[row.breach]);
+  EXPECT_GT(tally.first_breach, 0u);
+  RecordProperty("first_breach", std::to_string(tally.first_breach));
+  const CampaignResult result = result_of(row.campaign, findings);
+  EXPECT_TRUE(result.is_broken);
+  if (row.campaign.is_of_instruments()) return;
+  EXPECT_EQ(result.record["total"]["breaches"][std::string(name(row.breach))], tally[row.breach]);
 }
 
 TEST(SabotagedStep, ABreachIsNotedWithAllThatIsNeededToRepeatIt) {
-  const Findings findings =
-      campaign_on("cube", {.steps = 20'000, .make_guard = make<CarelessGuard>});
+  const Findings findings = campaign_on("cube", campaign_of(20'000, make<careless>));
   ASSERT_FALSE(findings.breaches.empty());
   Scene scene("cube", make_shape("cube"), "wide_bvh");
   const auto vector = [](const Json& json) {
@@ -163,7 +264,7 @@ TEST(SabotagedStep, ABreachIsNotedWithAllThatIsNeededToRepeatIt) {
   };
   for (const Json& breach : findings.breaches) {
     if (breach["joints"] > 0) continue;
-    CarelessGuard guard(scene);
+    BrokenGuard guard(scene, careless);
     guard.begin({.radius = breach["radius"],
                  .tool_radius = breach["tool_radius"],
                  .margin = breach["margin"],
@@ -178,6 +279,22 @@ TEST(SabotagedStep, ABreachIsNotedWithAllThatIsNeededToRepeatIt) {
     EXPECT_EQ(step.motion, vector(breach["motion"])) << breach;
     EXPECT_EQ(name(step.status), breach["status"]);
   }
+}
+
+TEST(SabotagedStep, StandingStillForNothingIsCounted) {
+  const Findings findings =
+      campaign_on("saddle", campaign_of("approach", 2000, {.of_step = freeze}));
+  EXPECT_GT(findings.rows.at(0).movable, findings.rows.at(0).samples / 4);
+}
+
+TEST(SabotagedStep, WhereTheLinearisedMotionIsCertifiedTheJudgeSeesItTooClose) {
+  const Findings findings = campaign_on(
+      "gear",
+      {.robot = "psm", .cycles = 4000, .speeds = {20.0}, .motion = CertifiedMotion::linearised});
+  const Tally& row = findings.rows.at(0);
+  EXPECT_GT(row[Breach::too_near], 0u);
+  EXPECT_LT(row.least_beyond, -1e-3);
+  EXPECT_EQ(row[Breach::limits_broken], 0u);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout verify as a user meets it: options, shards, files.
+// The command keepout verify: options, shards, files.
 
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -29,7 +29,7 @@ class Verify : public testing::Test {
     return nlohmann::json::parse(folder_.contents(name));
   }
 
-  /// What may differ between runs of the same.
+  /// Removes the members that may differ between two runs.
   static nlohmann::json without_times(nlohmann::json result) {
     for (const char* key : {"shards", "date", "command"}) result.erase(key);
     result.erase("shard_count");
@@ -86,7 +86,7 @@ TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
   EXPECT_EQ(read("merged.json")["complete"], false);
 }
 
-TEST_F(Verify, AMissingShardIsToldOf) {
+TEST_F(Verify, AMissingShardIsReported) {
   const std::string both = "cube.stl --steps 2000 --shard ";
   ASSERT_EQ(run(both + "1/3 --json 1.json").status, 0);
   ASSERT_EQ(run(both + "3/3 --json 3.json").status, 0);
@@ -146,7 +146,7 @@ TEST_F(Verify, AResultWhoseNumbersCannotBeIsNotMerged) {
   }
 }
 
-TEST_F(Verify, MistakesAreToldOf) {
+TEST_F(Verify, MistakesAreReported) {
   const std::vector<std::pair<std::string, std::string>> mistakes{
       {"none.stl", "none.stl"},
       {"cube.stl cube.stl", "named twice"},
@@ -167,13 +167,41 @@ TEST_F(Verify, MistakesAreToldOf) {
       {"--merge a.json --steps 10", "--steps"},
       {"--merge a.json --shard 1/2", "--shard"},
       {"--merge a.json --json a.json", "same file"},
-      {"cube.stl --stepps 10", "--stepps"}};
-  for (const auto& [arguments, told] : mistakes) {
+      {"cube.stl --stepps 10", "--stepps"},
+      {"cube.stl --cycles 10", "--robot"},
+      {"cube.stl --robot pms", "did you mean 'psm'"},
+      {"cube.stl --robot psm --speed 0", "--speed"},
+      {"cube.stl --robot psm --margin 0", "--margin"},
+      {"cube.stl --robot psm --motion real", "--motion"},
+      {"cube.stl --robot psm --steps 10", "--steps"},
+      {"cube.stl --robot psm --merge r.json", "--merge"},
+      {"--scenario guide", "did you mean 'guides'"}};
+  for (const auto& [arguments, message] : mistakes) {
     const Outcome outcome = run(arguments);
     EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_CONTAINS(outcome.output, told) << arguments;
+    EXPECT_CONTAINS(outcome.output, message) << arguments;
     EXPECT_LACKS(outcome.output, "least/tau") << "did it all the same";
+    EXPECT_LACKS(outcome.output, "in tau") << "did it all the same";
   }
+}
+
+TEST_F(Verify, OfARobotWritesARecord) {
+  const Outcome outcome = succeeded(
+      run("cortex --robot psm --cycles 500 --speed 1,2 --seed 7 --json r.json --out r.html"));
+  EXPECT_CONTAINS(outcome.output, "No breach in 2,500 cycles.");
+  const nlohmann::json record = read("r.json");
+  EXPECT_EQ(record["keepout_record"], "verify_robot");
+  EXPECT_EQ(record["complete"], true);
+  EXPECT_EQ(record["settings"]["seed"], "7");
+  EXPECT_EQ(record["rows"].size(), 5u);
+  EXPECT_EQ(record["rows"][1]["speed"], 2.0);
+  EXPECT_EQ(record["total"]["cycles"], 2500u);
+}
+
+TEST_F(Verify, ScenariosAreChosenByName) {
+  const Outcome outcome =
+      succeeded(run("cortex --scenario tip_guides,convex_tool --cycles 200 --speed 1"));
+  EXPECT_CONTAINS(outcome.output, "No breach in 400 cycles.");
 }
 
 TEST_F(Verify, StepsMayBeWrittenWithAnExponent) {

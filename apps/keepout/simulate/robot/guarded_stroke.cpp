@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/judges/robot_judge.h"
 #include "keepout/solvers/active_set.h"
 #include "shared/clip.h"
 #include "verify/robot/hand.h"
-#include "verify/robot/judge.h"
 
 namespace keepout::app {
 namespace {
@@ -53,8 +53,8 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, RobotScene& on, Rand
                                               .margin = on.margin}});
   }
   std::vector<double> q = stroke.start.positions;
-  RobotJudge judge({on.robot.judged(), stroke.start.base, {{on.scene.tree()}}}, chain, random, q,
-                   options, joints.tolerance());
+  oracle::RobotJudge judge({on.robot.judged(), stroke.start.base, {{on.scene.tree()}}}, chain,
+                           random, q, options, joints.tolerance());
   const double kept = on.margin - options.band - 3.0 * joints.tolerance();
   std::vector<GuardedCycle> cycles;
   for (const Pose& goal : stroke.hand) {
@@ -65,7 +65,7 @@ std::vector<GuardedCycle> follow(const RobotStroke& stroke, RobotScene& on, Rand
       asked.linear = tip->step({.tip = state.flange().position, .desired = asked.linear}).motion;
     const InstrumentStep step = joints.step(q, asked);
     for (std::size_t k = 0; step.ok() && k < q.size(); ++k) q[k] += step.increment[k];
-    const RobotVerdict verdict = judge.judge(q);
+    const oracle::RobotVerdict verdict = judge.judge(q);
     ++tally.cycles;
     tally.refused += step.ok() ? 0 : 1;
     tally.limits_broken += verdict.limits_broken ? 1 : 0;

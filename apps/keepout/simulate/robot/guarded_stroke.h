@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "simulate/robot/strokes.h"
-#include "verify/robot/campaign.h"
+#include "verify/campaign.h"
 
 namespace keepout::app {
 

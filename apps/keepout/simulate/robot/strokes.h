@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "verify/robot/robot_scene.h"
+#include "verify/robot/start.h"
 
 namespace keepout::app {
 

@@ -42,7 +42,7 @@ RobotTask::Increment RobotTask::scales() const {
 }
 
 Search search(const RobotTask& task, std::span<const double> positions,
-              std::span<const double> made, RobotJudge& judge, Random& random) {
+              std::span<const double> made, oracle::RobotJudge& judge, Random& random) {
   std::vector<double> next(positions.size());
   const auto is_allowed = [&](const RobotTask::Increment& dq) {
     for (std::size_t k = 0; k < next.size(); ++k) {

@@ -5,13 +5,13 @@
 #include <span>
 
 #include "keepout/fixtures/random.h"
+#include "keepout/judges/robot_judge.h"
 #include "keepout/robot/instrument_constraint.h"
-#include "verify/robot/judge.h"
 
 namespace keepout::app {
 
-/// What a step is asked to make small, computed once more: |J dq - v|_W^2 + damping |dq|^2, where a
-/// turn of the flange, and what a prismatic joint moves by, count in orientation weights.
+/// The cost that a step minimizes, computed independently: |J dq - v|_W^2 + damping |dq|^2, where
+/// turns of the flange and displacements of prismatic joints count in orientation weights.
 class RobotTask {
  public:
   using Increment = Eigen::VectorXd;  // of the joints
@@ -22,30 +22,30 @@ class RobotTask {
   double cost(const Increment& dq) const {
     return (jacobian_ * dq - desired_).squaredNorm() + damping_.dot(dq.cwiseAbs2());
   }
-  /// How much of the motion that is asked for is made: what goes along it.
+  /// Returns the fraction of the commanded motion that an increment makes, along that motion.
   double share(const Increment& dq) const {
     return desired_.dot(jacobian_ * dq) / desired_.squaredNorm();
   }
-  /// How much less the cost becomes where nothing holds the joints back.
+  /// Returns the reduction of the cost by the unconstrained optimum.
   double largest_reduction() const;
-  /// For each joint, the increment that alone moves the flange as far as is asked for.
+  /// Returns the increment of each joint that alone moves the flange as far as commanded.
   Increment scales() const;
 
  private:
-  Eigen::MatrixXd jacobian_;  // weighed (6, n)
-  Eigen::VectorXd desired_;   // weighed (6)
+  Eigen::MatrixXd jacobian_;  // weighted (6, n)
+  Eigen::VectorXd desired_;   // weighted (6)
   Eigen::VectorXd damping_;   // of each joint (n)
 };
 
 /// The result of a search for a better motion than the step made.
 struct Search {
-  double saved;  // of its cost, as a share of the largest reduction
-  double share;  // of the motion asked for that the best motion found makes
+  double saved;  // of its cost, as a fraction of the largest reduction
+  double share;  // of the commanded motion that the best motion found makes
 };
 
-/// Searches for a better motion than the one that was made, locally and at random, among joint
-/// increments that the judge would allow in the coming cycle.
+/// Searches at random for a better motion than `made`, among joint increments that the judge would
+/// allow in the coming cycle.
 Search search(const RobotTask& task, std::span<const double> positions,
-              std::span<const double> made, RobotJudge& judge, Random& random);
+              std::span<const double> made, oracle::RobotJudge& judge, Random& random);
 
 }  // namespace keepout::app

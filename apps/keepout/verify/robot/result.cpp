@@ -13,25 +13,30 @@
 namespace keepout::app {
 namespace {
 
-/// Null where there is nothing to divide by.
+using oracle::Breach;
+
+/// Returns null if there is nothing to divide by.
 template <class Part>
 Json ratio(Part part, std::uint64_t of) {
   return of == 0 ? Json(nullptr) : Json(static_cast<double>(part) / static_cast<double>(of));
 }
-auto finite(double RobotTally::*figure) {
-  return [figure](const RobotTally& t) { return or_null(t.*figure); };
+auto finite(double Tally::*figure) {
+  return [figure](const Tally& t) { return or_null(t.*figure); };
+}
+auto breaches(Breach breach) {
+  return [breach](const Tally& t) { return Json(t[breach]); };
 }
 template <class Part>
-auto per(std::uint64_t RobotTally::*of, Part RobotTally::*part) {
-  return [of, part](const RobotTally& t) { return ratio(t.*part, t.*of); };
+auto per(std::uint64_t Tally::*of, Part Tally::*part) {
+  return [of, part](const Tally& t) { return ratio(t.*part, t.*of); };
 }
 
-Json cut_share(const RobotTally& t) {
+Json cut_share(const Tally& t) {
   return ratio(t.statuses[static_cast<std::size_t>(Status::fallback)], t.cycles);
 }
 
-/// Of cycles that ended without a motion that may be carried out.
-Json unmoved_share(const RobotTally& t) {
+/// Returns the fraction of cycles that ended without a motion that may be executed.
+Json unmoved_share(const Tally& t) {
   std::uint64_t unmoved = 0;
   for (std::size_t i = 0; i < status_count; ++i) {
     unmoved += is_ok(static_cast<Status>(i)) ? 0 : t.statuses[i];
@@ -51,8 +56,7 @@ std::string times_text(const Json& us) {
   return text;
 }
 
-const Columns<RobotTally>& robot_columns() {
-  using Tally = RobotTally;
+const Columns<Tally>& robot_columns() {
   static const Columns<Tally> all{
       {"mesh", &Tally::mesh, "mesh", -12},
       {"triangles", &Tally::triangles, "triangles", 9, &count_text},
@@ -61,12 +65,12 @@ const Columns<RobotTally>& robot_columns() {
       {"cycle_s", &Tally::period},
       {"starts", &Tally::starts, "starts", 6, &count_text},
       {"cycles", &Tally::cycles, "cycles", 11, &count_text},
-      {"below", &Tally::below, "below", 7, &count_text},
+      {"below", breaches(Breach::too_near), "below", 7, &count_text},
       {"in_mesh", &Tally::in_mesh, "in mesh", 7, &count_text},
       {"deepest_mm", &Tally::deepest, "deepest", 7, &figure_text<2>},
-      {"limits_broken", &Tally::limits_broken, "limits", 6, &count_text},
-      {"guides_left", &Tally::guides_left, "guides", 6, &count_text},
-      {"strayed", &Tally::strayed, "strayed", 7, &count_text},
+      {"limits_broken", breaches(Breach::limits_broken), "limits", 6, &count_text},
+      {"guides_left", breaches(Breach::guide_left), "guides", 6, &count_text},
+      {"strayed", breaches(Breach::strayed), "strayed", 7, &count_text},
       {"first_breach",
        [](const Tally& t) { return t.first_breach > 0 ? Json(t.first_breach) : Json(nullptr); }},
       {"least_beyond_mm", finite(&Tally::least_beyond), "least", 9, &number_text<"%.2e">},
@@ -96,7 +100,7 @@ const Columns<RobotTally>& robot_columns() {
   return all;
 }
 
-constexpr const char* legend =
+constexpr const char* robot_legend =
     R"(below: cycles that came closer than was promised, as an independent judge sees 15 poses of each;
 in mesh: of them, those in which the mesh reached into a body. limits: cycles that broke a joint's.
 guides: cycles that left a guide by more than is promised. strayed: cycles of status free that ended
@@ -111,27 +115,25 @@ cycles. point us: of the certified step of a ball at the tip, beside each. Lengt
 
 }  // namespace
 
-CampaignResult result_of(const RobotCampaign& campaign, const std::string& command,
-                         const std::string& index, const std::vector<RobotTally>& tallies,
-                         std::size_t meshes) {
-  Json rows = json_of(robot_columns(), tallies);
+CampaignResult result_of_instruments(const Campaign& campaign, const Findings& findings) {
+  Json rows = json_of(robot_columns(), findings.rows);
   const Json sums = total_of(rows);
   Json total{{"mesh", "total"}};
   for (const char* key : {"cycles", "below", "in_mesh", "deepest_mm", "limits_broken",
                           "guides_left", "strayed", "least_beyond_tau"}) {
     total[key] = sums[key];
   }
-  total.update(
-      {{"blocked", 0}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
-  std::uint64_t broken = 0;
+  std::uint64_t broken = 0, blocked = 0;
   std::vector<std::string> account;
-  for (const RobotTally& t : tallies) {
-    total["blocked"] = total["blocked"].get<std::uint64_t>() + t.blocked;
-    broken += breaches(t);
+  for (const Tally& t : findings.rows) {
+    blocked += t.blocked;
+    broken += t.broken();
     if (!t.is_out_of_starts) continue;
     account.push_back("On " + t.mesh + ", " + t.scenario + ", only " + counted(t.cycles, "cycle") +
                       ": no other place was found to begin.");
   }
+  total.update(
+      {{"blocked", blocked}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
   if (!is_actual) account.emplace_back("The linearised motion was certified: unsafe, to compare.");
   const auto count = [&](const char* key) { return total[key].get<std::uint64_t>(); };
@@ -145,14 +147,10 @@ CampaignResult result_of(const RobotCampaign& campaign, const std::string& comma
   std::vector<std::string> speeds;
   for (const double speed : campaign.speeds) speeds.push_back(trimmed(speed));
   const std::string robot = campaign.robot.empty() ? "drawn" : campaign.robot;
-  const bool is_complete = tallies.size() == meshes * rows_of(campaign).size() &&
-                           std::ranges::all_of(tallies, [&](const RobotTally& t) {
-                             return t.is_out_of_starts || t.cycles >= campaign.cycles;
-                           });
   Json record = new_record(
       {.kind = "verify_robot",
-       .command = command,
-       .complete = is_complete,
+       .command = campaign.command,
+       .complete = findings.is_complete,
        .subject = "Closed-loop motion of a whole instrument, " + robot +
                   ", each cycle judged by an independent oracle",
        .headline = headline + counted(count("cycles"), "cycle") + ".",
@@ -166,14 +164,14 @@ CampaignResult result_of(const RobotCampaign& campaign, const std::string& comma
                     {"motion", is_actual ? "actual" : "linearised"},
                     {"margin", trimmed(campaign.margin) + " mm"},
                     {"seed", std::to_string(campaign.seed)},
-                    {"index", index}}});
+                    {"index", campaign.index}}});
   record["robot"] = robot;
   record["rows"] = std::move(rows);
   record["total"] = std::move(total);
   std::ostringstream table;
-  print_rows(table, robot_columns(), tallies);
-  table << legend;
-  return {std::move(record), table.str(), is_actual && broken > 0, !is_complete};
+  print_rows(table, robot_columns(), findings.rows);
+  table << robot_legend;
+  return {std::move(record), table.str(), is_actual && broken > 0, !findings.is_complete};
 }
 
 }  // namespace keepout::app

@@ -3,11 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <numbers>
 
-#include "keepout/error.h"
-#include "keepout/fixtures/robots.h"
+#include "keepout/oracle/instrument_oracle.h"
 #include "verify/setup.h"
 
 namespace keepout::app {
@@ -15,7 +13,7 @@ namespace {
 
 constexpr int tries = 4000;
 
-/// Where the tip shall be, and from where the instrument comes.
+/// The place of the tip, and the direction from which the instrument comes.
 struct Target {
   Vec3 tip;
   Vec3 way;  // unit, along the tool
@@ -26,14 +24,14 @@ Target before_surface(const SurfacePoint& on, double ahead, Random& random) {
   return {on.point - random.uniform(0.25, 1.0) * ahead * way, way};
 }
 
-/// Along the normal to the place that is as far from another wall, where a tool that keeps `least`
-/// from both has a millimetre of room at most.
+/// Returns a place on the normal that is as far from another wall, where a tool that keeps `least`
+/// from both walls has a millimetre of room at most.
 std::optional<Target> between_walls(Scene& scene, const SurfacePoint& on, double least,
                                     Random& random) {
   for (double way = least; way < least + 1.2; way += 0.1) {
     const Vec3 center = on.point + way * on.normal;
     const double distance = scene.nearest(center, way).closest.distance;
-    if (distance > 0.95 * way) continue;  // the nearest wall is the one it comes from
+    if (distance > 0.95 * way) continue;  // the nearest wall is still the first one
     if (distance < least) break;
     const Vec3 along = random.direction().cross(on.normal).normalized();
     return Target{center + random.uniform(0.0, 8.0) * along, along};
@@ -42,28 +40,6 @@ std::optional<Target> between_walls(Scene& scene, const SurfacePoint& on, double
 }
 
 }  // namespace
-
-std::span<const RobotUnderTest> robots_under_test() {
-  static const std::array<RobotUnderTest, 2> robots{
-      {{"psm",
-        "six joints about a port: a da Vinci manipulator with an 8 mm instrument",
-        &psm,
-        &oracle::judged_psm,
-        {{-0.6, 0.6}, {-0.5, 0.5}, {90.0, 125.0}, {-2.0, 2.0}, {-0.6, 0.6}, {-0.6, 0.6}}},
-       {"seven_joint_arm",
-        "seven revolute joints and a straight shaft, held by no port",
-        &seven_joint_arm,
-        &oracle::judged_seven_joint_arm,
-        {{-1, 1}, {0.2, 0.9}, {-1, 1}, {-1.6, -0.8}, {-1, 1}, {0.3, 1.2}, {-1, 1}}}}};
-  return robots;
-}
-
-const RobotUnderTest& robot_named(const std::string& name) {
-  const auto robots = robots_under_test();
-  const auto found = std::ranges::find(robots, name, &RobotUnderTest::name);
-  if (found == robots.end()) throw Error("there is no robot '" + name + "'");
-  return *found;
-}
 
 double clearance(const oracle::JudgedRobot& robot, const RobotStart& start, const Scene& scene,
                  double reach) {
@@ -78,7 +54,7 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
   const double tool = judged.bodies.back().radius;
   for (int i = 0; i < tries; ++i) {
     SurfacePoint on = on_face(*scene.mesh(), random);
-    // What has no free side is approached from either.
+    // A surface without sides is approached from either.
     if (!scene.has_sides() && random.uniform() < 0.5) on.normal = -on.normal;
     const std::optional<Target> target = begin == Begin::wedged
                                              ? between_walls(scene, on, tool + margin, random)
@@ -88,7 +64,7 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
     for (const auto& [low, high] : robot.starts) {
       start.positions.push_back(random.uniform(low, high));
     }
-    // The base follows from where the tool shall be; about its axis it is turned at random.
+    // The base follows from the place of the tool. It is turned about the tool at random.
     const oracle::Segment axis =
         axis_of(judged.bodies.back(), oracle::place(judged, {}, start.positions));
     const bool has_length = axis.from != axis.to;
@@ -100,7 +76,7 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
     start.base.position = target->tip - start.base.rotation * axis.to;
     if (clearance(judged, start, scene, margin) < margin) continue;
     if (begin != Begin::overlapping) return start;
-    // Pushed on until the tool, or a thicker body, overlaps as far.
+    // Push on until the tool, or a thicker body, overlaps as far.
     const double wanted = -random.uniform(0.05, 0.45) * tool;
     double overlap = 0.0;
     for (double gone = 0.0; gone < 40.0 && overlap > wanted; gone += 0.05) {

@@ -75,7 +75,7 @@ class InstrumentSubject final : public RobotSubject {
   InstrumentConstraint constraint_;
 };
 
-/// A tip on joints that slide along orthogonal axes: the step of the tip, told as one of the
+/// A tip on joints that slide along orthogonal axes: the step of the tip, as a motion of the
 /// joints.
 class TipSubject final : public RobotSubject {
  public:
@@ -83,7 +83,7 @@ class TipSubject final : public RobotSubject {
       : chain_(setup.robot.make(setup.start.base).chain()),
         bodies_(setup.robot.judged().bodies),
         is_hull_(setup.scenario->attacked == Attacked::convex_tool),
-        longest_edge_(setup.meshes[0].scene->longest_edge()),
+        longest_edge_(setup.meshes[0].scene->judged().longest_edge()),
         increment_(static_cast<std::size_t>(chain_.size())) {
     chain_.forward_kinematics(setup.start.positions, state_);
     options_ = {.radius = 2.0 * setup.speed,
@@ -154,15 +154,6 @@ std::unique_ptr<RobotSubject> make_subject(const RobotSetup& setup) {
     return std::make_unique<InstrumentSubject>(setup);
   }
   return std::make_unique<TipSubject>(setup);
-}
-
-double promised_level(const InstrumentStep& step, std::size_t body, std::size_t mesh) {
-  if (!step.ok()) return step.level;
-  for (const DegradedClearance& pair : step.degraded) {
-    const bool is_it = pair.body == static_cast<int>(body) && pair.mesh == static_cast<int>(mesh);
-    if (is_it) return pair.level;
-  }
-  return 1.0;
 }
 
 }  // namespace keepout::app

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "keepout/robot/instrument_constraint.h"
-#include "verify/robot/robot_setup.h"
+#include "verify/robot/setup.h"
 
 namespace keepout::app {
 
-/// The step under test: the one that users get, as a scenario requires it. Tests replace it by
-/// sabotaged ones.
+/// The step of an instrument under test: the one that users get, as a scenario requires it. Tests
+/// replace it by sabotaged ones.
 class RobotSubject {
  public:
   virtual ~RobotSubject() = default;
@@ -28,9 +28,5 @@ class RobotSubject {
 };
 
 std::unique_ptr<RobotSubject> make_subject(const RobotSetup& setup);
-
-/// The share of the certified distance that a step promises to body and mesh. This is the one place
-/// that knows how a step tells it.
-double promised_level(const InstrumentStep& step, std::size_t body, std::size_t mesh);
 
 }  // namespace keepout::app

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verify/robot/robot_setup.h"
+#include "verify/robot/setup.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "verify/robot/drawn_robot.h"
+#include "keepout/error.h"
 
 namespace keepout::app {
 namespace {
@@ -35,19 +36,20 @@ Pose inverse(const Pose& pose) {
   return {-(pose.rotation.transpose() * pose.position), pose.rotation.transpose()};
 }
 
-/// Lets the mesh swing, or stand still in one of four cases where there are others that move.
+/// Makes the mesh swing about a place.
 void set_swinging(MeshMotion& motion, double speed, const Vec3& center, Random& random) {
   motion.along = random.direction();
   motion.about = random.direction();
   motion.center = center;
   motion.cycles = random.uniform(30.0, 300.0);
-  // The speed of a sine is the largest in its middle.
+  // A sine is fastest in its middle.
   const double longest = motion.cycles / (0.5 * std::numbers::pi);
   motion.way = std::min(random.uniform() * speed * fastest_mesh * longest, 10.0);
   motion.turn = std::min(random.uniform() * speed * fastest_mesh_turn * longest, 0.3);
 }
 
-/// Puts one more mesh beside the tool, clear of all bodies; false when many tries find no place.
+/// Puts one more mesh beside the tool, clear of all bodies. Returns false if many tries find no
+/// place.
 bool put_beside(SetupMesh& mesh, const oracle::JudgedRobot& robot, const RobotStart& start,
                 const Vec3& tool, double margin, Random& random) {
   const Mesh& surface = *mesh.scene->mesh();
@@ -64,7 +66,8 @@ bool put_beside(SetupMesh& mesh, const oracle::JudgedRobot& robot, const RobotSt
 
 using Links = std::vector<oracle::LinkFrame>;
 
-/// A region about a place, which is in it or, in one of four cases, out of it by a little.
+/// Draws a region about a place. The place is in it or, in one of four cases, out of it by a
+/// little.
 void draw_region(oracle::JudgedGuide& guide, const Vec3& place, Random& random) {
   using Region = oracle::JudgedGuide::Region;
   guide.region = static_cast<Region>(random.below(4));
@@ -126,6 +129,58 @@ oracle::JudgedGuide draw_guide(const oracle::JudgedRobot& robot, const Links& li
 
 }  // namespace
 
+std::span<const Scenario> scenarios() {
+  static const std::array<Scenario, 12> all{{
+      {.name = "approach", .description = "led to the surface, and all about it"},
+      {.name = "raised",
+       .description = "approach, while the margin is raised every other 500 cycles",
+       .raises_margin = true},
+      {.name = "overlapping",
+       .description = "begins with the surface within a body, by up to half its radius",
+       .begin = Begin::overlapping},
+      {.name = "wedged",
+       .description = "begins between two walls, where the margin is raised at once",
+       .begin = Begin::wedged,
+       .raises_margin = true},
+      {.name = "guides",
+       .description = "one to three guides of points, axes and shafts, which may contradict",
+       .has_guides = true},
+      {.name = "blade",
+       .description = "a convex blade of 3 to 8 points on the last link",
+       .has_blade = true},
+      {.name = "moving", .description = "the mesh swings and turns", .moves = true},
+      {.name = "meshes",
+       .description = "up to three meshes that swing and turn, each with a margin of its own",
+       .meshes = 3,
+       .moves = true},
+      {.name = "stuck",
+       .description = "a mesh comes on; two bodies cannot give way, and the tool must",
+       .moves = true,
+       .has_stuck_bodies = true,
+       .carrier = Carrier::slides},
+      {.name = "unlimited",
+       .description = "joints without limits of velocity",
+       .has_velocity_limits = false},
+      {.name = "tip_guides",
+       .description = "a tip's ball, within one to three guides of its own",
+       .has_guides = true,
+       .attacked = Attacked::tip,
+       .carrier = Carrier::slides},
+      {.name = "convex_tool",
+       .description = "a convex tool that keeps its orientation",
+       .attacked = Attacked::convex_tool,
+       .carrier = Carrier::slides},
+  }};
+  return all;
+}
+
+const Scenario& scenario_named(const std::string& name) {
+  const auto all = scenarios();
+  const auto found = std::ranges::find(all, name, &Scenario::name);
+  if (found == all.end()) throw Error("there is no scenario '" + name + "'");
+  return *found;
+}
+
 Pose MeshMotion::at(double cycle) const {
   if (is_still()) return first;
   double share = std::sin(0.5 * std::numbers::pi * cycle / cycles);
@@ -159,7 +214,7 @@ std::optional<RobotSetup> draw_setup(
   setup.start = *start;
   const oracle::JudgedRobot judged = setup.robot.judged();
   if (scenario.moves) {
-    // Anywhere, so that no frame is that of another.
+    // Anywhere, so that no two frames are equal.
     const Pose world{random.uniform(0.0, 50.0) * random.direction(), drawn_rotation(random)};
     setup.meshes[0].motion.first = world;
     setup.start.base = world * setup.start.base;

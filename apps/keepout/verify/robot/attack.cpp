@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "verify/attack.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,25 +10,28 @@
 #include "keepout/activation/certified.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
-#include "verify/robot/campaign.h"
 #include "verify/robot/excess.h"
 #include "verify/robot/hand.h"
-#include "verify/robot/judge.h"
 
 namespace keepout::app {
 namespace {
 
-constexpr std::size_t block = 500;      // cycles for which a margin stays raised, and then does not
+using oracle::Breach;
+using oracle::RobotVerdict;
+
+// An instrument begins anew after so many cycles, sooner if mesh or robot are drawn.
+constexpr std::uint64_t cycles_of_a_start = 2000;
+constexpr std::uint64_t cycles_of_a_drawn_start = 400;
+constexpr std::size_t block = 500;      // cycles until a margin is raised or lowered
 constexpr double raise = 0.5;           // [mm]
-constexpr double blocked_below = 0.05;  // of the motion asked for
+constexpr double blocked_below = 0.05;  // of the commanded motion
 constexpr double useful_above = 0.05;   // of the largest reduction of the cost
-constexpr double movable_above = 0.1;   // of the motion asked for
-constexpr double strayed_above = 1.05;  // of what standing still misses
-// Blocked cycles to each that is searched: a search costs as much as a thousand cycles.
+constexpr double movable_above = 0.1;   // of the commanded motion
+constexpr double strayed_above = 1.05;  // of the error of standing still
+// One in so many blocked cycles is searched: a search costs as much as a thousand cycles.
 constexpr std::uint64_t sampled = 2000;
 constexpr std::uint64_t sampled_where_drawn = 100;
-constexpr int hopeless_after =
-    50;  // cycles without any motion being proven, until a start is given up
+constexpr int hopeless_after = 50;     // cycles in a row without a proven motion
 constexpr double skipped = 1.0 / 3.0;  // of all placements of a mesh that moves
 
 bool is_raised(const Scenario& scenario, std::size_t cycle) noexcept {
@@ -53,25 +58,25 @@ Missed missed(const RobotSetup& setup, const oracle::JudgedRobot& robot,
           std::hypot(desired.linear.norm(), weight * desired.angular.norm())};
 }
 
-JudgedScene judged_scene(const RobotSetup& setup) {
-  JudgedScene scene{.robot = setup.robot.judged(),
-                    .base = setup.start.base,
-                    .meshes = {},
-                    .guides = setup.guides,
-                    .has_band = setup.scenario->attacked == Attacked::instrument};
+oracle::JudgedScene judged_scene(const RobotSetup& setup) {
+  oracle::JudgedScene scene{.robot = setup.robot.judged(),
+                            .base = setup.start.base,
+                            .meshes = {},
+                            .guides = setup.guides,
+                            .has_band = setup.scenario->attacked == Attacked::instrument};
   for (const SetupMesh& mesh : setup.meshes) {
     scene.meshes.push_back({mesh.scene->tree(), mesh.margin, mesh.motion.first});
   }
   return scene;
 }
 
-/// The run of one instrument from its start.
+/// One instrument from its start. It ends early if no motion can be proved for 50 cycles.
 class RobotAttempt {
  public:
-  RobotAttempt(const RobotCampaign& campaign, RobotSetup setup, Random& random, RobotTally& tally,
-               RobotTimes& times)
-      : tally_(tally),
-        times_(times),
+  RobotAttempt(const Campaign& campaign, RobotSetup setup, Random& random, Attack& attack)
+      : campaign_(campaign),
+        attack_(attack),
+        tally_(attack.row),
         random_(random),
         setup_(std::move(setup)),
         judged_(setup_.robot.judged()),
@@ -80,8 +85,7 @@ class RobotAttempt {
         judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
                subject_->tolerance()),
         hand_(*setup_.meshes[0].scene, random, setup_.speed),
-        positions_(setup_.start.positions),
-        levels_(setup_.meshes.size() * judged_.bodies.size()) {
+        positions_(setup_.start.positions) {
     if (setup_.is_drawn) return;
     const Scene& scene = *setup_.meshes[0].scene;
     point_.emplace(scene.mesh(), scene.shared_index(), std::make_unique<CertifiedRule>(),
@@ -91,13 +95,12 @@ class RobotAttempt {
                                .margin = setup_.options.margin});
   }
 
-  void run(std::uint64_t cycles) {
-    int failures = 0;
-    for (std::uint64_t cycle = 0; cycle < cycles && failures < hopeless_after; ++cycle) {
-      if (cycle % block == 0) set_margin(cycle);
-      if (setup_.scenario->moves) place_meshes(cycle);
-      failures = make_cycle() ? 0 : failures + 1;
-      if (!waited_) continue;
+  /// Makes a cycle. Returns false if the attempt ends here.
+  bool cycle(std::uint64_t number) {
+    if (number % block == 0) set_margin(number);
+    if (setup_.scenario->moves) place_meshes(number);
+    failures_ = make_cycle() ? 0 : failures_ + 1;
+    if (waited_) {
       ++*waited_;
       if (judge_.is_recovered()) {
         ++tally_.recovered;
@@ -105,6 +108,7 @@ class RobotAttempt {
         waited_.reset();
       }
     }
+    return failures_ < hopeless_after;
   }
 
  private:
@@ -116,7 +120,7 @@ class RobotAttempt {
       judge_.follow(options);
     }
     margin_ = options.margin;
-    waited_.reset();  // what has not recovered within a block has not in time
+    waited_.reset();  // a recovery that takes longer than a block is not counted
     const bool is_new = cycle == 0 || is_raised(*setup_.scenario, cycle);
     if (is_new && !judge_.is_recovered()) {
       ++tally_.recoveries;
@@ -160,11 +164,11 @@ class RobotAttempt {
     const Twist desired = wanted(state.flange().position);
     const BenchClock::time_point start = BenchClock::now();
     const InstrumentStep step = subject_->step(positions_, desired);
-    times_.step.push_back(microseconds_since(start));
+    attack_.step_us.push_back(microseconds_since(start));
     if (point_) {
       const BenchClock::time_point after = BenchClock::now();
       point_->step({.tip = state.flange().position, .desired = desired.linear});
-      times_.point.push_back(microseconds_since(after));
+      attack_.point_us.push_back(microseconds_since(after));
     }
     RobotTask::Increment made = RobotTask::Increment::Zero(chain_.size());
     std::vector<double> next = positions_;
@@ -173,18 +177,12 @@ class RobotAttempt {
       next[k] += step.increment[k];
     }
     count_blocked(step, made, desired);
-    for (std::size_t p = 0; p < levels_.size(); ++p) {
-      const std::size_t body = p % judged_.bodies.size();
-      levels_[p] =
-          setup_.must_keep == body ? 1.0 : promised_level(step, body, p / judged_.bodies.size());
-    }
-    note(step, judge_.judge(next, levels_));
+    note(step, judge_.judge(next, step, setup_.must_keep));
     if (step.status == Status::free && setup_.scenario->attacked == Attacked::instrument) {
       const Missed off = missed(setup_, judged_, positions_, next, desired);
       const double allowed = strayed_above * off.standing + subject_->tolerance();
-      tally_.strayed += off.moving > allowed ? 1 : 0;
+      if (off.moving > allowed) tally_.count(Breach::strayed);
     }
-    if (tally_.first_breach == 0 && breaches(tally_) > 0) tally_.first_breach = tally_.cycles;
     positions_ = next;
     return step.ok();
   }
@@ -192,13 +190,13 @@ class RobotAttempt {
   void note(const InstrumentStep& step, const RobotVerdict& verdict) {
     ++tally_.cycles;
     ++tally_.statuses[static_cast<std::size_t>(step.status)];
-    tally_.below += verdict.is_below ? 1 : 0;
+    if (verdict.is_below) tally_.count(Breach::too_near);
     if (verdict.is_below && verdict.least < 0.0) {
       ++tally_.in_mesh;
       tally_.deepest = std::max(tally_.deepest, -verdict.least);
     }
-    tally_.limits_broken += verdict.limits_broken ? 1 : 0;
-    tally_.guides_left += verdict.is_guide_left ? 1 : 0;
+    if (verdict.limits_broken) tally_.count(Breach::limits_broken);
+    if (verdict.is_guide_left) tally_.count(Breach::guide_left);
     tally_.least_beyond = std::min(tally_.least_beyond, verdict.beyond);
     tally_.least_in_tau = std::min(tally_.least_in_tau, verdict.beyond / subject_->tolerance());
     tally_.least_guide_in_tau = std::min(tally_.least_guide_in_tau, verdict.guide_room);
@@ -221,7 +219,8 @@ class RobotAttempt {
     const RobotTask::Increment none = RobotTask::Increment::Zero(made.size());
     tally_.worse += task.cost(made) > 1.05 * task.cost(none) ? 1 : 0;
     if (!(task.share(made) < blocked_below)) return;
-    const std::uint64_t every = setup_.is_drawn ? sampled_where_drawn : sampled;
+    const std::uint64_t usual = setup_.is_drawn ? sampled_where_drawn : sampled;
+    const std::uint64_t every = campaign_.searched > 0 ? campaign_.searched : usual;
     if (tally_.blocked++ % every != 0 || setup_.scenario->moves) return;
     const Search found =
         search(task, positions_, {made.data(), positions_.size()}, judge_, random_);
@@ -231,27 +230,102 @@ class RobotAttempt {
     tally_.movable += found.share >= movable_above ? 1 : 0;
   }
 
-  RobotTally& tally_;
-  RobotTimes& times_;
+  const Campaign& campaign_;
+  Attack& attack_;
+  Tally& tally_;
   Random& random_;
   RobotSetup setup_;
   oracle::JudgedRobot judged_;
   Chain chain_;
   std::unique_ptr<RobotSubject> subject_;
   std::optional<MotionConstraint> point_;  // of a ball at the tip alone: timed beside it
-  RobotJudge judge_;
+  oracle::RobotJudge judge_;
   RobotHand hand_;
   std::vector<double> positions_;
-  std::vector<double> levels_;           // see RobotJudge::judge
   double margin_ = 0.0;                  // at present [mm]
   std::optional<std::uint64_t> waited_;  // for a margin that is not kept yet [cycles]
+  int failures_ = 0;                     // cycles in a row without a motion
+};
+
+class RobotAttack final : public Attack {
+ public:
+  RobotAttack(const Campaign& campaign, const Arena& arena, const Campaign::RowKind& kind,
+              std::shared_ptr<std::shared_ptr<Scene>> loaded)
+      : Attack({.mesh = arena.mesh,
+                .scenario = std::string(kind.scenario->name),
+                .speed = kind.speed}),
+        campaign_(campaign),
+        arena_(arena),
+        scenario_(*kind.scenario),
+        robot_(campaign.robot.empty() ? nullptr : &robot_named(campaign.robot)),
+        is_drawn_(!arena.load || robot_ == nullptr || scenario_.carrier == Carrier::slides),
+        loaded_(std::move(loaded)) {}
+
+  std::uint64_t begin() override {
+    attempt_.reset();
+    if (arena_.load && !*loaded_) *loaded_ = std::make_shared<Scene>(arena_.load().front());
+    if (*loaded_) row.triangles = (*loaded_)->mesh()->triangle_count();
+    const auto number = static_cast<std::uint64_t>(&scenario_ - scenarios().data());
+    const int most_misses = is_drawn_ ? 20 : 1;  // the next draw may have a start
+    const auto draw_mesh = [&](Random& random) {
+      return *loaded_ ? *loaded_ : arena_.draw(random);
+    };
+    const auto options = [&](const Chain& chain) {
+      return options_of(campaign_, chain, row.speed);
+    };
+    for (int misses = 0; !is_done(); row.is_out_of_starts = ++misses >= most_misses) {
+      Random of_seed(campaign_.seed + 1000 * number);
+      random_ = Random(of_seed.bits() ^ draws_++);
+      auto setup = draw_setup(scenario_, robot_, row.speed, random_, draw_mesh, options);
+      if (!setup) continue;
+      setup->is_drawn = is_drawn_;
+      ++row.starts;
+      row.period = setup->options.period;
+      attempt_.emplace(campaign_, std::move(*setup), random_, *this);
+      return std::min(is_drawn_ ? cycles_of_a_drawn_start : cycles_of_a_start,
+                      campaign_.cycles - row.cycles);
+    }
+    return 0;
+  }
+
+  bool cycle(std::uint64_t number) override { return attempt_->cycle(number); }
+  bool is_done() const override { return row.is_out_of_starts || row.cycles >= campaign_.cycles; }
+
+ private:
+  const Campaign& campaign_;
+  const Arena& arena_;
+  const Scenario& scenario_;
+  const RobotUnderTest* robot_;  // null: one is drawn for each start
+  bool is_drawn_;                // mesh or robot are others in the next setup
+  std::shared_ptr<std::shared_ptr<Scene>>
+      loaded_;  // for all rows on the mesh; null until the first
+  std::uint64_t draws_ = 0;
+  Random random_{0};
+  std::optional<RobotAttempt> attempt_;
 };
 
 }  // namespace
 
-void run_attempt(const RobotCampaign& campaign, RobotSetup setup, Random& random,
-                 std::uint64_t cycles, RobotTally& tally, RobotTimes& times) {
-  RobotAttempt(campaign, std::move(setup), random, tally, times).run(cycles);
+InstrumentOptions options_of(const Campaign& campaign, const Chain& chain, double speed) {
+  InstrumentOptions options{.margin = campaign.margin,
+                            .band = std::min(0.002, 0.05 * campaign.margin),
+                            .certified = campaign.motion};
+  for (int k = 1; k <= chain.size(); ++k) {
+    const double needed = chain.joint(k).kind == JointKind::revolute ? 0.1 : 2.5;
+    options.period = std::max(options.period, speed * needed / chain.joint(k).limits.velocity);
+  }
+  return options;
+}
+
+Attacks attacks_on_instruments(const Campaign& campaign, std::span<const Arena> arenas) {
+  Attacks attacks;
+  for (const Arena& arena : arenas) {
+    const auto loaded = std::make_shared<std::shared_ptr<Scene>>();
+    for (const Campaign::RowKind& kind : campaign.row_kinds()) {
+      attacks.push_back(std::make_unique<RobotAttack>(campaign, arena, kind, loaded));
+    }
+  }
+  return attacks;
 }
 
 }  // namespace keepout::app

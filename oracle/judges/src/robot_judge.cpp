@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verify/robot/judge.h"
+#include "keepout/judges/robot_judge.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace keepout::app {
+namespace keepout::oracle {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -14,8 +14,8 @@ constexpr int parts_of_a_cycle = 8;
 constexpr int refinements = 3;               // around the worst place
 constexpr double angular_tolerance = 1e-12;  // [chord]
 
-/// Returns true if all joints may go there, but for what sums are rounded: one that is outside of
-/// its limits may stay, or come back.
+/// Returns true if all joints may go there, apart from rounding. A joint outside of its limits may
+/// stay, or come back.
 bool are_allowed(const Chain& chain, std::span<const double> from, std::span<const double> to,
                  double period) {
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -31,11 +31,21 @@ bool are_allowed(const Chain& chain, std::span<const double> from, std::span<con
 }
 
 /// Returns the certified distance of a pair or a guide that should keep `target`, is at `distance`,
-/// and was promised `floor` last: docs/joint-space-step.md, "Certified clearance".
+/// and was promised `floor` last. Source: docs/joint-space-step.md, "Certified clearance".
 double certified(double distance, double floor, double target, double band, double tolerance) {
   if (distance >= target - 2.75 * tolerance) return target;
   const double room = distance > 0.0 ? std::min(band, 0.5 * distance) : band;
   return std::clamp(distance - room, std::min(floor, target), target);
+}
+
+/// Returns the fraction of the certified distance that a step promises to a body and a mesh.
+double promised_level(const InstrumentStep& step, std::size_t body, std::size_t mesh) {
+  if (!step.ok()) return step.level;
+  for (const DegradedClearance& pair : step.degraded) {
+    const bool is_it = pair.body == static_cast<int>(body) && pair.mesh == static_cast<int>(mesh);
+    if (is_it) return pair.level;
+  }
+  return 1.0;
 }
 
 }  // namespace
@@ -54,11 +64,12 @@ RobotJudge::RobotJudge(JudgedScene scene, const Chain& limits, Random& random,
       has_band_(scene.has_band),
       least_(bodies_) {
   for (JudgedScene::Mesh& mesh : scene.meshes) {
-    meshes_.push_back({oracle::InstrumentOracle(std::move(mesh.tree), scene.robot, base_),
-                       mesh.margin, mesh.pose});
+    meshes_.push_back(
+        {InstrumentOracle(std::move(mesh.tree), scene.robot, base_), mesh.margin, mesh.pose});
   }
   kept_.resize(meshes_.size() * bodies_ + guides_.size());
   distances_.resize(kept_.size());
+  levels_.resize(meshes_.size() * bodies_);
   follow(options);
 }
 
@@ -68,15 +79,14 @@ double RobotJudge::margin(std::size_t mesh) const noexcept {
 
 double RobotJudge::tolerance(std::size_t kept) const noexcept {
   const std::size_t pairs = meshes_.size() * bodies_;
-  const bool is_angular =
-      kept >= pairs && guides_[kept - pairs].kind == oracle::JudgedGuide::Kind::axis;
+  const bool is_angular = kept >= pairs && guides_[kept - pairs].kind == JudgedGuide::Kind::axis;
   return is_angular ? angular_tolerance : tolerance_;
 }
 
 void RobotJudge::follow(const InstrumentOptions& options) {
   options_ = options;
   if (!has_band_) options_.band = 0.0;
-  look(positions_, 0.0, distances_);
+  measure(positions_, 0.0);
   for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].distance = distances_[i];
 }
 
@@ -108,8 +118,8 @@ Pose RobotJudge::pose_at(const Mesh& mesh, double share) const {
   return pose;
 }
 
-/// Measures all distances at a share of the way to `next`.
-void RobotJudge::look(std::span<const double> next, double share, std::span<double> distances) {
+/// Measures all distances at a fraction of the motion to `next`.
+void RobotJudge::measure(std::span<const double> next, double share) {
   for (std::size_t k = 0; k < positions_.size(); ++k) {
     between_[k] = share == 1.0 ? next[k] : positions_[k] + share * (next[k] - positions_[k]);
   }
@@ -119,20 +129,20 @@ void RobotJudge::look(std::span<const double> next, double share, std::span<doub
     meshes_[m].oracle.move_to(between_,
                               {back * (base_.position - pose.position), back * base_.rotation});
     for (std::size_t b = 0; b < bodies_; ++b) {
-      distances[m * bodies_ + b] = meshes_[m].oracle.clearance(b, margin(m));
+      distances_[m * bodies_ + b] = meshes_[m].oracle.clearance(b, margin(m));
     }
   }
   if (guides_.empty()) return;
   const auto links = oracle::place(meshes_[0].oracle.robot(), base_, between_);
   for (std::size_t g = 0; g < guides_.size(); ++g) {
-    distances[meshes_.size() * bodies_ + g] = -excess(guides_[g], links);
+    distances_[meshes_.size() * bodies_ + g] = -excess(guides_[g], links);
   }
 }
 
-/// Looks, remembers what is least, and returns the smallest room there is: distance less what is
-/// due.
-double RobotJudge::look_and_note(std::span<const double> next, double share) {
-  look(next, share, distances_);
+/// Measures, notes the least distances, and returns the smallest difference of a distance and what
+/// is due.
+double RobotJudge::measure_and_note(std::span<const double> next, double share) {
+  measure(next, share);
   double room = infinity;
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     kept_[i].least = std::min(kept_[i].least, distances_[i]);
@@ -141,8 +151,8 @@ double RobotJudge::look_and_note(std::span<const double> next, double share) {
   return room;
 }
 
-/// Finds what is certified in this cycle, and promised.
-void RobotJudge::open(std::span<const double> levels) {
+/// Finds the distances that are certified and promised in this cycle.
+void RobotJudge::open() {
   if (is_placed_anew_) follow(options_);
   is_placed_anew_ = false;
   const std::size_t pairs = meshes_.size() * bodies_;
@@ -152,40 +162,56 @@ void RobotJudge::open(std::span<const double> levels) {
     const double band = is_pair || !has_band_ ? options_.band : guides_[i - pairs].band;
     const double target = is_pair ? margin(i / bodies_) - options_.band : -guides_[i - pairs].band;
     const double floor = certified(kept.distance, kept.floor, target, band, tolerance(i));
-    const double level = is_pair && !levels.empty() ? levels[i] : 1.0;
+    const double level = is_pair ? levels_[i] : 1.0;
     kept.due = level > 0.0 ? floor - (1.0 - level) * std::max(floor, 0.0) : -infinity;
     kept.floor = kept.due;
     kept.least = kept.distance;
   }
 }
 
-RobotVerdict RobotJudge::judge(std::span<const double> next, std::span<const double> levels) {
+RobotVerdict RobotJudge::judge(std::span<const double> next) {
+  std::ranges::fill(levels_, 1.0);
+  return judge_promised(next);
+}
+
+RobotVerdict RobotJudge::judge(std::span<const double> next, const InstrumentStep& step,
+                               std::optional<std::size_t> must_keep) {
+  for (std::size_t p = 0; p < levels_.size(); ++p) {
+    levels_[p] = must_keep == p % bodies_ ? 1.0 : promised_level(step, p % bodies_, p / bodies_);
+  }
+  return judge_promised(next);
+}
+
+/// Measures along the motion, and moves the instrument and the meshes to its end.
+void RobotJudge::sample(std::span<const double> next) {
+  double worst = infinity;
+  double at = 1.0;
+  const auto try_at = [&](double share) {
+    const double room = measure_and_note(next, share);
+    if (room < worst) at = share;
+    worst = std::min(worst, room);
+  };
+  for (int i = 0; i < parts_of_a_cycle; ++i) try_at((i + random_->uniform()) / parts_of_a_cycle);
+  double step = 0.5 / parts_of_a_cycle;
+  for (int i = 0; i < refinements && worst < options_.margin; ++i, step *= 0.5) {
+    const double middle = at;
+    try_at(std::max(middle - step, 0.0));
+    try_at(std::min(middle + step, 1.0));
+  }
+  measure_and_note(next, 1.0);  // where the next cycle begins
+  for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].distance = distances_[i];
+  std::ranges::copy(next, positions_.begin());
+  for (Mesh& mesh : meshes_) mesh.pose = pose_at(mesh, 1.0);
+}
+
+RobotVerdict RobotJudge::judge_promised(std::span<const double> next) {
   RobotVerdict verdict{.limits_broken = !are_allowed(*limits_, positions_, next, options_.period)};
-  open(levels);
+  open();
   const bool is_still =
       std::ranges::equal(next, positions_) && std::ranges::all_of(meshes_, [](const Mesh& mesh) {
         return mesh.velocity.linear.isZero(0.0) && mesh.velocity.angular.isZero(0.0);
       });
-  if (!is_still) {
-    double worst = infinity;
-    double at = 1.0;
-    const auto try_at = [&](double share) {
-      const double room = look_and_note(next, share);
-      if (room < worst) at = share;
-      worst = std::min(worst, room);
-    };
-    for (int i = 0; i < parts_of_a_cycle; ++i) try_at((i + random_->uniform()) / parts_of_a_cycle);
-    double step = 0.5 / parts_of_a_cycle;
-    for (int i = 0; i < refinements && worst < options_.margin; ++i, step *= 0.5) {
-      const double middle = at;
-      try_at(std::max(middle - step, 0.0));
-      try_at(std::min(middle + step, 1.0));
-    }
-    look_and_note(next, 1.0);  // where the next cycle begins
-    for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].distance = distances_[i];
-    std::ranges::copy(next, positions_.begin());
-    for (Mesh& mesh : meshes_) mesh.pose = pose_at(mesh, 1.0);
-  }
+  if (!is_still) sample(next);
   std::ranges::fill(least_, infinity);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const double room = kept_[i].least - kept_[i].due;
@@ -206,8 +232,8 @@ bool RobotJudge::would_allow(std::span<const double> next) {
   constexpr int poses = 9;
   const std::size_t pairs = meshes_.size() * bodies_;
   if (!are_allowed(*limits_, positions_, next, options_.period)) return false;
-  for (int i = poses - 1; i > 0; --i) {  // where it ends is most likely to be too close
-    look(next, static_cast<double>(i) / (poses - 1), distances_);
+  for (int i = poses - 1; i > 0; --i) {  // the end is most likely to be too close
+    measure(next, static_cast<double>(i) / (poses - 1));
     for (std::size_t k = 0; k < kept_.size(); ++k) {
       const double wanted =
           k < pairs ? margin(k / bodies_) - 0.1 * options_.band : -0.1 * guides_[k - pairs].band;
@@ -217,4 +243,4 @@ bool RobotJudge::would_allow(std::span<const double> next) {
   return true;
 }
 
-}  // namespace keepout::app
+}  // namespace keepout::oracle

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verify/robot/drawn_robot.h"
+#include "verify/robot/robots.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "keepout/error.h"
+#include "keepout/fixtures/robots.h"
 #include "keepout/robot/denavit_hartenberg.h"
 
 namespace keepout::app {
@@ -14,7 +18,8 @@ namespace {
 constexpr double turning_velocity = 1.0;   // [rad/s]
 constexpr double sliding_velocity = 25.0;  // [mm/s]
 
-/// A robot as it is drawn: the judge's table and bodies, and what else the library needs.
+/// A drawn robot: table and bodies in the terms of the judge, and the limits that the library needs
+/// beside them.
 struct Drawn {
   oracle::JudgedRobot judged;
   std::vector<JointLimits> limits;
@@ -28,38 +33,48 @@ Body body_of(const oracle::JudgedBody& judged) {
   return body;
 }
 
-Instrument instrument_of(const Drawn& drawn, const Pose& base) {
+RobotUnderTest robot_of(Drawn drawn) {
   constexpr double right = std::numbers::pi / 2.0;
+  RobotUnderTest robot{.name = "drawn", .description = ""};
   std::vector<DenavitHartenberg> table;
   for (std::size_t k = 0; k < drawn.judged.table.size(); ++k) {
     const oracle::TableRow& row = drawn.judged.table[k];
+    const JointLimits& limits = drawn.limits[k];
     table.push_back({.name = "joint",
                      .kind = row.slides ? JointKind::prismatic : JointKind::revolute,
                      .a = row.a,
                      .alpha = right * row.alpha_quarters,
                      .d = row.d,
                      .theta = right * row.theta_quarters,
-                     .limits = drawn.limits[k]});
-  }
-  std::vector<Body> bodies;
-  for (const oracle::JudgedBody& body : drawn.judged.bodies) bodies.push_back(body_of(body));
-  const Vec3 tip = drawn.judged.bodies.back().points.back().position;
-  return {Chain(joints_of(table, DhConvention::modified).joints, base, {tip, Mat3::Identity()}),
-          std::move(bodies)};
-}
-
-RobotUnderTest robot_of(Drawn drawn) {
-  std::vector<RobotUnderTest::Range> starts;
-  for (const JointLimits& limits : drawn.limits) {
+                     .limits = limits});
     const double middle = 0.5 * (limits.lower + limits.upper);
     const double half = 0.3 * (limits.upper - limits.lower);
-    starts.push_back({middle - half, middle + half});
+    robot.starts.push_back({middle - half, middle + half});
   }
-  return {.name = "drawn",
-          .description = "",
-          .make = [drawn](const Pose& base) { return instrument_of(drawn, base); },
-          .judged = [drawn] { return drawn.judged; },
-          .starts = std::move(starts)};
+  robot.joints = joints_of(table, DhConvention::modified).joints;
+  robot.flange.position = drawn.judged.bodies.back().points.back().position;
+  for (const oracle::JudgedBody& body : drawn.judged.bodies) robot.bodies.push_back(body_of(body));
+  robot.model = std::move(drawn.judged);
+  return robot;
+}
+
+/// Returns the joints of a chain, whose rotations and axes are normalized.
+std::vector<Joint> all_joints(const Chain& chain) {
+  std::vector<Joint> joints;
+  for (int k = 1; k <= chain.size(); ++k) joints.push_back(chain.joint(k));
+  return joints;
+}
+
+RobotUnderTest known_robot(std::string_view name, std::string_view description,
+                           const Instrument& instrument, oracle::JudgedRobot model,
+                           std::vector<RobotUnderTest::Range> starts) {
+  return {name,
+          description,
+          all_joints(instrument.chain()),
+          instrument.chain().flange(),
+          {instrument.bodies().begin(), instrument.bodies().end()},
+          std::move(model),
+          std::move(starts)};
 }
 
 JointLimits turning(double range) {
@@ -73,7 +88,7 @@ double drawn_radius(Random& random) {
   return random.uniform() < 0.2 ? 0.0 : random.uniform(0.05, 3.0);
 }
 
-/// Points about a place of a link, the place itself last; flat in every other case.
+/// Points about a place of a link, the place itself last; flat in half of the cases.
 oracle::JudgedBody blade_at(int link, const Vec3& place, double size, Random& random) {
   oracle::JudgedBody blade{.points = {}, .radius = 0.3 * drawn_radius(random)};
   const Vec3 normal = random.direction();
@@ -87,7 +102,7 @@ oracle::JudgedBody blade_at(int link, const Vec3& place, double size, Random& ra
   return blade;
 }
 
-/// Adds three joints that slide along z, y and x of the base, but for their signs.
+/// Adds three joints that slide along z, y and x of the base, up to sign.
 void add_slides(Drawn& drawn, double range) {
   drawn.judged.table.push_back({.slides = true});
   drawn.judged.table.push_back({.slides = true, .alpha_quarters = 1, .theta_quarters = 1});
@@ -107,6 +122,24 @@ RobotUnderTest tip_with(oracle::JudgedBody body) {
 }
 
 }  // namespace
+
+std::span<const RobotUnderTest> robots_under_test() {
+  static const std::array<RobotUnderTest, 2> robots{
+      known_robot("psm", "six joints about a port: a da Vinci manipulator with an 8 mm instrument",
+                  psm(), oracle::judged_psm(),
+                  {{-0.6, 0.6}, {-0.5, 0.5}, {90.0, 125.0}, {-2.0, 2.0}, {-0.6, 0.6}, {-0.6, 0.6}}),
+      known_robot("seven_joint_arm", "seven revolute joints and a straight shaft, held by no port",
+                  seven_joint_arm(), oracle::judged_seven_joint_arm(),
+                  {{-1, 1}, {0.2, 0.9}, {-1, 1}, {-1.6, -0.8}, {-1, 1}, {0.3, 1.2}, {-1, 1}})};
+  return robots;
+}
+
+const RobotUnderTest& robot_named(const std::string& name) {
+  const auto robots = robots_under_test();
+  const auto found = std::ranges::find(robots, name, &RobotUnderTest::name);
+  if (found == robots.end()) throw Error("there is no robot '" + name + "'");
+  return *found;
+}
 
 RobotUnderTest drawn_robot(Random& random) {
   Drawn drawn;
@@ -172,39 +205,19 @@ RobotUnderTest robot_with_stuck_bodies(Random& random) {
   return robot;
 }
 
-RobotUnderTest with_blade(const RobotUnderTest& robot, Random& random) {
-  const oracle::JudgedRobot judged = robot.judged();
-  const oracle::JudgedPoint tip = judged.bodies.back().points.back();
-  const oracle::JudgedBody blade =
-      blade_at(tip.link, tip.position, random.uniform(2.0, 12.0), random);
-  RobotUnderTest bladed = robot;
-  bladed.make = [make = robot.make, blade](const Pose& base) {
-    const Instrument bare = make(base);
-    std::vector<Body> bodies(bare.bodies().begin(), bare.bodies().end());
-    bodies.push_back(body_of(blade));
-    return Instrument(bare.chain(), std::move(bodies));
-  };
-  bladed.judged = [judged, blade] {
-    oracle::JudgedRobot all = judged;
-    all.bodies.push_back(blade);
-    return all;
-  };
-  return bladed;
+RobotUnderTest with_blade(RobotUnderTest robot, Random& random) {
+  const oracle::JudgedPoint tip = robot.model.bodies.back().points.back();
+  robot.model.bodies.push_back(blade_at(tip.link, tip.position, random.uniform(2.0, 12.0), random));
+  robot.bodies.push_back(body_of(robot.model.bodies.back()));
+  return robot;
 }
 
-RobotUnderTest without_velocity_limits(const RobotUnderTest& robot) {
-  RobotUnderTest fast = robot;
-  fast.make = [make = robot.make](const Pose& base) {
-    const Instrument limited = make(base);
-    std::vector<Joint> joints;
-    for (int k = 1; k <= limited.chain().size(); ++k) {
-      joints.push_back(limited.chain().joint(k));
-      joints.back().limits.velocity = std::numeric_limits<double>::infinity();
-    }
-    return Instrument(Chain(std::move(joints), base, limited.chain().flange()),
-                      {limited.bodies().begin(), limited.bodies().end()});
-  };
-  return fast;
+RobotUnderTest without_velocity_limits(RobotUnderTest robot) {
+  robot.joints = all_joints(robot.make({}).chain());
+  for (Joint& joint : robot.joints) {
+    joint.limits.velocity = std::numeric_limits<double>::infinity();
+  }
+  return robot;
 }
 
 }  // namespace keepout::app

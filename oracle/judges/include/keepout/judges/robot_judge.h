@@ -3,75 +3,81 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "keepout/fixtures/random.h"
+#include "keepout/geometry/twist.h"
 #include "keepout/oracle/instrument_oracle.h"
 #include "keepout/oracle/judged_guide.h"
-#include "keepout/robot/instrument_constraint.h"
+#include "keepout/robot/instrument_options.h"
+#include "keepout/robot/instrument_step.h"
 
-namespace keepout::app {
+namespace keepout::oracle {
 
-/// What the judge says of one cycle.
+/// The verdict on one cycle of an instrument.
 struct RobotVerdict {
   /// Smallest clearance of all bodies at all poses; infinite beyond the margin. [length]
   double least = std::numeric_limits<double>::infinity();
   /// The smallest of these clearances less what was promised to body and mesh. [length]
   double beyond = std::numeric_limits<double>::infinity();
-  /// The smallest room that a guide had left, to the edge of what is promised: below 0 it was left.
-  /// In tolerances of the guide.
+  /// The smallest distance of a guided point to the edge of what is promised, in tolerances of the
+  /// guide; below 0 if the point is beyond the edge.
   double guide_room = std::numeric_limits<double>::infinity();
-  bool is_below = false;       // some body did not keep it, beyond rounding
-  bool is_guide_left = false;  // some guide was left by more than is promised, beyond rounding
-  bool limits_broken = false;  // a joint left its limits, or went farther than a cycle admits
+  bool is_below = false;       // a body came closer than promised, beyond rounding
+  bool is_guide_left = false;  // a guide was left by more than is promised, beyond rounding
+  bool limits_broken = false;  // a joint left its limits, or moved farther than a cycle admits
 };
 
 /// The robot, meshes and guides in the terms of the judge.
 struct JudgedScene {
   struct Mesh {
-    std::shared_ptr<const oracle::TriangleTree> tree;
+    std::shared_ptr<const TriangleTree> tree;
     double margin = 0.0;  // of its own; 0: that of the options [length]
     Pose pose = {};
   };
 
-  oracle::JudgedRobot robot;
+  JudgedRobot robot;
   Pose base;  // of link 0
   std::vector<Mesh> meshes;
-  std::vector<oracle::JudgedGuide> guides = {};
-  bool has_band = true;  // InstrumentOptions::band is allowed for: MotionConstraint has none
+  std::vector<JudgedGuide> guides = {};
+  bool has_band = true;  // the step uses InstrumentOptions::band; MotionConstraint has none
 };
 
 /// Follows an instrument and holds each cycle to the theorem: no body comes closer to a mesh than
-/// its floor, which is margin - band, or when it was closer already, what it had, less the band;
-/// and which falls only where a step said that it could keep less. The same holds for guides, of
-/// which the floor is a depth within their region. Kinematics, distances and regions are the
-/// oracle's.
+/// its certified distance. That is margin - band or, if the body was closer already, what it had
+/// less the band. It falls only where a step reported that it keeps less. The same holds for
+/// guides, whose certified distance is a depth within their region. Kinematics, distances and
+/// regions are the oracle's.
 ///
-/// A cycle is looked at where it begins and ends, at a random place in each eighth of it, and again
-/// around the worst of these. Between such places a dip can be missed: over a flat surface one of
-/// bend / 512 at most, as the height there is a parabola's; over an edge or a corner one of half
-/// the way between two places. Such a dip is missed in one cycle, not in all: the places are
-/// random.
+/// The judge samples a cycle at its start and end, at a random place in each eighth of it, and
+/// again around the worst of these. It can miss a dip between two samples: over a flat surface a
+/// dip of at most bend / 512, because the height there is a parabola; over an edge or a corner one
+/// of half the displacement between two samples. It misses such a dip in one cycle, not in all,
+/// because the samples are random.
 class RobotJudge {
  public:
-  /// `limits`: whose limits of joints hold. Limits and random numbers must outlive the judge.
+  /// `limits`: the chain whose joint limits hold. Limits and random numbers must outlive the judge.
   RobotJudge(JudgedScene scene, const Chain& limits, Random& random,
              std::span<const double> positions, const InstrumentOptions& options, double tolerance);
 
   /// From now on these options hold.
   void follow(const InstrumentOptions& options);
 
-  /// From the next cycle on, this is where a mesh is and how it moves.
+  /// Sets pose and velocity of a mesh from the next cycle on.
   void place(std::size_t mesh, const Pose& pose, const Twist& velocity);
 
-  /// The joints go from where they are to `next`, all at once, and meshes as they were placed.
-  /// `levels`: the shares of the floors that are promised to all bodies beside the first mesh, the
-  /// second, and so on; without them all of it.
-  RobotVerdict judge(std::span<const double> next, std::span<const double> levels = {});
+  /// Judges the motion of all joints at once from where they are to `next`, beside meshes that move
+  /// as they were placed. Each body must keep its whole certified distance.
+  RobotVerdict judge(std::span<const double> next);
+  /// Like judge(next), but bodies must keep only what `step` promises, except for the body
+  /// `must_keep`.
+  RobotVerdict judge(std::span<const double> next, const InstrumentStep& step,
+                     std::optional<std::size_t> must_keep = std::nullopt);
 
   /// Returns true if no body comes closer than it may and no guide is left when the joints go to
-  /// `next` in the coming cycle; with all of the margin but a tenth of the band. Looks at nine
+  /// `next` in the coming cycle, with all of the margin but a tenth of the band. Samples nine
   /// poses.
   bool would_allow(std::span<const double> next);
 
@@ -80,7 +86,7 @@ class RobotJudge {
   std::span<const double> least() const noexcept { return least_; }
 
   /// Returns the oracle of the instrument beside the first mesh. Valid until the next call.
-  const oracle::InstrumentOracle& oracle() const noexcept { return meshes_.front().oracle; }
+  const InstrumentOracle& oracle() const noexcept { return meshes_.front().oracle; }
 
   /// Returns the pose of a mesh after the last cycle.
   const Pose& pose(std::size_t mesh) const noexcept { return meshes_[mesh].pose; }
@@ -89,7 +95,7 @@ class RobotJudge {
   bool is_recovered() const noexcept;
 
  private:
-  /// Body and mesh, or a guide: a distance, and what of it is promised.
+  /// The distance of a body and a mesh, or of a guide, and the part of it that is promised.
   struct Kept {
     double distance = 0.0;                                    // where the instrument is [length]
     double floor = -std::numeric_limits<double>::infinity();  // promised in the last cycle
@@ -97,7 +103,7 @@ class RobotJudge {
     double least = 0.0;                                       // in this cycle
   };
   struct Mesh {
-    oracle::InstrumentOracle oracle;
+    InstrumentOracle oracle;
     double margin;  // of its own, or 0 [length]
     Pose pose;
     Twist velocity = {};
@@ -106,14 +112,16 @@ class RobotJudge {
   double margin(std::size_t mesh) const noexcept;
   double tolerance(std::size_t kept) const noexcept;
   Pose pose_at(const Mesh& mesh, double share) const;
-  void look(std::span<const double> next, double share, std::span<double> distances);
-  double look_and_note(std::span<const double> next, double share);
-  void open(std::span<const double> levels);
+  void measure(std::span<const double> next, double share);
+  double measure_and_note(std::span<const double> next, double share);
+  void open();
+  void sample(std::span<const double> next);
+  RobotVerdict judge_promised(std::span<const double> next);
 
   std::size_t bodies_;
   Pose base_;
   std::vector<Mesh> meshes_;
-  std::vector<oracle::JudgedGuide> guides_;
+  std::vector<JudgedGuide> guides_;
   const Chain* limits_;
   Random* random_;
   std::vector<double> positions_;
@@ -124,7 +132,8 @@ class RobotJudge {
   bool is_placed_anew_ = false;
   std::vector<Kept> kept_;  // pairs as InstrumentConstraint has them, then guides
   std::vector<double> distances_;
-  std::vector<double> least_;  // of the last cycle [length]
+  std::vector<double> levels_;  // fractions of the certified distances that are promised to pairs
+  std::vector<double> least_;   // of the last cycle [length]
 };
 
-}  // namespace keepout::app
+}  // namespace keepout::oracle

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "keepout/fixtures/random.h"
+#include "keepout/oracle/judged_robot.h"
+#include "keepout/robot/instrument.h"
+
+namespace keepout::app {
+
+/// A robot of campaigns, defined twice: for the library and for the judge.
+struct RobotUnderTest {
+  struct Range {
+    double low, high;
+  };
+  std::string_view name;
+  std::string_view description;
+  std::vector<Joint> joints = {};
+  Pose flange = {};
+  std::vector<Body> bodies = {};
+  oracle::JudgedRobot model = {};  // the same robot in the terms of the judge
+  std::vector<Range> starts = {};  // of each joint, where motions begin [rad or length]
+
+  /// Returns the instrument on a base.
+  Instrument make(const Pose& base) const { return {Chain(joints, base, flange), bodies}; }
+  const oracle::JudgedRobot& judged() const noexcept { return model; }
+};
+std::span<const RobotUnderTest> robots_under_test();
+
+/// Throws Error if there is no robot of that name.
+const RobotUnderTest& robot_named(const std::string& name);
+
+/// Draws a chain of 3 to 7 joints, of any twists and offsets up to 60 mm, with one to three bodies:
+/// balls, capsules and blades, some of radius 0.
+RobotUnderTest drawn_robot(Random& random);
+
+/// Draws three joints that slide along orthogonal axes, and the tool: a ball, or the hull of up to
+/// 8 points.
+RobotUnderTest sliding_ball(Random& random);
+RobotUnderTest sliding_hull(Random& random);
+
+/// Draws four sliding joints. The last three carry the tool, which can give way in every direction.
+/// The first carries a body, and is at its upper limit when a mesh comes on along its axis. One
+/// more body is on the base.
+RobotUnderTest robot_with_stuck_bodies(Random& random);
+
+/// Returns the robot with a blade of 3 to 8 points on its last link, as the last body.
+RobotUnderTest with_blade(RobotUnderTest robot, Random& random);
+
+/// Returns the robot without velocity limits.
+RobotUnderTest without_velocity_limits(RobotUnderTest robot);
+
+}  // namespace keepout::app

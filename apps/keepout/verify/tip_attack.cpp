@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "keepout/factory/make_motion_constraint.h"
+#include "verify/attack.h"
+#include "verify/path.h"
+
+namespace keepout::app {
+namespace {
+
+using oracle::TipVerdict;
+
+// A tip is given up after so many steps in a row without a motion.
+constexpr int patience = 8;
+
+/// Returns the random numbers of one trajectory, which are independent of those of another.
+Random random_of(std::uint64_t seed, std::uint64_t trajectory) {
+  Random of_seed(seed);
+  Random of_trajectory(of_seed.bits() ^ trajectory);
+  return Random(of_trajectory.bits());
+}
+
+/// Returns true for a failure that no promise excludes: the tip was placed on the surface or
+/// inside, and the options or the joints allow no way out.
+bool is_expected(Status failure, const Setup& setup) noexcept {
+  const bool of_joints = failure == Status::ill_posed || failure == Status::infeasible;
+  return failure == Status::touching || failure == Status::inside ||
+         (setup.joints > 0 && of_joints);
+}
+
+/// Returns the record of a breach, or of a step that found no motion. `what`: the breach, or the
+/// status of the step.
+Json incident(std::string_view what, const Scene& scene, std::uint64_t trajectory,
+              std::uint64_t cycle, const Setup& setup, const Motion& motion, const Step& step,
+              const TipVerdict& verdict) {
+  std::vector<double> jacobian, row_matrix, row_bounds;
+  if (motion.jacobian) {
+    const double* const first = motion.jacobian->data();
+    jacobian.assign(first, first + 3 * motion.jacobian->joints());
+  }
+  if (motion.rows) {
+    const auto columns = motion.jacobian ? motion.jacobian->joints() : 3;
+    const auto rows = motion.rows->count();
+    row_matrix.assign(motion.rows->matrix(), motion.rows->matrix() + rows * columns);
+    row_bounds.assign(motion.rows->bounds(), motion.rows->bounds() + rows);
+  }
+  Json finding{{"what", what},
+               {"scene", scene.name()},
+               {"trajectory", trajectory},
+               {"cycle", cycle},
+               {"start", setup.start},
+               {"route", name(setup.route)},
+               {"longest_step", setup.longest_step},
+               {"joints", setup.joints},
+               {"has_limits", setup.has_limits},
+               {"start_tip", json_of(setup.tip)},
+               {"inside", inside_names[static_cast<std::size_t>(setup.inside)]},
+               {"tip", json_of(motion.tip)},
+               {"desired", json_of(motion.desired)},
+               {"motion", json_of(step.motion)},
+               {"status", name(step.status)},
+               {"jacobian", jacobian},      // 3 x n, column by column; empty without one
+               {"row_matrix", row_matrix},  // of the extra rows, row by row
+               {"row_bounds", row_bounds},
+               {"distance", verdict.distance},
+               {"allowed", verdict.threshold},
+               {"tau", verdict.tolerance},
+               {"triangle", verdict.triangle}};
+  for (const auto& option : step_options) {
+    std::visit([&](const auto& value) { finding[std::string(option.name)] = value; },
+               option.get(setup.options));
+  }
+  return finding;
+}
+
+/// A tip, its operator and its judge.
+struct Tip {
+  Tip(Scene& scene, Guard& guard, Random& random)
+      : setup(draw_setup(scene, random)),
+        path(scene, random, setup),
+        joints(setup, random),
+        judge(scene.judged(), setup.options,
+              setup.inside == Inside::led_out && scene.has_sides() && setup.joints == 0, setup.tip),
+        place(setup.tip) {
+    guard.begin(setup.options, setup.inside);
+  }
+
+  Setup setup;
+  Path path;
+  Joints joints;
+  oracle::TipJudge judge;
+  Vec3 place;
+  int failures = 0;  // since it last moved
+};
+
+class TipAttack final : public Attack {
+ public:
+  TipAttack(const Campaign& campaign, const Arena& arena, Findings& findings)
+      : Attack({.mesh = arena.mesh}), campaign_(campaign), arena_(arena), findings_(findings) {}
+
+  void add(std::uint64_t trajectory) { trajectories_.push_back(trajectory); }
+
+  std::uint64_t begin() override {
+    tip_.reset();
+    if (is_done()) return 0;
+    if (scenes_.empty()) {
+      scenes_ = arena_.load();
+      for (const Scene& scene : scenes_) guards_.push_back(campaign_.make_guard(scene));
+      row.triangles = scenes_.front().mesh()->triangle_count();
+    }
+    trajectory_ = trajectories_[row.starts++];
+    random_ = random_of(campaign_.seed, trajectory_);
+    random_.bits();  // which chose the arena
+    // The first scene is at the origin. The others are a minority.
+    const bool is_elsewhere = scenes_.size() > 1 && random_.uniform() < 0.125;
+    scene_ = is_elsewhere ? 1 + random_.below(scenes_.size() - 1) : 0;
+    return std::min(steps_of_a_trajectory, campaign_.steps - trajectory_ * steps_of_a_trajectory);
+  }
+
+  bool cycle(std::uint64_t number) override {
+    Scene& scene = scenes_[scene_];
+    Guard& guard = *guards_[scene_];
+    if (!tip_) {
+      tip_.emplace(scene, guard, random_);
+      ++row.tips;
+    }
+    Motion motion{.tip = tip_->place, .desired = tip_->path.next(tip_->place)};
+    tip_->joints.attach(motion);
+    const Step step = guard.step(motion);
+    const TipVerdict verdict = tip_->judge.judge(motion, step);
+    add(verdict, step.status);
+
+    const auto note = [&](std::string_view what, Json& incidents, std::size_t most) {
+      if (incidents.size() >= most) return;
+      incidents.push_back(
+          incident(what, scene, trajectory_, number, tip_->setup, motion, step, verdict));
+    };
+    if (!step.ok() && !is_expected(step.status, tip_->setup)) {
+      note(name(step.status), findings_.anomalies, most_anomalies);
+    }
+    if (verdict.breach) note(name(*verdict.breach), findings_.breaches, most_breaches);
+    tip_->failures = step.ok() ? 0 : tip_->failures + 1;
+    tip_->place += step.motion;
+    if (verdict.breach || tip_->failures >= patience) tip_.reset();
+    return true;
+  }
+
+  bool is_done() const override { return row.starts == trajectories_.size(); }
+
+ private:
+  void add(const TipVerdict& verdict, Status status) {
+    ++row.cycles;
+    ++row.statuses[static_cast<std::size_t>(status)];
+    row.led_out += verdict.was_led_out ? 1 : 0;
+    if (verdict.breach) row.count(*verdict.breach);
+    if (verdict.was_led_out || !(verdict.tolerance > 0.0)) return;
+    const double beyond = verdict.distance - required_clearance(tip_->setup.options);
+    row.least_beyond = std::min(row.least_beyond, beyond);
+    row.least_in_tau = std::min(row.least_in_tau, beyond / verdict.tolerance);
+  }
+
+  const Campaign& campaign_;
+  const Arena& arena_;
+  Findings& findings_;
+  std::vector<std::uint64_t> trajectories_;  // the numbers of all on this mesh
+  std::uint64_t trajectory_ = 0;             // at present
+  std::vector<Scene> scenes_;
+  std::vector<std::unique_ptr<Guard>> guards_;
+  std::size_t scene_ = 0;  // at present
+  Random random_{0};
+  std::optional<Tip> tip_;
+};
+
+/// Options that the constraint accepts, until the first tip brings its own.
+MotionConstraintSettings any_settings(const Scene& scene) {
+  const double radius = scene.mean_edge();
+  return {.options = {.radius = radius,
+                      .margin = scene.judged().longest_edge() + least_distance_kept(scene, radius)},
+          .capacity = {.nodes = most_nodes}};
+}
+
+}  // namespace
+
+Guard::Guard(const Scene& scene)
+    : constraint_(make_motion_constraint(scene.mesh(), scene.shared_index(), any_settings(scene))) {
+}
+
+void Guard::begin(const StepOptions& options, Inside inside) {
+  constraint_.set_options(options);
+  sides_ = inside == Inside::led_out ? SideWatch() : SideWatch::off();
+}
+
+Step Guard::step(const Motion& motion) noexcept { return constraint_.step(motion, sides_); }
+
+Attacks attacks_on_tips(const Campaign& campaign, std::span<const Arena> arenas,
+                        Findings& findings) {
+  Attacks attacks;
+  for (const Arena& arena : arenas) {
+    attacks.push_back(std::make_unique<TipAttack>(campaign, arena, findings));
+  }
+  const std::uint64_t count = trajectory_count(campaign.steps);
+  for (std::uint64_t n = campaign.shard.index - 1; n < count; n += campaign.shard.count) {
+    const std::size_t arena = random_of(campaign.seed, n).below(arenas.size());
+    static_cast<TipAttack&>(*attacks[arena]).add(n);
+  }
+  return attacks;
+}
+
+}  // namespace keepout::app
