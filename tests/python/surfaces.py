@@ -63,11 +63,18 @@ def poses(vertices, count, seed=1, spread=1.0, step=0.3):
     return np.hstack([tips, step * random.normal(size=(count, 3))])
 
 
+def run(*command, **options):
+    """What a program prints. It must succeed."""
+    ended = subprocess.run(command, capture_output=True, text=True, **options)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    return ended.stdout
+
+
 def command_replay(path, lines, folder, *options):
     """The motions, (count, 3), the names of the statuses and the numbers of planes of `keepout replay`."""
     np.savetxt(folder / "poses.txt", lines, fmt="%.17g")
     files = ["--poses", folder / "poses.txt", "--out", folder / "steps.csv"]
-    subprocess.run([os.environ["KEEPOUT_COMMAND"], "replay", path, *files, *options], check=True, capture_output=True)
+    run(os.environ["KEEPOUT_COMMAND"], "replay", path, *files, *options)
     with open(folder / "steps.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     motion = np.array([[float(row[axis]) for axis in ("ux", "uy", "uz")] for row in rows])

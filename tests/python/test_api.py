@@ -34,13 +34,7 @@ def test_status_is_the_one_of_cpp():
         assert all(len(status.reason_for(subject)) > 10 for status in Status)
     with pytest.raises(keepout.Error, match="subject"):
         Status.free.reason_for("robot")
-    assert [s for s in Status if s.ok] == [
-        Status.free,
-        Status.limited,
-        Status.recovering,
-        Status.fallback,
-        Status.yielding,
-    ]
+    assert [s.name for s in Status if s.ok] == ["free", "limited", "recovering", "fallback", "yielding"]
 
 
 def test_a_status_is_written_as_its_name():

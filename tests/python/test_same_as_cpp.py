@@ -7,7 +7,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from surfaces import command_replay, poses
+from surfaces import command_replay, poses, run
 
 import keepout
 
@@ -84,13 +84,7 @@ def test_the_replay_of_the_command(sphere_file, closed_loop, tmp_path):
 
 @needs_command
 def test_the_inspection_of_the_command(sphere_file):
-    output = subprocess.run(
-        [command, "inspect", sphere_file, "--json", "--self-intersections"],
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout
-    told = json.loads(output)
+    told = json.loads(run(command, "inspect", sphere_file, "--json", "--self-intersections"))
     found = keepout.load_mesh(sphere_file).inspect(self_intersections=True)
     for name in (name for name in dir(found) if not name.startswith("_")):
         value = getattr(found, name)

@@ -5,27 +5,20 @@ import ast
 import inspect
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from surfaces import run
 
 import keepout
 
 package = Path(keepout.__file__).parent
 
 
-def run(arguments, folder):
+def run_mypy(folder, *arguments):
     pytest.importorskip("mypy")
-    ended = subprocess.run(
-        [sys.executable, "-m", *arguments],
-        cwd=folder,
-        env={**os.environ, "MYPYPATH": str(package.parent)},
-        capture_output=True,
-        text=True,
-    )
-    assert ended.returncode == 0, ended.stdout + ended.stderr
+    run(sys.executable, "-m", *arguments, cwd=folder, env={**os.environ, "MYPYPATH": str(package.parent)})
 
 
 def test_stubtest(tmp_path):
@@ -41,7 +34,7 @@ def test_stubtest(tmp_path):
         r"keepout\._results\.NamedTuple",  # a function in Python 3.11, which mypy 1.0 does not know
     ]
     (tmp_path / "allowed").write_text("\n".join(allowed))
-    run(["mypy.stubtest", "keepout", "--allowlist", "allowed"], tmp_path)
+    run_mypy(tmp_path, "mypy.stubtest", "keepout", "--allowlist", "allowed")
 
 
 use = """
@@ -81,7 +74,7 @@ keepout.MotionConstraint(mesh, query="far")  # type: ignore[arg-type]
 def test_mypy_accepts_right_use_and_no_other(tmp_path):
     (tmp_path / "use.py").write_text(use + misuse)
     # numpy's own stubs take mypy the longest, the first time.
-    run(["mypy", "--strict", "--cache-dir", str(package.parent / "mypy_cache"), "use.py"], tmp_path)
+    run_mypy(tmp_path, "mypy", "--strict", "--cache-dir", str(package.parent / "mypy_cache"), "use.py")
 
 
 def signature(doc):
