@@ -62,7 +62,7 @@ def test_the_command_makes_a_page_of_a_record(tmp_path: Path) -> None:
     claims = [Claim("depth", paper, "1 mm", "0 mm", "certified", "p = 0.01") for paper in "1-"]
     found = {"e3": ("E3 <Path>", Findings("Smoother.", claims))}
     file = tmp_path / "experiments.json"
-    write_record(file, Scale(), found, True, "./run experiments", "2026-11-23T12:00:00Z")
+    write_record(file, Scale(), found, True, "./run experiments")
     record = json.loads(file.read_text(encoding="utf-8"))
     assert record["headline"].startswith("1 number of the paper,")
     assert record["machine"]["processor"] and record["machine"]["libraries"]

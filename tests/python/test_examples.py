@@ -44,8 +44,8 @@ def test_the_path_over_the_skull(request, tmp_path):
         path = request.getfixturevalue("skull_file")
     except pytest.skip.Exception:
         path = request.getfixturevalue("sphere_file")
-    said = run(sys.executable, examples / "path_over_the_skull.py", path, "--out", tmp_path / "p.png", "--cycles", "300",
-               "--size", "300")  # fmt: skip
+    said = run(sys.executable, examples / "path_over_the_skull.py", path, "--out", tmp_path / "p.png",
+               "--cycles", "300", "--size", "300")  # fmt: skip
     assert "limited" in said and "picture" in said
     closest = float(said.split("closest to the bone: ")[1].split()[0])
     assert closest >= 0.5
