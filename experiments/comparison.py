@@ -104,7 +104,7 @@ def _tests(by_mode: ByMode, measures: tuple[Measure, ...], seed: int) -> list[Ag
     for measure in measures:
         free = by_mode[modes.NO_FIXTURE]
         for mode, held in by_mode.items():
-            trials = [measure.values(rows) for rows in (free, held)]
+            trials = measure.values(free), measure.values(held)
             if mode == modes.NO_FIXTURE or not measure.tested or min(map(len, trials)) < 2:
                 continue
             student = hypothesis_tests.student(*(Summary.of(measure.paper_values(rows)) for rows in (free, held)))

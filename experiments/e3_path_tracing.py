@@ -16,7 +16,7 @@ from . import anatomy, figures, modes, published, teleoperation
 from .comparison import Measure, compare, main_rows
 from .experiment import Figure, Findings, Row, Scale, Unit
 from .operator_model import Operator
-from .teleoperation import SWEEP, SWEPT
+from .teleoperation import SWEEP, SWEPT, Planned
 from .trial import Course
 
 NAME = "e3_path_tracing"
@@ -28,7 +28,7 @@ ADJUSTING = 0.4  # [mm RMS in depth], ours: the arc length hardly depends on it
 
 def units(scale: Scale) -> list[Unit]:
     """Five trials a mode, as the paper's; full: six. A sweep of tremor, and no errors of the set-up."""
-    of_all = [(mode, n, {}) for mode in modes.MODES for n in range(6 if scale.full else 5)]
+    of_all: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(6 if scale.full else 5)]
     swept = [(mode, n, {"tremor": t}) for mode in SWEPT for t in SWEEP for n in range(3 if scale.full else 1)]
     ideal = [(mode, n, {"ideal": True}) for mode in modes.MODES for n in range(2 if scale.full else 1)]
     return [teleoperation.unit(mode, n, scale.seed, **of) for mode, n, of in of_all + swept + ideal]

@@ -14,7 +14,7 @@ from . import anatomy, modes, published, teleoperation
 from .bone import BoneProperties
 from .comparison import Measure, compare
 from .experiment import Findings, Row, Scale, Unit
-from .teleoperation import SWEEP, SWEPT
+from .teleoperation import SWEEP, SWEPT, Planned
 from .trial import Course, Trace
 
 NAME = "e4_cutting"
@@ -26,7 +26,7 @@ SAMPLES = 30
 
 def units(scale: Scale) -> list[Unit]:
     """Quick: two trials a mode, as the paper's. Full: four; sweeps of tremor and corridor; no errors of the set-up."""
-    trials = [(mode, n, {}) for mode in modes.MODES for n in range(4 if scale.full else 2)]
+    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(4 if scale.full else 2)]
     trials += [(mode, 0, {"ideal": True}) for mode in SWEPT]
     trials += [("certified", n, {"corridor": c}) for c in CORRIDORS for n in range(2 if scale.full else 1)]
     if scale.full:

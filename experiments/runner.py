@@ -113,17 +113,16 @@ class Progress:
         self._ran += not kept
         now = time.monotonic()
         last = self._done == self._units
-        if not (sys.stderr.isatty() or last or now - self._shown >= 60.0):
+        on_terminal = sys.stderr.isatty()
+        if not (on_terminal or last or now - self._shown >= 60.0):
             return
         self._shown = now
         told = self._ran and not self._alone
         left = (now - self._begun) / self._ran * (self._units - self._done) if told else 0.0
         rest = f", {left / 60:.0f} min left" if left >= 60 else f", {left:.0f} s left" if left else ""
         line = f"{self._done} of {self._units} units{rest}: {name}"
-        if sys.stderr.isatty():
-            print(f"\r\033[K{line}", end="\n" if last else "", file=sys.stderr, flush=True)
-        else:
-            print(line, file=sys.stderr, flush=True)
+        print(f"\r\033[K{line}" if on_terminal else line, end="" if on_terminal and not last else "\n",
+              file=sys.stderr, flush=True)
 
 
 def run_units(
@@ -190,12 +189,8 @@ def write_tables(experiment: str, rows: list[Row], folder: Path) -> None:
 
 
 def _cell(value: object) -> str:
-    if value is None:
-        return ""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, float):
-        return repr(value)
     if isinstance(value, list):
-        return " ".join(_cell(entry) for entry in value)
-    return str(value)
+        return " ".join(map(_cell, value))
+    return "" if value is None else str(value)

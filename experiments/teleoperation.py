@@ -5,6 +5,7 @@ from __future__ import annotations
 import zlib
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import keepout
 import numpy as np
@@ -28,6 +29,9 @@ TREMOR = 0.13
 SWEEP = (0.0, 0.05, 0.25)
 #: The modes that are swept, and whose trajectories are drawn.
 SWEPT = ("none", "paper", "certified")
+
+#: A mode, the number of the trial, and the settings of unit() that differ from its defaults.
+Planned = tuple[str, int, dict[str, Any]]
 
 
 def unit(mode: str, number: int, seed: int, *, tremor: float = TREMOR, ideal: bool = False,

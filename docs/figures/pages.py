@@ -28,7 +28,7 @@ def filled(text, values):
 
 
 def of_tree(root):
-    """Returns the paths of all pages that git would commit; without git, all but those in build/, out/ and hidden ones."""
+    """Returns the paths of all pages that git would commit. Without git, leaves out build/, out/ and hidden directories."""
     if shutil.which("git"):
         listed = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "*.md"],
                                 capture_output=True, text=True)

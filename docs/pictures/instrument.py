@@ -11,9 +11,10 @@ WEIGHTS = np.array([900.0, 1.0, 60.0])  # of the joints
 
 
 def guarded(mesh):
-    chain = keepout.Chain([keepout.Joint("yaw", axis=(0, 0, 1), lower=-1, upper=1, velocity=50),
-                           keepout.Joint("insertion", kind="prismatic", axis=(0, -1, 0), lower=0, upper=90, velocity=1000),
-                           keepout.Joint("wrist", axis=(0, 0, 1), lower=-1.6, upper=1.6, velocity=50)])
+    chain = keepout.Chain([
+        keepout.Joint("yaw", axis=(0, 0, 1), lower=-1, upper=1, velocity=50),
+        keepout.Joint("insertion", kind="prismatic", axis=(0, -1, 0), lower=0, upper=90, velocity=1000),
+        keepout.Joint("wrist", axis=(0, 0, 1), lower=-1.6, upper=1.6, velocity=50)])
     bodies = [keepout.Body("shaft", [(0, (0, 0, 0)), (2, (0, 0, 0))], RADII[0]),
               keepout.Body("hand", [(2, (0, 0, 0)), (3, (0, -WRIST, 0))], RADII[1])]
     return keepout.InstrumentGuard(mesh, keepout.Instrument(chain, bodies), margin=MARGIN, band=0.01)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parts of the pictures of `draw`: steps that keepout makes in a plane, and SVG. A point of the plane is a complex number."""
+"""Parts of the pictures of `draw`: steps that keepout makes in a plane, and SVG. Points are complex numbers."""
 
 import cmath
 import pathlib
