@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import os
 import shlex
 import shutil
@@ -12,27 +13,11 @@ from pathlib import Path
 
 import keepout
 
-from . import (
-    e1_validation,
-    e2_run_time,
-    e3_path_tracing,
-    e4_cutting,
-    e5_distance_field,
-    e6_counterexamples,
-    record,
-    runner,
-    summary,
-)
+from . import record, runner, summary
 from .experiment import Findings, Scale
 
-EXPERIMENTS = (
-    e1_validation,
-    e2_run_time,
-    e3_path_tracing,
-    e4_cutting,
-    e5_distance_field,
-    e6_counterexamples,
-)
+EXPERIMENTS = tuple(importlib.import_module(f".{file.stem}", __package__)
+                    for file in sorted(Path(__file__).parent.glob("e[0-9]*_*.py")))
 
 
 def parser() -> argparse.ArgumentParser:

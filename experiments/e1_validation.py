@@ -239,15 +239,18 @@ def _number(value: float, digits: int, unit: str = "") -> str:
     return "-" if np.isnan(value) else f"{value:.{digits}f}{unit}"
 
 
+def _deepest(loops: list[Row]) -> float:
+    return max((row["depth"] for row in loops if row["depth"] is not None), default=float("nan"))
+
+
 def _overview(
     modes: list[str], counted: dict[str, list[Row]], told: Callable[[str], str]
 ) -> Table:
     rows = []
     for mode in modes:
         loops = counted[mode]
-        depths = [row["depth"] for row in loops if row["depth"] is not None]
         rows.append([
-            _label(mode), told(mode), f"{max(depths, default=float('nan')):.2f}",
+            _label(mode), told(mode), f"{_deepest(loops):.2f}",
             f"{min((row['clearance'] for row in loops), default=float('nan')):.3g}",
             _number(100 * _lost(loops), 2, " %"),
             _number(100 * _excess(loops), 1, " %") if mode in (*FIXTURES, AS_PUBLISHED) else "-",
@@ -264,8 +267,7 @@ def _by_shape(shapes: list[str], closed: list[str], modes: list[str], loops: Loo
     def cell(of: list[Row]) -> str:
         if not of:
             return "refused"
-        depths = [row["depth"] for row in of if row["depth"] is not None]
-        deepest = f", {max(depths):.1f} mm" if depths and max(depths) > 0.0 else ""
+        deepest = f", {_deepest(of):.1f} mm" if _deepest(of) > 0.0 else ""
         return f"{_crossed(of)}/{len(of)}{deepest}" if _crossed(of) else "0"
 
     rows = [

@@ -8,17 +8,15 @@ depth, which is the outside smoothed by 1 mm, and from the path across.
 """
 from __future__ import annotations
 
-from functools import lru_cache
+from dataclasses import replace
 
 import numpy as np
-from keepout_peers import Judge
 
-from . import anatomy, figures, modes, published
-from .comparison import Measure, compare, sweep_table
+from . import anatomy, figures, modes, published, teleoperation
+from .comparison import Measure, compare, main_rows
 from .experiment import Figure, Findings, Row, Scale, Unit
 from .operator_model import Operator
-from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, SWEEP, SWEPT, TREMOR, measures, operate
+from .teleoperation import SWEEP, SWEPT, Planned
 from .trial import Course
 
 NAME = "e3_path_tracing"
@@ -30,39 +28,21 @@ ADJUSTING = 0.4  # [mm RMS in depth], ours: the arc length hardly depends on it
 
 def units(scale: Scale) -> list[Unit]:
     """Five trials a mode, as the paper's; full: six. A sweep of tremor, and no errors of the set-up."""
-    repetitions = 6 if scale.full else 5
-
-    def of(mode: str, tremor: float, ideal: bool, number: int) -> Unit:
-        name = f"{mode}-tremor{round(tremor * 1000)}um{'-ideal' if ideal else ''}-{number}"
-        settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "number": number}
-        return Unit(name, settings | {"seed": scale.seed})
-
-    swept = [of(m, t, False, n) for m in SWEPT for t in SWEEP for n in range(3 if scale.full else 1)]
-    ideal = [of(m, TREMOR, True, n) for m in modes.MODES for n in range(2 if scale.full else 1)]
-    return [of(m, TREMOR, False, n) for m in modes.MODES for n in range(repetitions)] + swept + ideal
-
-
-@lru_cache(maxsize=1)
-def _judge() -> Judge:
-    mesh = anatomy.real_index("skull").mesh
-    return Judge(mesh.vertices, mesh.triangles)
+    of_all: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(6 if scale.full else 5)]
+    swept = [(mode, n, {"tremor": t}) for mode in SWEPT for t in SWEEP for n in range(3 if scale.full else 1)]
+    ideal = [(mode, n, {"ideal": True}) for mode in modes.MODES for n in range(2 if scale.full else 1)]
+    return [teleoperation.unit(mode, n, scale.seed, **of) for mode, n, of in of_all + swept + ideal]
 
 
 def run(unit: Unit) -> list[Row]:
     """One trial."""
     told = unit.settings
     course = Course(path=anatomy.skull_path(), depth=0.0, speed=SPEED, time_limit=120.0)
-    operator = Operator(tremor=told["tremor"], adjusting=ADJUSTING)
-    setup = SetUp.ideal() if told["ideal"] else SetUp()
-    seeds = (told["seed"], 3, told["number"], round(told["tremor"] * 1000))
-    index = anatomy.real_index("skull")
-    trial = operate(told["mode"], course, index, operator, setup, seeds)
-    along, across, depth = course.path.depths(trial.trace.tip[trial.trace.begun :])
+    trace, row = teleoperation.run_unit(unit, 3, course, anatomy.real_index("skull"), Operator(adjusting=ADJUSTING))
+    along, across, depth = course.path.depths(trace.tip[trace.begun :])
     drawn = told["mode"] in SWEPT and not told["ideal"] and told["number"] < 5
     return [
-        {name: told[name] for name in ("mode", "tremor", "ideal", "number")}
-        | {"corridor": CORRIDOR}
-        | measures(trial, course, _judge())
+        row
         | {
             "absolute_depth_mm": float(np.abs(depth).mean()),
             "deviation_mm": float(np.abs(across).mean()),
@@ -92,10 +72,9 @@ MEASURES = (
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
     """Compared mode by mode with no fixture; the overlay of trajectories; the sweep of tremor."""
-    main = [row for row in rows if row["tremor"] == TREMOR and not row["ideal"]]
-    found = compare(NAME, main, MEASURES, scale.seed).with_figure(_overlay(main))
     swept = ("spectral_arc_length", "sparc", "absolute_depth_mm", "deviation_mm")
-    return found.with_table(sweep_table(rows, swept))
+    found = compare(NAME, rows, MEASURES, scale.seed, swept)
+    return replace(found, figures=[*found.figures, _overlay(main_rows(rows))])
 
 
 def _overlay(rows: list[Row]) -> Figure:

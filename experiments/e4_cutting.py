@@ -9,16 +9,13 @@ penetration depth, the depth of the kerf less the shell's thickness: positive is
 from __future__ import annotations
 
 import numpy as np
-from keepout_peers import Judge
 
-from . import anatomy, modes, published
+from . import anatomy, modes, published, teleoperation
 from .bone import BoneProperties
-from .comparison import Measure, compare, sweep_table
+from .comparison import Measure, compare
 from .experiment import Findings, Row, Scale, Unit
-from .operator_model import Operator
-from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, SWEEP, SWEPT, TREMOR, Trial, measures, operate
-from .trial import Course
+from .teleoperation import SWEEP, SWEPT, Planned
+from .trial import Course, Trace
 
 NAME = "e4_cutting"
 TITLE = "E4 Cutting (section V-B)"
@@ -29,42 +26,28 @@ SAMPLES = 30
 
 def units(scale: Scale) -> list[Unit]:
     """Quick: two trials a mode, as the paper's. Full: four; sweeps of tremor and corridor; no errors of the set-up."""
-
-    def of(mode: str, number: int, tremor: float = TREMOR, ideal: bool = False,
-           corridor: float = CORRIDOR) -> Unit:
-        kind = f"tremor{round(tremor * 1000)}um-corridor{round(corridor * 1000)}um"
-        settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "corridor": corridor,
-                    "number": number, "seed": scale.seed}
-        return Unit(f"{mode}-{kind}{'-ideal' if ideal else ''}-{number}", settings)
-
-    of_all = [of(mode, n) for mode in modes.MODES for n in range(4 if scale.full else 2)]
-    ideal = [of(mode, 0, ideal=True) for mode in SWEPT]
-    narrow = [of("certified", n, corridor=c) for c in CORRIDORS for n in range(2 if scale.full else 1)]
-    if not scale.full:
-        return of_all + ideal + narrow
-    return of_all + ideal + narrow + [of(mode, 0, tremor=t) for mode in SWEPT for t in SWEEP]
+    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(4 if scale.full else 2)]
+    trials += [(mode, 0, {"ideal": True}) for mode in SWEPT]
+    trials += [("certified", n, {"corridor": c}) for c in CORRIDORS for n in range(2 if scale.full else 1)]
+    if scale.full:
+        trials += [(mode, 0, {"tremor": t}) for mode in SWEPT for t in SWEEP]
+    return [teleoperation.unit(mode, n, scale.seed, **of) for mode, n, of in trials]
 
 
 def run(unit: Unit) -> list[Row]:
     """One trial."""
-    told = unit.settings
     path, index = anatomy.phantom()
-    setup = SetUp.ideal() if told["ideal"] else SetUp()
-    bone = None if told["ideal"] else BoneProperties()  # no force, no deflection
+    bone = None if unit.settings["ideal"] else BoneProperties()  # no force, no deflection
     course = Course(path=path, depth=anatomy.SHELL, speed=0.22, bone=bone)
-    operator = Operator(tremor=told["tremor"])
-    seeds = (told["seed"], 4, told["number"], round(told["tremor"] * 1000))
-    trial = operate(told["mode"], course, index, operator, setup, seeds, told["corridor"])
-    judge = Judge(index.mesh.vertices, index.mesh.triangles)
-    deviation, depth = cut(trial, course)
+    trace, row = teleoperation.run_unit(unit, 4, course, index)
+    deviation, depth = cut(trace, course)
     reached = [at for at in deviation if at is not None]
     return [
-        {name: told[name] for name in ("mode", "tremor", "ideal", "corridor", "number")}
-        | measures(trial, course, judge)
+        row
         | {
             "millimetres_reached": len(reached),
-            "deviation_mm": float(np.mean(reached)) if trial.trace.finished else None,
-            "greatest_deviation_mm": float(np.max(reached)) if trial.trace.finished else None,
+            "deviation_mm": float(np.mean(reached)) if trace.finished else None,
+            "greatest_deviation_mm": float(np.max(reached)) if trace.finished else None,
             "depth_mm": float(np.mean(depth)),
             "absolute_depth_mm": float(np.mean(np.abs(depth))),
             "over_cut_mm": max(0.0, float(np.max(depth))),
@@ -75,14 +58,13 @@ def run(unit: Unit) -> list[Row]:
     ]
 
 
-def cut(trial: Trial, course: Course) -> tuple[list[float | None], list[float]]:
+def cut(trace: Trace, course: Course) -> tuple[list[float | None], list[float]]:
     """Deviation and penetration depth at each millimetre of the path [mm].
 
     Where the tip never was within the bone there is no deviation: None. Without bone to cut there is
     no kerf, and the tip's own depth takes its place.
     """
-    path, trace = course.path, trial.trace
-    along, across, depth = path.depths(trace.tip[trace.begun :])
+    along, across, depth = course.path.depths(trace.tip[trace.begun :])
     millimetre = np.minimum(along.astype(int), SAMPLES - 1)
     deviations: list[float | None] = []
     depths: list[float] = []
@@ -90,7 +72,7 @@ def cut(trial: Trial, course: Course) -> tuple[list[float | None], list[float]]:
         here = (millimetre == number) & (depth > 0.0)
         deviations.append(float(np.abs(across[here]).max()) if here.any() else None)
         if course.bone:
-            kerf = float(trace.kerf[path.number(number + 0.5)])
+            kerf = float(trace.kerf[course.path.number(number + 0.5)])
         else:
             kerf = float(depth[here].max(initial=0.0))
         depths.append(kerf - anatomy.SHELL)
@@ -126,10 +108,4 @@ MEASURES = (
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
     """Compared mode by mode with no fixture; then the sweeps."""
-    main = [
-        row
-        for row in rows
-        if row["tremor"] == TREMOR and not row["ideal"] and row["corridor"] == CORRIDOR
-    ]
-    swept = ("deviation_mm", "absolute_depth_mm", "duration_s")
-    return compare(NAME, main, MEASURES, scale.seed).with_table(sweep_table(rows, swept))
+    return compare(NAME, rows, MEASURES, scale.seed, ("deviation_mm", "absolute_depth_mm", "duration_s"))

@@ -14,7 +14,7 @@ members whose names begin with `measured_`, which are times. Lengths are in mm, 
 """
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -89,9 +89,3 @@ class Findings:
     claims: list[Claim] = field(default_factory=list)
     tables: list[Table] = field(default_factory=list)
     figures: list[Figure] = field(default_factory=list)
-
-    def with_table(self, table: Table) -> Findings:
-        return replace(self, tables=[*self.tables, table])
-
-    def with_figure(self, figure: Figure) -> Findings:
-        return replace(self, figures=[*self.figures, figure])

@@ -58,15 +58,36 @@ def welch(a: Summary, b: Summary) -> MeanTest:
     return _test(a, b, equal_var=False)
 
 
+def _test(a: Summary, b: Summary, *, equal_var: bool) -> MeanTest:
+    if a.sd == b.sd == 0.0:  # no spread: equal for certain, or different for certain
+        same = a.mean == b.mean
+        return MeanTest(0.0 if same else float(np.copysign(np.inf, a.mean - b.mean)), float(same))
+    found = stats.ttest_ind_from_stats(a.mean, a.sd, a.n, b.mean, b.sd, b.n, equal_var)
+    return MeanTest(float(found.statistic), float(found.pvalue))
+
+
 def hedges_g(a: Summary, b: Summary) -> float:
     """(a - b) / pooled deviation, times the usual 1 - 3 / (4 dof - 1), as small samples exaggerate.
 
     Hedges, "Distribution theory for Glass's estimator of effect size", 1981. NaN without spread.
     """
-    spread = _pooled_sd(a, b)
-    if spread == 0.0:
+    if a.sd == b.sd == 0.0:
         return float("nan")
-    return float((a.mean - b.mean) / spread * (1 - 3 / (4 * (a.n + b.n - 2) - 1)))
+    squares = (a.n - 1) * a.sd**2 + (b.n - 1) * b.sd**2
+    return float(_bounded_g(np.float64(a.mean - b.mean), squares, a.n + b.n - 2))
+
+
+def _bounded_g(difference: Array, squares: Array, dof: int) -> Array:
+    """Of samples with these differences of means and sums of squares; a million at most, as some may have no spread."""
+    spread = np.maximum(np.sqrt(squares / dof), 1e-6 * np.abs(difference))
+    g: Array = difference / np.where(difference == 0.0, 1.0, spread) * (1 - 3 / (4 * dof - 1))
+    return g
+
+
+def _hedges_g_along(a: Array, b: Array, axis: int = -1) -> Array:
+    n, m = a.shape[axis], b.shape[axis]
+    squares = (n - 1) * a.var(axis, ddof=1) + (m - 1) * b.var(axis, ddof=1)
+    return _bounded_g(a.mean(axis) - b.mean(axis), squares, n + m - 2)
 
 
 def effect(
@@ -94,12 +115,10 @@ def holm(p_values: Sequence[float]) -> list[float]:
 
     Holm, "A simple sequentially rejective multiple test procedure", 1979.
     """
-    adjusted = [1.0] * len(p_values)
-    highest = 0.0
-    for rank, which in enumerate(np.argsort(p_values, kind="stable")):
-        highest = max(highest, min(1.0, (len(p_values) - rank) * p_values[which]))
-        adjusted[which] = highest
-    return adjusted
+    order = np.argsort(p_values, kind="stable")
+    adjusted = np.empty(len(order))
+    adjusted[order] = np.maximum.accumulate(np.arange(len(order), 0, -1) * np.asarray(p_values)[order])
+    return np.minimum(adjusted, 1.0).tolist()
 
 
 def in_words(p_after_holm: float, size: Effect) -> str:
@@ -110,27 +129,3 @@ def in_words(p_after_holm: float, size: Effect) -> str:
     if not np.isfinite(size.low):
         return f"{p}, g = {size.g:.3g}"
     return f"{p}, g = {size.g:.3g} [{size.low:.3g}, {size.high:.3g}]"
-
-
-def _test(a: Summary, b: Summary, *, equal_var: bool) -> MeanTest:
-    if a.sd == b.sd == 0.0:  # no spread: equal for certain, or different for certain
-        same = a.mean == b.mean
-        return MeanTest(0.0 if same else float(np.copysign(np.inf, a.mean - b.mean)), float(same))
-    found = stats.ttest_ind_from_stats(a.mean, a.sd, a.n, b.mean, b.sd, b.n, equal_var)
-    return MeanTest(float(found.statistic), float(found.pvalue))
-
-
-def _pooled_sd(a: Summary, b: Summary) -> float:
-    squares = (a.n - 1) * a.sd**2 + (b.n - 1) * b.sd**2
-    return float(np.sqrt(squares / (a.n + b.n - 2)))
-
-
-def _hedges_g_along(a: Array, b: Array, axis: int = -1) -> Array:
-    """Hedges' g of many samples at once; a million at most, as resamples may have no spread."""
-    n_a, n_b = a.shape[axis], b.shape[axis]
-    squares = (n_a - 1) * a.var(axis, ddof=1) + (n_b - 1) * b.var(axis, ddof=1)
-    difference = a.mean(axis) - b.mean(axis)
-    spread = np.maximum(np.sqrt(squares / (n_a + n_b - 2)), 1e-6 * np.abs(difference))
-    ratio = difference / np.where(difference == 0.0, 1.0, spread)
-    g: Array = ratio * (1 - 3 / (4 * (n_a + n_b - 2) - 1))
-    return g

@@ -24,12 +24,10 @@ def write_record(
     findings: dict[str, tuple[str, Findings]],
     complete: bool,
     command: str,
-    date: str | None = None,
 ) -> None:
     """Writes what was found, by name with its title, as JSON.
 
-    `complete`: nothing was left out or stopped. `command` does it again. `date` is ISO 8601, UTC;
-    by default it is now.
+    `complete`: nothing was left out or stopped. `command` does it again.
     """
     extent = "full" if scale.full else "quick"
     compared = sum(claim.paper != "-" for _, found in findings.values() for claim in found.claims)
@@ -38,7 +36,7 @@ def write_record(
         "keepout_record": "experiments",
         "format": FORMAT,
         "version": keepout.__version__,
-        "date": date or datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "date": datetime.now(timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
         "command": command,
         "complete": complete,
         "subject": f"The experiments of Li et al., IROS 2020: {extent}",

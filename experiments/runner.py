@@ -8,7 +8,6 @@ alone, and `<experiment>_times.csv` with what was measured by the clock.
 """
 from __future__ import annotations
 
-import ast
 import csv
 import hashlib
 import importlib
@@ -17,8 +16,8 @@ import multiprocessing
 import signal
 import sys
 import time
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from functools import cache
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from modulefinder import ModuleFinder
 from pathlib import Path
 from types import ModuleType
 
@@ -36,27 +35,16 @@ _SHOWING = ("__main__", "comparison", "figures", "published", "record", "runner"
 
 def source_digest(experiment: str) -> str:
     """Of everything that the rows of an experiment depend on but their unit."""
-    digest = hashlib.sha256(keepout.__version__.encode())
+    here = Path(__file__).parent
+    finder = ModuleFinder([str(here.parent)], excludes=[f"{here.name}.{module}" for module in _SHOWING])
+    finder.import_hook(f"{here.name}.{experiment}")
     package = Path(keepout.__file__).parent
     libraries = [*package.parent.glob("*.so"), *package.glob("*.so"), *package.glob("*.py")]
-    for source in sorted([*libraries, *_imported(Path(__file__).parent / f"{experiment}.py", set())]):
+    imported = [Path(module.__file__) for module in finder.modules.values() if module.__file__]
+    digest = hashlib.sha256(keepout.__version__.encode())
+    for source in sorted([*libraries, *imported]):
         digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
-
-
-def _imported(source: Path, known: set[Path]) -> set[Path]:
-    """A module, and all modules beside it that it imports, directly or not, without those that show."""
-    if source in known or not source.exists() or source.stem in _SHOWING:
-        return known
-    known.add(source)
-    for statement in ast.walk(ast.parse(source.read_text())):
-        if isinstance(statement, ast.ImportFrom) and statement.level:
-            folder = source.parents[statement.level - 1]
-            module = statement.module
-            names = [module.replace(".", "/")] if module else [of.name for of in statement.names]
-            for name in names:
-                _imported(folder / f"{name}.py", known)
-    return known
 
 
 def _be_a_worker() -> None:
@@ -78,45 +66,33 @@ def folder_kept(folder: Path, seed: int) -> Path:
 
 
 class Kept:
-    """The rows of units that are done, in a folder."""
+    """The rows of units of an experiment that are done, in a folder."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, experiment: str) -> None:
+        self._folder = folder / experiment
+        self._digest = source_digest(experiment)
 
-    @staticmethod
-    @cache
-    def _digest(experiment: str) -> str:
-        return source_digest(experiment)
+    def _file(self, unit: Unit) -> Path:
+        return self._folder / f"{unit.name}.json"
 
-    def _file(self, experiment: str, unit: Unit) -> Path:
-        return self._folder / experiment / f"{unit.name}.json"
-
-    def rows(self, experiment: str, unit: Unit) -> list[Row] | None:
+    def rows(self, unit: Unit) -> list[Row] | None:
         try:
-            text = json.loads(self._file(experiment, unit).read_text())
-        except (OSError, ValueError):
+            text = json.loads(self._file(unit).read_text())
+            same = text["digest"] == self._digest and text["settings"] == json.loads(json.dumps(unit.settings))
+            rows: list[Row] | None = text["rows"] if same else None
+        except (OSError, ValueError, KeyError, TypeError):  # not there, or torn
             return None
-        if not isinstance(text, dict):
-            return None
-        same = text.get("digest") == self._digest(experiment) and text.get("settings") == _plain(unit.settings)
-        rows: list[Row] | None = text["rows"] if same else None
         return rows
 
-    def keep(self, experiment: str, unit: Unit, rows: list[Row]) -> list[Row]:
+    def keep(self, unit: Unit, rows: list[Row]) -> list[Row]:
         """Writes them, and gives them back as they are read again: the same rows at the first run and later."""
-        file = self._file(experiment, unit)
-        file.parent.mkdir(parents=True, exist_ok=True)
-        kept = {"digest": self._digest(experiment), "settings": unit.settings, "rows": rows}
-        text = json.dumps(kept, indent=1)
-        part = file.with_suffix(".part")
+        self._folder.mkdir(parents=True, exist_ok=True)
+        text = json.dumps({"digest": self._digest, "settings": unit.settings, "rows": rows}, indent=1)
+        part = self._file(unit).with_suffix(".part")
         part.write_text(text + "\n")
-        part.replace(file)
+        part.replace(self._file(unit))
         plain: list[Row] = json.loads(text)["rows"]
         return plain
-
-
-def _plain(value: object) -> object:
-    return json.loads(json.dumps(value))
 
 
 class Progress:
@@ -137,17 +113,16 @@ class Progress:
         self._ran += not kept
         now = time.monotonic()
         last = self._done == self._units
-        if not (sys.stderr.isatty() or last or now - self._shown >= 60.0):
+        on_terminal = sys.stderr.isatty()
+        if not (on_terminal or last or now - self._shown >= 60.0):
             return
         self._shown = now
         told = self._ran and not self._alone
         left = (now - self._begun) / self._ran * (self._units - self._done) if told else 0.0
         rest = f", {left / 60:.0f} min left" if left >= 60 else f", {left:.0f} s left" if left else ""
         line = f"{self._done} of {self._units} units{rest}: {name}"
-        if sys.stderr.isatty():
-            print(f"\r\033[K{line}", end="\n" if last else "", file=sys.stderr, flush=True)
-        else:
-            print(line, file=sys.stderr, flush=True)
+        print(f"\r\033[K{line}" if on_terminal else line, end="" if on_terminal and not last else "\n",
+              file=sys.stderr, flush=True)
 
 
 def run_units(
@@ -158,22 +133,21 @@ def run_units(
     Units that measure times run one after another, before the others. KeyboardInterrupt: those that
     are done are kept.
     """
-    kept = Kept(kept_in)
+    kept = {e.NAME: Kept(kept_in, e.NAME) for e in experiments}
     progress = Progress(sum(len(of) for of in units.values()))
     results: dict[tuple[str, str], list[Row]] = {}
     left: list[tuple[ModuleType, Unit]] = []
+
+    def done(experiment: ModuleType, unit: Unit, rows: list[Row], *, kept: bool) -> None:
+        results[experiment.NAME, unit.name] = rows
+        progress.count(f"{experiment.NAME} {unit.name}", kept=kept)
+
     for experiment in experiments:
         for unit in units[experiment.NAME]:
-            rows = kept.rows(experiment.NAME, unit)
-            if rows is None:
+            if (rows := kept[experiment.NAME].rows(unit)) is None:
                 left.append((experiment, unit))
             else:
-                results[experiment.NAME, unit.name] = rows
-                progress.count(f"{experiment.NAME} {unit.name}", kept=True)
-
-    def done(experiment: ModuleType, unit: Unit, rows: list[Row]) -> None:
-        results[experiment.NAME, unit.name] = kept.keep(experiment.NAME, unit, rows)
-        progress.count(f"{experiment.NAME} {unit.name}", kept=False)
+                done(experiment, unit, rows, kept=True)
 
     for alone in (True, False):
         batch = [(e, u) for e, u in left if u.alone is alone]
@@ -181,17 +155,15 @@ def run_units(
             continue
         progress.begin(alone=alone)
         with ProcessPoolExecutor(1 if alone else jobs, initializer=_be_a_worker) as pool:
-            running: dict[Future[list[Row]], tuple[ModuleType, Unit]] = {}
             try:
-                for experiment, unit in batch:
-                    running[pool.submit(_run, experiment.__name__, unit)] = (experiment, unit)
+                running = {pool.submit(_run, e.__name__, u): (e, u) for e, u in batch}
                 while running:
                     finished, _ = wait(running, return_when=FIRST_COMPLETED)
                     for future in sorted(finished, key=lambda one: one.exception() is not None):
                         experiment, unit = running.pop(future)
                         if fault := future.exception():
                             raise UnitError(f"{experiment.NAME} {unit.name}: {fault!r:.500}")
-                        done(experiment, unit, future.result())
+                        done(experiment, unit, kept[experiment.NAME].keep(unit, future.result()), kept=False)
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 for worker in multiprocessing.active_children():
@@ -217,12 +189,8 @@ def write_tables(experiment: str, rows: list[Row], folder: Path) -> None:
 
 
 def _cell(value: object) -> str:
-    if value is None:
-        return ""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, float):
-        return repr(value)
     if isinstance(value, list):
-        return " ".join(_cell(entry) for entry in value)
-    return str(value)
+        return " ".join(map(_cell, value))
+    return "" if value is None else str(value)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
 
 import keepout
 import numpy as np
@@ -12,11 +14,10 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from . import modes
-from .experiment import Row
+from .experiment import Array, Row, Unit
 from .operator_model import Operator
-from .experiment import Array
 from .rules.rule import Corridor, Task
-from .set_up_errors import RigidMotion, SetUp, fiducials_around, registered_from_true
+from .set_up_errors import SetUp, fiducials_around, registered_from_true
 from .smoothness import spectral_arc_length, sparc
 from .trial import Course, Trace, run_trial
 
@@ -29,13 +30,34 @@ SWEEP = (0.0, 0.05, 0.25)
 #: The modes that are swept, and whose trajectories are drawn.
 SWEPT = ("none", "paper", "certified")
 
+#: A mode, the number of the trial, and the settings of unit() that differ from its defaults.
+Planned = tuple[str, int, dict[str, Any]]
 
-@dataclass(frozen=True)
-class Trial:
-    """A trace, and where its fixture took the anatomy to be."""
 
-    trace: Trace
-    registered: RigidMotion
+def unit(mode: str, number: int, seed: int, *, tremor: float = TREMOR, ideal: bool = False,
+         corridor: float = CORRIDOR) -> Unit:
+    """One trial of a mode. `ideal`: the set-up has no errors."""
+    kind = f"tremor{round(tremor * 1000)}um-corridor{round(corridor * 1000)}um{'-ideal' if ideal else ''}"
+    settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "corridor": corridor, "number": number, "seed": seed}
+    return Unit(f"{mode}-{kind}-{number}", settings)
+
+
+def run_unit(
+    unit: Unit, experiment: int, course: Course, index: keepout.Index, operator: Operator = Operator()
+) -> tuple[Trace, Row]:
+    """Makes the trial of a unit, and the row of what is measured of it. `experiment` is part of the seeds."""
+    told = unit.settings
+    operator = replace(operator, tremor=told["tremor"])
+    setup = SetUp.ideal() if told["ideal"] else SetUp()
+    seeds = (told["seed"], experiment, told["number"], round(told["tremor"] * 1000))
+    trace = operate(told["mode"], course, index, operator, setup, seeds, told["corridor"])
+    about = {name: value for name, value in told.items() if name != "seed"}
+    return trace, about | measures(trace, course, _judge(index))
+
+
+@lru_cache(maxsize=1)
+def _judge(index: keepout.Index) -> Judge:
+    return Judge(index.mesh.vertices, index.mesh.triangles)
 
 
 def operate(
@@ -46,7 +68,7 @@ def operate(
     setup: SetUp,
     seeds: tuple[int, ...],
     corridor: float = CORRIDOR,
-) -> Trial:
+) -> Trace:
     """One trial of a mode. Each mode, and each of the `seeds`, is another operator on another day."""
     random = np.random.default_rng([*seeds, zlib.crc32(mode.encode())])
     path = course.path
@@ -55,17 +77,11 @@ def operate(
     registered = registered_from_true(setup, fiducials, random)
     a, b, c = path.points[0].tolist()
     x, y, z = path.across.tolist()
-    task = Task(
-        index.mesh,
-        margin=MARGIN,
-        radius=course.radius,
-        corridor=Corridor((a, b, c), (x, y, z), corridor),
-    )
-    rule = modes.make_rule(mode, task, index)
-    return Trial(run_trial(course, rule, operator, setup, registered, random), registered)
+    task = Task(index.mesh, MARGIN, course.radius, Corridor((a, b, c), (x, y, z), corridor))
+    return run_trial(course, modes.make_rule(mode, task, index), operator, setup, registered, random)
 
 
-def measures(trial: Trial, course: Course, judge: Judge) -> Row:
+def measures(trace: Trace, course: Course, judge: Judge) -> Row:
     """What is measured of any trial, behind the approach; None for what has no meaning there, such as
     the duration of a trial that was not finished.
 
@@ -74,12 +90,11 @@ def measures(trial: Trial, course: Course, judge: Judge) -> Row:
     is by how much that is more than the registration displaces the place. `energy_mj` is what the fixture's
     force has done on the handle; less than 0 is what it took.
     """
-    trace, start = trial.trace, trial.trace.begun
-    rate = 1.0 / course.period
+    start, rate = trace.begun, 1.0 / course.period
     tip, setpoint = trace.tip[start:], trace.setpoint[start:]
     speed = np.linalg.norm(np.diff(tip, axis=0), axis=1) * rate
     depth = -judge.distances(tip)
-    displaced = np.linalg.norm(trial.registered(tip) - tip, axis=1)
+    displaced = np.linalg.norm(trace.registered(tip) - tip, axis=1)
     held = trace.force[start:] > 0.0
     return {
         "finished": trace.finished,

@@ -55,6 +55,7 @@ class Trace:
     kerf: Array  # (points of the path,) [mm]
     begun: int  # the first cycle behind the approach
     finished: bool  # the tip came to the path's end within the time limit
+    registered: RigidMotion  # from the true frame to where the fixture takes the anatomy to be
 
 
 def run_trial(
@@ -154,4 +155,5 @@ def run_trial(
         kerf=bone.cut if bone else np.zeros(len(path.points)),
         begun=min(approach, ran - 1),
         finished=finished,
+        registered=registered,
     )

@@ -82,7 +82,7 @@ def measure(title, tips, desired, memory):
         for tip, aim in zip(tips, desired):
             step(tip, aim).motion
 
-    cpp_ns, batch_s, batch_wall, single_s, two_s, two_cpu = [], [], [], [], [], []
+    passes = []
     with tempfile.TemporaryDirectory() as folder:
         files = [Path(folder) / name for name in ("poses", "answers")]
         lines.tofile(files[0])
@@ -91,25 +91,23 @@ def measure(title, tips, desired, memory):
             ended = subprocess.run(
                 [program, options.mesh, *files, memory, "2"], check=True, capture_output=True
             )
-            nanoseconds, build = ended.stdout.decode().strip().split(" ", 1)
-            cpp_ns.append(float(nanoseconds))
-            batch_s.append(taken_by(batch)[1])
-            batch_wall.append(taken_by(batch)[0])
-            single_s.append(taken_by(single)[1])
+            cpp_ns, build = ended.stdout.decode().strip().split(" ", 1)
+            times = [float(cpp_ns), taken_by(batch)[1], taken_by(batch)[0], taken_by(single)[1]]
             if independent:
                 wall, cpu = taken_by(lambda: guard.steps(tips, desired, threads=2, out=two))
-                two_s.append(wall)
-                two_cpu.append(cpu / wall)
+                times += [wall, -cpu / wall]  # of the processors in use, the most
+            passes.append(times)
         answers = np.fromfile(files[1]).reshape(-1, 5)
     assert np.array_equal(out.motion.view(np.int64), answers[:, :3].copy().view(np.int64))
     assert np.array_equal(out.status, answers[:, 3])
 
-    cpp, batched, scalar = min(cpp_ns), 1e9 * min(batch_s) / count, 1e9 * min(single_s) / count
+    cpp, batch_s, batch_wall, single_s, *of_two = np.min(passes, axis=0)
     cells = [f"{1e-3 * cpp:.2f} µs"]
-    cells += [f"{1e-3 * ns:.2f} µs, {1e-3 * (ns - cpp):+.2f}" for ns in (batched, scalar)]
+    from_python = (1e9 * batch_s / count, 1e9 * single_s / count)
+    cells += [f"{1e-3 * ns:.2f} µs, {1e-3 * (ns - cpp):+.2f}" for ns in from_python]
     if independent:
         assert np.array_equal(out.motion, two.motion)
-        cells += [f"{min(batch_wall) / min(two_s):.2f}", f"{max(two_cpu):.2f}"]
+        cells += [f"{batch_wall / of_two[0]:.2f}", f"{-of_two[1]:.2f}"]
     else:
         cells += ["-", "-"]
     print(f"| {title} | {' | '.join(cells)} |", flush=True)

@@ -8,7 +8,10 @@ NAME is one of the names that values.py makes of the records.
 """
 
 import re
+import shutil
+import subprocess
 
+FENCE = re.compile(r"^( {0,3})(`{3,}|~{3,}).*?^ {0,3}\2`*~* *$", re.M | re.S)
 FIGURE = re.compile(r"<!--([a-z0-9_]+\.[a-z0-9_.]+)-->(.*?)<!--/-->", re.S)
 
 
@@ -25,10 +28,20 @@ def filled(text, values):
 
 
 def of_tree(root):
-    """Returns the paths of all pages, but those in build trees and hidden directories."""
+    """Returns the paths of all pages that git would commit. Without git, leaves out build/, out/ and hidden directories."""
+    if shutil.which("git"):
+        listed = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "*.md"],
+                                capture_output=True, text=True)
+        if listed.returncode == 0 and listed.stdout:
+            return sorted(path for path in map(root.joinpath, listed.stdout.splitlines()) if path.exists())
     inner = lambda path: path.relative_to(root).parts
     return sorted(path for path in root.rglob("*.md") if inner(path)[0] not in ("build", "out")
                   and not any(part.startswith(".") for part in inner(path)))
+
+
+def blank(match):
+    """Returns as many lines, without words."""
+    return re.sub(r"[^\n]", " ", match[0])
 
 
 def names_of(text):

@@ -1,160 +1,89 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the pictures of `draw` are made with: vectors of the plane, steps that keepout makes, SVG."""
+"""Parts of the pictures of `draw`: steps that keepout makes in a plane, and SVG. Points are complex numbers."""
 
-import contextlib
-import csv
-import json
-import math
-import os
+import cmath
 import pathlib
 import re
-import struct
-import subprocess
 import sys
-import tempfile
+
+import keepout
+import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-KEEPOUT = os.environ.get("KEEPOUT", ROOT / "build/release/apps/keepout/keepout")
 
 
-# --- vectors of the plane -------------------------------------------------------------------------
-
-def add(a, b):
-    return a[0] + b[0], a[1] + b[1]
-
-
-def sub(a, b):
-    return a[0] - b[0], a[1] - b[1]
-
-
-def times(s, a):
-    return s * a[0], s * a[1]
-
+# --- the plane ------------------------------------------------------------------------------------
 
 def dot(a, b):
-    return a[0] * b[0] + a[1] * b[1]
+    return (a * b.conjugate()).real
 
 
 def unit(a):
-    return times(1 / math.hypot(*a), a)
-
-
-def left_of(a):
-    return -a[1], a[0]
+    return a / abs(a)
 
 
 def meet(n, b, m, c):
-    """The point u with n . u = b and m . u = c."""
-    det = n[0] * m[1] - n[1] * m[0]
-    return (b * m[1] - c * n[1]) / det, (n[0] * c - m[0] * b) / det
+    """Returns the point u with n . u = b and m . u = c."""
+    return 1j * (c * n - b * m) / (n.conjugate() * m).imag
 
 
 def projected(y, planes):
-    """The point nearest to y with normal . u >= offset for at most two planes."""
-    allowed = lambda u: all(dot(n, u) >= b - 1e-12 for n, b in planes)
-    feet = [y] + [add(y, times(b - dot(n, y), n)) for n, b in planes]
+    """Returns the point nearest to y with normal . u >= offset for at most two planes."""
+    feet = [y] + [y + (b - dot(n, y)) * n for n, b in planes]
     if len(planes) == 2:
         feet.append(meet(*planes[0], *planes[1]))
-    return min(filter(allowed, feet), key=lambda u: math.dist(u, y))
+    return min((u for u in feet if all(dot(n, u) >= b - 1e-12 for n, b in planes)), key=lambda u: abs(u - y))
 
 
 # --- keepout --------------------------------------------------------------------------------------
 
+# Steps are made off the rows of vertices, so that the tip meets faces, as it would on anatomy.
+HEIGHT = 0.017
+
+
 def split(profile, piece):
-    """The profile with points no farther apart than about `piece`."""
-    points = [profile[0]]
-    for a, b in zip(profile, profile[1:]):
-        n = max(1, round(math.dist(a, b) / piece))
-        points += [add(a, times(i / n, sub(b, a))) for i in range(1, n + 1)]
-    return points
+    """Returns the profile with points no farther apart than about `piece`."""
+    parts = [np.linspace(a, b, max(1, round(abs(b - a) / piece)) + 1)[1:] for a, b in zip(profile, profile[1:])]
+    return np.concatenate([profile[:1], *parts])
 
 
 def prism(points, piece, half=9.0):
-    """Triangles of the profile drawn out along the third axis, from -half to half; their normals point
-    to its left."""
-    rows = round(2 * half / piece)
-    heights = [-half + 2 * half * i / rows for i in range(rows + 1)]
-    triangles = []
-    for p, q in zip(points, points[1:]):
-        for low, high in zip(heights, heights[1:]):
-            a, b, c, d = (*p, low), (*q, low), (*q, high), (*p, high)
-            triangles += [(a, c, b), (a, d, c)]
-    return triangles
+    """Returns the mesh of a profile drawn out along the third axis, from -half to half. Its normals point to the
+    left of the profile."""
+    heights = np.linspace(-half, half, round(2 * half / piece) + 1)
+    flat = np.repeat(points, len(heights))
+    vertices = np.stack([flat.real, flat.imag, np.tile(heights, len(points))], axis=1).astype(np.float32)
+    number = np.arange(len(flat)).reshape(len(points), -1)
+    a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
+    return keepout.Mesh(vertices, np.stack([a, c, b, a, d, c], axis=-1).reshape(-1, 3))
 
 
-def write_stl(path, triangles):
-    path.write_bytes(bytes(80) + struct.pack("<I", len(triangles)) +
-                     b"".join(struct.pack("<12fH", 0, 0, 0, *a, *b, *c, 0) for a, b, c in triangles))
+def solved(mesh, tip, y, **options):
+    """Returns the status of one step in the plane, the motion, and the planes in the order in which they were met."""
+    made = keepout.MotionConstraint(mesh, **options).step((tip.real, tip.imag, HEIGHT), (y.real, y.imag, 0))
+    if abs(made.motion[2]) > 1e-7:
+        sys.exit(f"draw: {made.motion} is not in the plane")
+    planes = [(complex(*n[:2]), b) for n, b in zip(made.planes.normals, made.planes.offsets)]
+    return made.status, complex(*made.motion[:2]), planes
 
 
-@contextlib.contextmanager
-def served(triangles, *settings):
-    """Yields a function that sends a request to `keepout serve` over a mesh and returns the answer, and a directory."""
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
-        write_stl(folder / "mesh.stl", triangles)
-        server = subprocess.Popen([KEEPOUT, "serve", folder / "mesh.stl", *map(str, settings)], stdin=subprocess.PIPE,
-                                  stdout=subprocess.PIPE, text=True, stderr=subprocess.DEVNULL)
-
-        def ask(**request):
-            server.stdin.write(json.dumps(request) + "\n")
-            server.stdin.flush()
-            answer = json.loads(server.stdout.readline())
-            if not answer.get("ok"):
-                raise SystemExit(f"draw: {answer}")
-            return answer
-
-        yield ask, folder
-        server.stdin.close()
-        server.wait()
-
-
-def replay(mesh, poses, *settings):
-    """Rows of STEPS.csv and PLANES.csv. `mesh`: triangles, or the path of a file."""
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
-        if not isinstance(mesh, pathlib.Path):
-            write_stl(folder / "mesh.stl", mesh)
-            mesh = folder / "mesh.stl"
-        lines = [" ".join(map(repr, map(float, pose))) for pose in poses]
-        (folder / "poses").write_text("\n".join(lines) + "\n")
-        subprocess.run(
-            [KEEPOUT, "replay", mesh, "--poses", folder / "poses", "--out", folder / "steps.csv",
-             "--planes", folder / "planes.csv", *map(str, settings)],
-            check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        return [list(csv.DictReader((folder / name).read_text().splitlines()))
-                for name in ("steps.csv", "planes.csv")]
-
-
-def solved(mesh, tip, y, *settings):
-    """One step in the plane: its status, the motion, and the planes in the order in which they were
-    met."""
-    # Off the rows of vertices, so that it is faces that are met, as it would be on anatomy.
-    steps, planes = replay(mesh, [(*tip, 0.017, *y, 0)], *settings)
-    u = [float(steps[0][name]) for name in ("ux", "uy", "uz")]
-    if abs(u[2]) > 1e-7:
-        sys.exit(f"draw: {u} is not in the plane")
-    planes = [((float(p["nx"]), float(p["ny"])), float(p["offset"])) for p in planes]
-    return steps[0]["status"], tuple(u[:2]), planes
-
-
-def step(mesh, tip, y, *settings):
-    """The same of a step that planes hold back, and lead to the motion."""
-    status, u, planes = solved(mesh, tip, y, *settings)
-    if status != "limited":
+def step(mesh, tip, y, **options):
+    """Like solved(), but without the status: it fails unless the planes limit the motion, and lead to it."""
+    status, u, planes = solved(mesh, tip, y, **options)
+    if status != keepout.Status.limited:
         sys.exit(f"draw: not a step to be drawn: {status}, {u}")
-    if math.dist(projected(y, planes), u) > 1e-6:
+    if abs(projected(y, planes) - u) > 1e-6:
         sys.exit(f"draw: the planes do not lead to the motion {u}")
     return u, planes
 
 
-def closed_loop(mesh, start, goals, *settings):
-    """Where the tip is led, from the start on, as it follows a goal in each cycle."""
-    poses = [(*goal, 0.017, *start, 0.017) for goal in goals]
-    steps, _ = replay(mesh, poses, "--closed-loop", *settings)
-    at = lambda row, axis: float(row["p" + axis]) + float(row["u" + axis])
-    return [start] + [(at(row, "x"), at(row, "y")) for row in steps]
+def closed_loop(mesh, start, goals, max_step, **options):
+    """Returns the places of a tip that follows a goal in each cycle, from its start on."""
+    lifted = lambda points: np.stack([np.real(points), np.imag(points), np.full(len(points), HEIGHT)], axis=1)
+    guard = keepout.MotionConstraint(mesh, **options)
+    tips = guard.simulate(lifted([start]), [lifted(goals)], max_step=max_step).tips[0]
+    return tips[:, 0] + 1j * tips[:, 1]
 
 
 # --- SVG ------------------------------------------------------------------------------------------
@@ -223,6 +152,10 @@ def math_of(letter, style="", sub=None):
     return f'<tspan class="math {style}">{letter}</tspan>' + (low if sub is not None else "")
 
 
+def xy(p):
+    return f"{p.real:.1f} {p.imag:.1f}"
+
+
 class Picture:
     """An SVG of a given size; y of the page goes down."""
 
@@ -244,7 +177,7 @@ class Picture:
         self.parts.append("  " + text)
 
     def rule(self, a, b):
-        self.put(f'<path class="rule" d="M{a[0]:.1f} {a[1]:.1f}L{b[0]:.1f} {b[1]:.1f}"/>')
+        self.put(f'<path class="rule" d="M{xy(a)}L{xy(b)}"/>')
 
     def text(self, x, y, words, style="", anchor="start"):
         self.put(f'<text x="{x:.1f}" y="{y:.1f}" class="{style}" text-anchor="{anchor}">{words}'
@@ -270,119 +203,103 @@ class Section:
 
     def __init__(self, picture, box, centre, scale):
         """box: x, y, width, height on the page. scale: of one mm."""
-        self.picture, self.box, self.centre, self.scale = picture, box, centre, scale
+        self.picture, self.centre, self.scale = picture, centre, scale
         self.id = f"window{len(picture.parts)}"
         x, y, w, h = box
+        self.middle = complex(x + w / 2, y + h / 2)
         picture.put(f'<clipPath id="{self.id}"><rect x="{x}" y="{y}" width="{w}" height="{h}" '
                     'rx="6"/></clipPath>')
 
     def at(self, p):
-        x, y, w, h = self.box
-        return (x + w / 2 + self.scale * (p[0] - self.centre[0]),
-                y + h / 2 - self.scale * (p[1] - self.centre[1]))
+        """Returns the place on the page, whose y goes down."""
+        return self.middle + self.scale * (p - self.centre).conjugate()
 
     def path(self, points, style, closed=False):
-        d = "M" + "L".join("%.1f %.1f" % self.at(p) for p in points) + ("Z" if closed else "")
+        d = "M" + "L".join(xy(self.at(p)) for p in points) + ("Z" if closed else "")
         self.picture.put(f'<path class="{style}" d="{d}" clip-path="url(#{self.id})"/>')
         return d
 
-    def body(self, profile):
-        """What is below the profile, hatched."""
-        below = [(99, profile[-1][1]), (99, -99), (profile[0][0], -99)]
-        d = self.path([*profile, *below], "body", True)
+    def hatched(self, outline):
+        """The body inside an outline."""
+        d = self.path(outline, "body", True)
         self.picture.put(f'<path fill="url(#hatch)" d="{d}" clip-path="url(#{self.id})"/>')
+
+    def body(self, profile):
+        """The body below the profile, hatched."""
+        self.hatched([*profile, complex(99, profile[-1].imag), 99 - 99j, complex(profile[0].real, -99)])
         self.path(profile, "skin")
 
     def offset(self, profile, distance):
         """The line `distance` above the profile."""
-        points = []
-        normals = [left_of(unit(sub(b, a))) for a, b in zip(profile, profile[1:])]
-        points.append(add(profile[0], times(distance, normals[0])))
+        edges = np.diff(profile)
+        normals = 1j * edges / abs(edges)
+        points = [profile[0] + distance * normals[0]]
         for p, n, m in zip(profile[1:-1], normals, normals[1:]):
-            turn = math.atan2(n[0] * m[1] - n[1] * m[0], dot(n, m))
+            turn = cmath.phase(m / n)
             if turn >= 0:
-                points.append(add(p, times(distance / (1 + dot(n, m)), add(n, m))))
-                continue
-            start = math.atan2(n[1], n[0])
-            arc = [start + turn * i / 24 for i in range(25)]
-            points += [add(p, (distance * math.cos(a), distance * math.sin(a))) for a in arc]
-        points.append(add(profile[-1], times(distance, normals[-1])))
-        self.path(points, "offset")
+                points.append(p + distance / (1 + dot(n, m)) * (n + m))
+            else:
+                points.extend(p + distance * n * np.exp(1j * np.linspace(0, turn, 25)))
+        self.path([*points, profile[-1] + distance * normals[-1]], "offset")
 
     def circle(self, centre, radius, style):
-        x, y = self.at(centre)
-        self.picture.put(f'<circle class="{style}" cx="{x:.1f}" cy="{y:.1f}" '
+        at = self.at(centre)
+        self.picture.put(f'<circle class="{style}" cx="{at.real:.1f}" cy="{at.imag:.1f}" '
                          f'r="{self.scale * radius:.1f}" clip-path="url(#{self.id})"/>')
 
     def dot(self, p, style, radius=4.0):
-        x, y = self.at(p)
-        self.picture.put(f'<circle class="{style}" cx="{x:.1f}" cy="{y:.1f}" r="{radius}"/>')
+        at = self.at(p)
+        self.picture.put(f'<circle class="{style}" cx="{at.real:.1f}" cy="{at.imag:.1f}" r="{radius}"/>')
 
     def arrow(self, a, b, color, width, shaft_to=1.0, begin=0.0, head=True):
         """From a to b; the shaft may begin and end on the way."""
         a, b = self.at(a), self.at(b)
-        u = unit(sub(b, a))
+        u = unit(b - a)
         long, wide = 7 + 2.6 * width, 2.5 + 1.35 * width
-        back = sub(b, times(long, u))
-        end = add(a, times(shaft_to, sub(b, a))) if shaft_to < 1 else sub(b, times(long - 2, u))
-        start = add(a, times(begin, sub(b, a)))
+        end = a + shaft_to * (b - a) if shaft_to < 1 else b - (long - 2) * u
         self.picture.put(f'<path class="line {color}" stroke-width="{width}" '
-                         f'style="stroke-linecap:butt" '
-                         f'd="M{start[0]:.1f} {start[1]:.1f}L{end[0]:.1f} {end[1]:.1f}"/>')
+                         f'style="stroke-linecap:butt" d="M{xy(a + begin * (b - a))}L{xy(end)}"/>')
         if head:
-            p, q = add(back, times(wide, left_of(u))), sub(back, times(wide, left_of(u)))
-            corners = "L".join("%.1f %.1f" % corner for corner in (b, p, q))
+            corners = "L".join(map(xy, (b, b - (long - 1j * wide) * u, b - (long + 1j * wide) * u)))
             self.picture.put(f'<path class="{color}-f" d="M{corners}Z"/>')
 
     def plane(self, tip, plane, span, style, ticks=True):
         """A line where normal . (p - tip) = offset; short strokes on the side that is not allowed.
         span: from where to where along it, in mm from the foot of the tip."""
-        n, b = plane
-        foot, along = add(tip, times(b, n)), (n[1], -n[0])
-        ends = [add(foot, times(s, along)) for s in span]
-        self.path(ends, f"line {style}")
+        self.path([self.along(tip, plane, s) for s in span], f"line {style}")
         if not ticks:
             return
-        back = times(8 / self.scale, sub(times(0.6, along), n))
-        d = ""
-        s, stop = span[0] + 6 / self.scale, span[1] - 4 / self.scale
-        while s < stop:
-            p = add(foot, times(s, along))
-            d += "M%.1f %.1fL%.1f %.1f" % (*self.at(p), *self.at(add(p, back)))
-            s += 13 / self.scale
-        colour = style.split()[0]
-        self.picture.put(f'<path class="line {colour} thin" d="{d}" clip-path="url(#{self.id})"/>')
+        back = 8 / self.scale * (-0.6j - 1) * plane[0]
+        starts = [self.along(tip, plane, s)
+                  for s in np.arange(span[0] + 6 / self.scale, span[1] - 4 / self.scale, 13 / self.scale)]
+        d = "".join(f"M{xy(self.at(p))}L{xy(self.at(p + back))}" for p in starts)
+        self.picture.put(f'<path class="line {style.split()[0]} thin" d="{d}" clip-path="url(#{self.id})"/>')
 
     def along(self, tip, plane, where):
         """A point of a plane, as in `plane`."""
         n, b = plane
-        return add(add(tip, times(b, n)), times(where, (n[1], -n[0])))
+        return tip + (b - 1j * where) * n
 
     def label(self, place, dx, dy, words, style="", anchor="start"):
-        x, y = self.at(place)
-        self.picture.text(x + dx, y + dy, words, style + " halo", anchor)
+        at = self.at(place)
+        self.picture.text(at.real + dx, at.imag + dy, words, style + " halo", anchor)
 
     def leader(self, a, b):
         """From a place on the page to a place in the section."""
-        self.picture.put('<path class="leader" d="M%.1f %.1fL%.1f %.1f"/>' % (*a, *self.at(b)))
+        self.picture.put(f'<path class="leader" d="M{xy(a)}L{xy(self.at(b))}"/>')
 
     def gap(self, a, b):
         """A distance, with an arrow at both ends."""
         a, b = self.at(a), self.at(b)
-        u = unit(sub(b, a))
-        d = "M%.1f %.1fL%.1f %.1f" % (*a, *b)
-        for p, w in ((a, u), (b, times(-1, u))):
-            for side in (1, -1):
-                q = add(p, add(times(6, w), times(3 * side, left_of(w))))
-                d += "M%.1f %.1fL%.1f %.1f" % (*p, *q)
+        u = unit(b - a)
+        d = f"M{xy(a)}L{xy(b)}" + "".join(f"M{xy(p)}L{xy(p + w * u)}" for p, ends in (
+            (a, (6 + 3j, 6 - 3j)), (b, (-6 - 3j, -6 + 3j))) for w in ends)
         self.picture.put(f'<path class="leader" style="stroke-width:1.3" d="{d}"/>')
 
     def swing(self, pivot, n, m, radius, color):
         """An arrow along an arc, from the line with normal n to that with normal m."""
-        start, stop = (math.atan2(-k[0], k[1]) for k in (n, m))
-        start, stop = start + (stop - start) * 0.12, start + (stop - start) * 0.86
-        points = [add(pivot, (radius * math.cos(a), radius * math.sin(a)))
-                  for a in (start + (stop - start) * i / 24 for i in range(25))]
+        start, turn = -1j * radius * n, cmath.phase(m / n)
+        points = pivot + start * np.exp(1j * np.linspace(0.12 * turn, 0.86 * turn, 25))
         self.path(points, f"line {color} thin")
         self.arrow(points[-3], points[-1], color, 1.2, shaft_to=0.5)
 

@@ -22,9 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..experiment import Array
-from .projection import Plane, corridor_planes, nearest_motion
+from .projection import Plane, corridor_planes, is_outside, nearest_motion
 from .rule import RECOVERY, Task
-from .side import is_outside
 
 ON_BORDER = 1e-9  # a barycentric coordinate that counts as 0
 

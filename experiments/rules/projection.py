@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The nearest motion that planes allow, for rules that are not keepout's own."""
+"""The nearest motion that planes allow, and the side of a tip, for rules that are not keepout's own."""
 from __future__ import annotations
 
+import keepout
 import numpy as np
 from scipy.optimize import nnls
 
@@ -44,3 +45,17 @@ def corridor_planes(corridor: Corridor | None, tip: Array) -> list[Plane]:
         (normal, -(beside + corridor.half_width) if low == 0.0 else 0.0),
         (-normal, -(corridor.half_width - beside) if high == 0.0 else 0.0),
     ]
+
+
+def is_outside(hits: keepout.Hits, normals: Array) -> bool:
+    """Told by the sum of the normals of the triangles that have the nearest point; True without hits.
+
+    That is the pseudonormal of Baerentzen and Aanaes (2005) but for the weights by angle, and as right
+    where the faces around the point do not turn by more than a right angle. A tip on the surface is outside.
+    """
+    if not len(hits):
+        return True
+    distances = hits.distances
+    nearest = distances <= distances.min() * (1.0 + 1e-9)
+    away = normals[hits.triangles[nearest]].sum(axis=0)
+    return float(hits.offsets[nearest][0] @ away) <= 0.0

@@ -19,9 +19,8 @@ import keepout
 import numpy as np
 
 from ..experiment import Array
-from .projection import Plane, corridor_planes, nearest_motion
+from .projection import Plane, corridor_planes, is_outside, nearest_motion
 from .rule import RECOVERY, Task
-from .side import is_outside
 
 
 class VectorFieldInequality:

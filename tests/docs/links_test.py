@@ -10,22 +10,17 @@ have a link to each page beside it.
 
 import pathlib
 import re
-import shutil
-import subprocess
 import sys
 import unicodedata
 import urllib.parse
 
-FENCE = re.compile(r"^( {0,3})(`{3,}|~{3,}).*?^ {0,3}\2`*~* *$", re.M | re.S)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs" / "figures"))
+from pages import FENCE, blank, of_tree  # noqa: E402
+
 CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.S)
 COMMENT = re.compile(r"<!--.*?-->", re.S)
 LINK = re.compile(r"(?P<picture>!?)\[(?P<words>(?:[^\[\]]|\[[^\]]*\])*)\]\((?P<to>[^()\s]*)(?:\s+\"[^\"]*\")?\)")
 HEADING = re.compile(r"^#{1,6} +(.+?) *#* *$", re.M)
-
-
-def blank(match):
-    """As many lines, and nothing in them."""
-    return re.sub(r"[^\n]", " ", match[0])
 
 
 def anchor_of(heading):
@@ -43,19 +38,6 @@ def anchors(page):
         seen[anchor] = number + 1
         found.add(f"{anchor}-{number}" if number else anchor)
     return found
-
-
-def pages_of(root):
-    if shutil.which("git"):
-        listed = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "*.md"],
-                                capture_output=True, text=True)
-        if listed.returncode == 0 and listed.stdout:
-            return sorted(path for path in map(root.joinpath, listed.stdout.splitlines())
-                          if path.exists())
-    inner = lambda path: path.relative_to(root).parts
-    return sorted(path for path in root.rglob("*.md")
-                  if inner(path)[0] not in ("build", "out") and
-                  not any(part.startswith(".") for part in inner(path)))
 
 
 def exists(path):
@@ -90,7 +72,7 @@ def faults_of(page, root):
 
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
-    pages = pages_of(root)
+    pages = of_tree(root)
     if not pages:
         sys.exit(f"{root}: there are no pages")
     faults = [f"{page.relative_to(root)}:{line}: {why}" for page in pages

@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 from experiments.bone import BoneProperties
+from experiments.experiment import Claim, Findings, Scale
 from experiments.operator_model import Operator
+from experiments.record import write_record
 from experiments.set_up_errors import SetUp
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -54,6 +56,20 @@ def test_summary_record_and_page_say_the_same(made: Path) -> None:
     assert not record["complete"]  # --only leaves the others out
     if "KEEPOUT_COMMAND" in os.environ:
         assert (made / "experiments.html").stat().st_size > 1000
+
+
+def test_the_command_makes_a_page_of_a_record(tmp_path: Path) -> None:
+    claims = [Claim("depth", paper, "1 mm", "0 mm", "certified", "p = 0.01") for paper in "1-"]
+    found = {"e3": ("E3 <Path>", Findings("Smoother.", claims))}
+    file = tmp_path / "experiments.json"
+    write_record(file, Scale(), found, True, "./run experiments")
+    record = json.loads(file.read_text(encoding="utf-8"))
+    assert record["headline"].startswith("1 number of the paper,")
+    assert record["machine"]["processor"] and record["machine"]["libraries"]
+    again = [os.environ["KEEPOUT_COMMAND"], "report", str(file)]
+    subprocess.run(again, check=True, env={**os.environ, "KEEPOUT_WEB": str(tmp_path)})
+    page = file.with_suffix(".html").read_text(encoding="utf-8")
+    assert "<td>E3 &lt;Path&gt;</td><td>depth</td><td>1</td>" in page
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 import keepout
 import numpy as np
 import pytest
+import surfaces
 
 from experiments.rules.rule import Corridor, Task
 from experiments.rules.signed_distance_field import SignedDistanceField, VoxelGrid
@@ -9,27 +10,10 @@ from experiments.sides import lattice_is_solid
 
 
 def box(low, high):
-    """A closed box: 12 triangles, normals outwards."""
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype=float)
-    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
-    low, high = np.array(low, dtype=float), np.array(high, dtype=float)
-    return keepout.Mesh(low + corners * (high - low), np.array(triangles))
+    return keepout.Mesh(*surfaces.box(low, high))
 
 
-def ball(radius=10.0, doublings=5):
-    """An octahedron, refined onto the sphere: 8192 triangles."""
-    vertices = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1.0]])
-    triangles = np.array([(4, 0, 2), (4, 2, 1), (4, 1, 3), (4, 3, 0),
-                          (5, 2, 0), (5, 1, 2), (5, 3, 1), (5, 0, 3)])
-    for _ in range(doublings):
-        a, b, c = (vertices[triangles[:, i]] for i in range(3))
-        ab, bc, ca = a + b, b + c, c + a
-        soup = np.stack([a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca], axis=1).reshape(-1, 3)
-        soup /= np.linalg.norm(soup, axis=1, keepdims=True)
-        vertices, triangles = np.unique(np.round(soup, 12), axis=0, return_inverse=True)
-        triangles = triangles.reshape(-1, 3)
-    return keepout.Mesh(radius * vertices, triangles)
+BALL = keepout.Mesh(*surfaces.sphere(128, 10.0))
 
 
 def grid_of(mesh, cell, low, high):
@@ -37,19 +21,17 @@ def grid_of(mesh, cell, low, high):
 
 
 def test_sides_of_a_ball_also_on_lines_through_its_vertices_and_edges():
-    mesh = ball()
     places = np.indices((25, 25, 25)).reshape(3, -1).T - 12.0  # the axes pass through vertices
     far = np.linalg.norm(places, axis=1)
     sure = (far < 9.9) | (far > 10.0 + 1e-9)
-    solid = lattice_is_solid(mesh, np.full(3, -12.0), 1.0, (25, 25, 25)).ravel()
+    solid = lattice_is_solid(BALL, np.full(3, -12.0), 1.0, (25, 25, 25)).ravel()
     np.testing.assert_array_equal(solid[sure], far[sure] < 10.0)
 
 
 def test_a_mesh_inside_out_is_solid_all_around():
-    mesh = ball()
-    turned = keepout.Mesh(mesh.vertices, mesh.triangles[:, ::-1])
+    turned = keepout.Mesh(BALL.vertices, BALL.triangles[:, ::-1])
     lattice = (np.full(3, -12.1), 0.7, (35, 35, 35))
-    np.testing.assert_array_equal(lattice_is_solid(turned, *lattice), ~lattice_is_solid(mesh, *lattice))
+    np.testing.assert_array_equal(lattice_is_solid(turned, *lattice), ~lattice_is_solid(BALL, *lattice))
 
 
 def test_parts_that_overlap_stay_solid():
@@ -62,7 +44,7 @@ def test_parts_that_overlap_stay_solid():
 
 @pytest.mark.parametrize("cell", [1.0, 0.5])
 def test_distances_of_a_ball_err_by_the_square_of_the_cell(cell):
-    grid = grid_of(ball(), cell, [-13] * 3, [13] * 3)
+    grid = grid_of(BALL, cell, [-13] * 3, [13] * 3)
     random = np.random.default_rng(2)
     far = random.uniform(8.0, 12.0, 300)
     directions = random.normal(size=(300, 3))
@@ -76,7 +58,7 @@ def test_distances_of_a_ball_err_by_the_square_of_the_cell(cell):
 
 
 def test_the_gradient_is_that_of_the_interpolation():
-    grid = grid_of(ball(), 1.0, [-13] * 3, [13] * 3)
+    grid = grid_of(BALL, 1.0, [-13] * 3, [13] * 3)
     for place in np.random.default_rng(3).uniform(-12, 12, (50, 3)):
         place = np.floor(place) + 0.2 + 0.6 * (place - np.floor(place))  # not near a cell's side
         for axis in range(3):

@@ -6,6 +6,8 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
+from skimage.color import colorconv
 
 from experiments import figures
 
@@ -16,7 +18,7 @@ EYES = {
     "deuteranopia": [[0.3673, 0.8606, -0.228], [0.2801, 0.6725, 0.0474], [-0.0118, 0.0429, 0.9689]],
     "tritanopia": [[1.2555, -0.0767, -0.1788], [-0.0784, 0.9308, 0.1476], [0.0047, 0.6914, 0.3039]],
 }
-TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+TO_XYZ = colorconv.xyz_from_rgb
 
 
 def drawn() -> str:
@@ -32,15 +34,12 @@ def drawn() -> str:
 
 
 def linear(shade: str) -> np.ndarray:
-    srgb = np.array([int(shade[i : i + 2], 16) for i in (1, 3, 5)]) / 255
-    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+    return np.linalg.solve(TO_XYZ, colorconv.rgb2xyz(to_rgb(shade)))
 
 
 def lab(light: np.ndarray) -> np.ndarray:
     """CIE L*a*b* under D65."""
-    ratio = TO_XYZ @ np.clip(light, 0, 1) / [0.9505, 1.0, 1.089]
-    root = np.where(ratio > 0.008856, np.cbrt(ratio), 7.787 * ratio + 16 / 116)
-    return np.array([116 * root[1] - 16, 500 * (root[0] - root[1]), 200 * (root[1] - root[2])])
+    return colorconv.xyz2lab(TO_XYZ @ np.clip(light, 0, 1))
 
 
 def test_the_same_figure_gives_the_same_bytes():

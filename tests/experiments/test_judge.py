@@ -2,12 +2,11 @@
 """The judge of the experiments, against what is known of a box."""
 import numpy as np
 import pytest
+import surfaces
 
 peers = pytest.importorskip("keepout_peers")
 
-CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-QUADS = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-TRIANGLES = np.array([t for a, b, c, d in QUADS for t in ((a, b, c), (a, c, d))])
+CORNERS, TRIANGLES = surfaces.box(-1.0, 1.0)
 
 
 def box_distance(points):

@@ -26,6 +26,7 @@ def counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> types.ModuleType
 
     module.run, module.log = run, log
     monkeypatch.setitem(sys.modules, module.__name__, module)
+    monkeypatch.setattr(runner, "source_digest", lambda experiment: "no sources")
     return module
 
 
@@ -50,7 +51,7 @@ def test_other_sources_make_what_is_kept_void(
     counted: types.ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     runner.run_units([counted], units(1), tmp_path, 1)
-    monkeypatch.setattr(runner.Kept, "_digest", staticmethod(lambda experiment: "other"))
+    monkeypatch.setattr(runner, "source_digest", lambda experiment: "other")
     runner.run_units([counted], units(1), tmp_path, 1)
     assert ran(counted) == ["unit-0", "unit-0"]
 

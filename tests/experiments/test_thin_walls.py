@@ -2,7 +2,7 @@
 import keepout
 import numpy as np
 import pytest
-from test_distance_field import ball, box
+from test_distance_field import BALL, box
 
 from experiments import e5_distance_field as e5
 from experiments.rules.signed_distance_field import SignedDistanceField, VoxelGrid
@@ -21,7 +21,7 @@ def test_a_plate_is_a_wall_as_thick_as_it_is_and_a_ball_is_none():
     assert len(walls.half) > 350  # all but at the rim
     assert walls.half == pytest.approx(0.3, abs=1e-4)
     assert walls.middle[:, 2] == pytest.approx(0.5, abs=1e-4)
-    assert len(walls_of(keepout.Index(ball(radius=10.0))).half) == 0
+    assert len(walls_of(keepout.Index(BALL)).half) == 0
 
 
 def test_exact_distances_have_the_sign_of_the_side():

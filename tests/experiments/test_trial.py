@@ -21,9 +21,9 @@ def short_trial(mode: str, seed: int = 1, setup: SetUp = SetUp(), cut: bool = Tr
     path, index = anatomy.phantom()
     bone = BoneProperties(resistance=0.2) if cut else None
     course = Course(path=path, depth=anatomy.SHELL, speed=0.5, bone=bone, time_limit=8.0)
-    trial = teleoperation.operate(mode, course, index, Operator(), setup, (seed,))
+    trace = teleoperation.operate(mode, course, index, Operator(), setup, (seed,))
     judge = Judge(index.mesh.vertices, index.mesh.triangles)
-    return trial, teleoperation.measures(trial, course, judge)
+    return trace, teleoperation.measures(trace, course, judge)
 
 
 def test_the_phantom_is_a_shell_of_two_millimetres_on_a_closed_block() -> None:
@@ -43,11 +43,11 @@ def test_the_path_lies_on_the_outside_of_the_skull() -> None:
 
 
 def test_certified_holds_a_hand_that_leans_on_it_and_no_fixture_does_not() -> None:
-    trial, held = short_trial("certified")
+    trace, held = short_trial("certified")
     assert held["crossings"] == 0 and held["deepest_registered_mm"] == 0.0
     assert held["greatest_force_n"] > 0.1  # it was leant on
     assert held["beyond_registration_mm"] == 0.0
-    across = trial.trace.setpoint[:, 0] - anatomy.SAGITTAL_X
+    across = trace.setpoint[:, 0] - anatomy.SAGITTAL_X
     assert np.abs(across).max() < teleoperation.CORRIDOR + 0.01
     free = [short_trial("none", seed)[1] for seed in range(4)]
     assert max(row["deepest_mm"] for row in free) > 0.2
@@ -56,24 +56,24 @@ def test_certified_holds_a_hand_that_leans_on_it_and_no_fixture_does_not() -> No
 
 def test_a_fixture_takes_energy_from_the_hand_unless_its_force_comes_late() -> None:
     at_once = short_trial("certified", setup=SetUp(latency=0.0))[1]
-    trial, late = short_trial("certified", setup=SetUp(latency=0.02))
+    trace, late = short_trial("certified", setup=SetUp(latency=0.02))
     assert at_once["energy_mj"] < 0.0 < late["energy_mj"]
     # The force is at most 0.3 N/mm times the way between goal and setpoint.
-    apart = np.linalg.norm(trial.trace.setpoint - trial.trace.goal, axis=1)
-    assert np.all(trial.trace.force <= 0.3 * apart + 1e-9)
+    apart = np.linalg.norm(trace.setpoint - trace.goal, axis=1)
+    assert np.all(trace.force <= 0.3 * apart + 1e-9)
 
 
 def test_a_tool_that_is_stuck_does_not_come_to_the_end_of_the_path() -> None:
     path, _ = anatomy.phantom()
     along = {}
     for mode in ("fcl_continuous", "certified"):
-        trial, _ = short_trial(mode, cut=False)
-        along[mode] = float(path.depths(trial.trace.tip[-1:])[0][0])
+        trace, _ = short_trial(mode, cut=False)
+        along[mode] = float(path.depths(trace.tip[-1:])[0][0])
     assert along["fcl_continuous"] < 0.5 < 2.0 < along["certified"]
 
 
 def test_the_same_seed_is_the_same_trial_and_another_is_not() -> None:
-    first, again, other = (short_trial("certified", seed)[0].trace for seed in (1, 1, 2))
+    first, again, other = (short_trial("certified", seed)[0] for seed in (1, 1, 2))
     assert np.array_equal(first.tip, again.tip) and np.array_equal(first.force, again.force)
     assert not np.array_equal(first.tip[:1000], other.tip[:1000])
 
@@ -84,8 +84,8 @@ def test_the_narrower_the_corridor_the_less_it_deviates() -> None:
     operator = Operator(slow_across=1.5, bias_across=1.5)
     widest = []
     for corridor in (0.25, 1.0):
-        trial = teleoperation.operate(
+        trace = teleoperation.operate(
             "certified", course, index, operator, SetUp.ideal(), (3,), corridor
         )
-        widest.append(np.abs(trial.trace.setpoint[:, 0] - anatomy.SAGITTAL_X).max())
+        widest.append(np.abs(trace.setpoint[:, 0] - anatomy.SAGITTAL_X).max())
     assert widest[0] < 0.26 < 0.5 < widest[1] < 1.01

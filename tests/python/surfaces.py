@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small surfaces for tests, poses around them, and an instrument."""
+"""Small surfaces for tests, poses around them, what the command makes of these, and an instrument."""
 
+import csv
 import os
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +38,14 @@ def sphere(n=24, radius=10.0):
     return vertices, np.array(triangles)
 
 
+def box(low, high):
+    """A closed box, with normals outwards; vertices, triangles."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
+    return low + corners * np.subtract(high, low), np.array(triangles)
+
+
 def write_stl(path, vertices, triangles):
     """Binary; in single precision, as the format has it."""
     records = np.zeros(
@@ -51,6 +61,24 @@ def poses(vertices, count, seed=1, spread=1.0, step=0.3):
     tips = vertices[random.integers(0, len(vertices), count)]
     tips = tips + spread * random.normal(size=(count, 3))
     return np.hstack([tips, step * random.normal(size=(count, 3))])
+
+
+def run(*command, **options):
+    """What a program prints. It must succeed."""
+    ended = subprocess.run(command, capture_output=True, text=True, **options)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    return ended.stdout
+
+
+def command_replay(path, lines, folder, *options):
+    """The motions, (count, 3), the names of the statuses and the numbers of planes of `keepout replay`."""
+    np.savetxt(folder / "poses.txt", lines, fmt="%.17g")
+    files = ["--poses", folder / "poses.txt", "--out", folder / "steps.csv"]
+    run(os.environ["KEEPOUT_COMMAND"], "replay", path, *files, *options)
+    with open(folder / "steps.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    motion = np.array([[float(row[axis]) for axis in ("ux", "uy", "uz")] for row in rows])
+    return motion, [row["status"] for row in rows], [int(row["planes"]) for row in rows]
 
 
 def skull():

@@ -5,16 +5,83 @@ import re
 
 import numpy as np
 import pytest
-from surfaces import sphere
+from surfaces import psm, sphere
 
 import keepout
-from keepout import Status
+from keepout import ConvexTool, Guide, Region, Status
 
 vertices, triangles = sphere()
+sphere_mesh = keepout.Mesh(vertices, triangles)
+beside = keepout.MotionConstraint(sphere_mesh, tool_radius=0.3, margin=0.2)
+many = np.zeros((500, 3))
+above, down = (0, 0, 14), (0, 0, -1)
+arm = keepout.InstrumentGuard(sphere_mesh, keepout.Instrument(psm(), [keepout.Body("tip", [(6, (0, 0, 0))], 1.0)]))
+near = Region.ball((0, 0, 0), 1.0)
+markers = np.array([[0, 95, 20], [70, 40, 35], [-72, 38, 30], [60, -60, 80], [-10, -20, 130.0]])
+fit = keepout.fit_rigid(markers, markers)
 
 
 def refused(match):
     return pytest.raises(keepout.Error, match=match)
+
+
+@pytest.mark.parametrize(
+    "call, says",
+    [
+        (lambda: keepout.Mesh(np.full((3, 3), np.nan), [[0, 1, 2]], weld=True), "finite"),
+        (lambda: keepout.MotionConstraint(sphere_mesh, index=keepout.Index(keepout.Mesh(vertices, triangles))),
+         "index: expected an Index of the same Mesh"),
+        (lambda: keepout.MotionConstraint(vertices), "mesh: expected a keepout.Mesh, got numpy.ndarray"),
+        (lambda: keepout.Index("skull.stl"), "mesh: expected a keepout.Mesh, got str"),
+        (lambda: beside.index.hits((0, 0, 0), -1.0), "radius: expected a finite number not below zero"),
+        (lambda: beside.index.query((0, 0, np.nan), 1.0), "center: expected finite numbers"),
+        # Masks are not lost.
+        (lambda: beside.step(np.ma.masked_array([0.0, 0, 14], mask=[0, 1, 0]), down), "tip: .* masked array"),
+        (lambda: beside.steps(np.ma.masked_array(many, mask=False), many), "tips: .* masked array"),
+        # Jacobians and rows.
+        (lambda: beside.step(above, down, jacobian=np.zeros((2, 3))), r"jacobian: .* \(3, n\), got shape \(2, 3\)"),
+        (lambda: beside.step(above, down, jacobian=np.zeros((3, 0))), "jacobian: "),
+        (lambda: beside.step(above, down, rows=5), "rows: expected a pair"),
+        (lambda: beside.step(above, down, rows=([[1, 0, 0]],)), "rows: expected a pair"),
+        (lambda: beside.step(above, down, rows=([[1, 0]], [0])), r"rows\[0\]: .* \(m, 3\), got shape \(1, 2\)"),
+        (lambda: beside.step(above, down, rows=([[1, 0, 0]], [0, 1])), r"rows\[1\]: .* \(1,\), got shape \(2,\)"),
+        (lambda: beside.step(above, down, np.eye(3), ([[1, 0, 0, 0]], [0])), r"rows\[0\]: .* \(m, 3\)"),
+        # Batches.
+        (lambda: beside.steps(many, many[1:]),
+         r"desired: .* \(500, 3\), as many as tips, or \(3,\), got shape \(499, 3\)"),
+        (lambda: beside.steps((0, 0), down), r"tips: .* \(n, 3\) or \(3,\), got shape \(2,\)"),
+        (lambda: beside.steps(above, np.zeros(4)), r"desired: .* \(n, 3\) or \(3,\), got shape \(4,\)"),
+        (lambda: beside.steps(many, many[None]), r"desired: .* got shape \(1, 500, 3\)"),
+        (lambda: beside.replay(many), r"poses: .* \(n, 6\)"),
+        (lambda: beside.simulate(many, many), r"hands: .* \(500, cycles, 3\)"),
+        *((lambda n=n: beside.steps(many, many, threads=n), f"threads: expected 1 to 1024, .* got {n}")
+          for n in (0, -3, 1025)),
+        (lambda: beside.simulate(many, many[:, None], max_step=5.1), "max_step: "),
+        (lambda: beside.replay(np.zeros((1, 6)), closed_loop=True, max_step=np.nan), "max_step: "),
+        # Convex tools.
+        (lambda: ConvexTool.capsule((0, 0), (0, 0, 1), 1), "start: expected"),
+        (lambda: ConvexTool.sphere(1).rotated(2 * np.eye(3)), "rotation"),
+        (lambda: keepout.MotionConstraint(sphere_mesh, tool=ConvexTool.sphere(1), tool_radius=0.5),
+         "leave tool_radius at 0"),
+        # Guides.
+        (lambda: arm.set_guides([Guide.point("far", 7, (0, 0, 0), near)]), "link 7"),
+        (lambda: Guide.point("a", 6, (0, 0, 0), near).with_band(0), "band"),
+        (lambda: Region.ball((0, 0, 0), -1), "width or radius"),
+        # Registrations.
+        (lambda: keepout.fit_rigid(markers[:2], markers[:2]), "2 pairs"),
+        (lambda: keepout.fit_rigid(markers, markers[:4]), "5 measured points, but 4"),
+        (lambda: keepout.fit_rigid(markers.T, markers), r"measured: expected .*\(n, 3\)"),
+        (lambda: keepout.fit_rigid(markers, markers, weights=[]), "weights: expected one for each"),
+        (lambda: keepout.fit_rigid(markers, markers, weights=[1, 1, 1, 1, 0]), r"weights\[4\]"),
+        (lambda: keepout.fit_rigid(markers, np.outer(range(5), [1, 2, 3])), "on a line"),
+        (lambda: keepout.registration_margin(fit, np.zeros((0, 3))), "no targets"),
+        (lambda: keepout.registration_margin(fit, (0, 0, 0), confidence=1), "confidence"),
+        (lambda: keepout.target_error(fit, (0, 0, 0), fle=-1), "fle"),
+    ],
+)
+def test_what_is_refused_is_named(call, says):
+    with refused(says):
+        call()
 
 
 @pytest.mark.parametrize(
@@ -55,11 +122,6 @@ def test_triangles_that_are_refused(bad, says):
     for weld in (False, True):
         with refused(says):
             keepout.Mesh(vertices, bad, weld=weld)
-
-
-def test_nan_is_refused_when_welding_too():
-    with refused("finite"):
-        keepout.Mesh(np.full((3, 3), np.nan), [[0, 1, 2]], weld=True)
 
 
 def test_any_layout_is_converted():
@@ -120,14 +182,6 @@ def test_numbers_that_fit_no_double_are_refused_where_numpy_is_asked_to(guard):
                 guard.step(*arguments)
 
 
-def test_masks_are_not_lost(guard, outside):
-    hidden = np.ma.masked_array([0.0, 0, 14], mask=[False, True, False])
-    with refused("tip: .* masked array"):
-        guard.step(hidden, (0, 0, 1))
-    with refused("tips: .* masked array"):
-        guard.steps(np.ma.masked_array(outside[0], mask=False), outside[1])
-
-
 def test_a_file_name_that_is_not_text_is_told(tmp_path):
     with refused("no such file") as raised:
         keepout.load_mesh(tmp_path / "a\udcff.stl")
@@ -164,23 +218,6 @@ def test_what_is_not_finite_is_a_status(guard, outside):
 
 
 @pytest.mark.parametrize(
-    "arguments, says",
-    [
-        ({"jacobian": np.zeros((2, 3))}, r"jacobian: .* \(3, n\), got shape \(2, 3\)"),
-        ({"jacobian": np.zeros((3, 0))}, "jacobian: "),
-        ({"rows": 5}, "rows: expected a pair"),
-        ({"rows": ([[1, 0, 0]],)}, "rows: expected a pair"),
-        ({"rows": ([[1, 0]], [0])}, r"rows\[0\]: .* \(m, 3\), got shape \(1, 2\)"),
-        ({"rows": ([[1, 0, 0]], [0, 1])}, r"rows\[1\]: .* \(1,\), got shape \(2,\)"),
-        ({"jacobian": np.eye(3), "rows": ([[1, 0, 0, 0]], [0])}, r"rows\[0\]: .* \(m, 3\)"),
-    ],
-)
-def test_jacobians_and_rows_that_are_refused(guard, arguments, says):
-    with refused(says):
-        guard.step((0, 0, 14), (0, 0, 1), **arguments)
-
-
-@pytest.mark.parametrize(
     "settings, says",
     [
         ({"index": "nonsense"}, "no .*'nonsense'; known: .*wide_bvh"),
@@ -208,43 +245,6 @@ def test_jacobians_and_rows_that_are_refused(guard, arguments, says):
 def test_settings_that_are_refused(mesh, settings, says):
     with refused(says):
         keepout.MotionConstraint(mesh, **settings)
-
-
-def test_meshes_that_are_none(mesh):
-    other = keepout.Mesh(vertices, triangles)
-    with refused("index: expected an Index of the same Mesh"):
-        keepout.MotionConstraint(mesh, index=keepout.Index(other))
-    with refused("mesh: expected a keepout.Mesh, got numpy.ndarray"):
-        keepout.MotionConstraint(vertices)
-    with refused("mesh: expected a keepout.Mesh, got str"):
-        keepout.Index("skull.stl")
-    with refused("radius: expected a finite number not below zero"):
-        keepout.Index(mesh).hits((0, 0, 0), -1.0)
-    with refused("center: expected finite numbers"):
-        keepout.Index(mesh).query((0, 0, np.nan), 1.0)
-
-
-def test_batches_of_the_wrong_shape(guard, outside):
-    tips, desired = outside
-    with refused(r"desired: .* \(500, 3\), as many as tips, or \(3,\), got shape \(499, 3\)"):
-        guard.steps(tips, desired[1:])
-    with refused(r"tips: .* \(n, 3\) or \(3,\), got shape \(2,\)"):
-        guard.steps(tips[0, :2], desired[0])
-    with refused(r"desired: .* \(n, 3\) or \(3,\), got shape \(4,\)"):
-        guard.steps(tips[0], np.zeros(4))
-    with refused(r"desired: .* got shape \(1, 500, 3\)"):
-        guard.steps(tips, desired[None])
-    with refused(r"poses: .* \(n, 6\)"):
-        guard.replay(tips)
-    with refused(r"hands: .* \(500, cycles, 3\)"):
-        guard.simulate(tips, desired)
-    for threads in (0, -3, 1025):
-        with refused(f"threads: expected 1 to 1024, .* got {threads}"):
-            guard.steps(tips, desired, threads=threads)
-    with refused("max_step: "):
-        guard.simulate(tips, tips[:, None], max_step=5.1)
-    with refused("max_step: "):
-        guard.replay(np.zeros((1, 6)), closed_loop=True, max_step=np.nan)
 
 
 def test_empty_batches(guard):

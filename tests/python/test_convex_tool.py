@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Convex tools by name."""
 
-import csv
 import os
-import subprocess
 
 import numpy as np
 import pytest
-from surfaces import poses, sphere
+from surfaces import command_replay, poses
 
 import keepout
 from keepout import ConvexTool, Status
@@ -31,19 +29,10 @@ phases = [part.name for part in keepout.narrow_phases()]
 def test_steps_are_those_of_the_command_bit_for_bit(text, phase, sphere_file, tmp_path):
     mesh = keepout.load_mesh(sphere_file)
     lines = poses(1.3 * mesh.vertices, 300 if phase == "exact" else 20, seed=8)
-    np.savetxt(tmp_path / "poses.txt", lines, fmt="%.17g")
-    # fmt: off
-    subprocess.run(
-        [command, "replay", sphere_file, "--poses", tmp_path / "poses.txt", "--out",
-         tmp_path / "steps.csv", "--tool", text, "--narrow-phase", phase],
-        check=True, capture_output=True)
-    # fmt: on
-    with open(tmp_path / "steps.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
+    motion, names, _ = command_replay(sphere_file, lines, tmp_path, "--tool", text, "--narrow-phase", phase)
     steps = keepout.MotionConstraint(mesh, tool=tools[text], narrow_phase=phase).replay(lines)
-    motion = np.array([[float(row[axis]) for axis in ("ux", "uy", "uz")] for row in rows])
     np.testing.assert_array_equal(steps.motion, motion)
-    assert [Status(s).name for s in steps.status] == [row["status"] for row in rows]
+    assert [Status(s).name for s in steps.status] == names
 
 
 @pytest.mark.parametrize("phase", phases)
@@ -74,22 +63,3 @@ def test_a_guard_tells_its_tool_and_a_text_is_the_tool_made_by_hand(mesh):
         assert guard.tool.radius == tool.radius and repr(tool) in repr(guard)
         assert guard.free_polytope((0, 0, 20), 1).status is keepout.Status.unsupported
     assert keepout.MotionConstraint(mesh).tool is None
-
-
-def contradictory_guard():
-    return keepout.MotionConstraint(
-        keepout.Mesh(*sphere()), tool=ConvexTool.sphere(1), tool_radius=0.5
-    )
-
-
-@pytest.mark.parametrize(
-    "make, says",
-    [
-        (lambda: ConvexTool.capsule((0, 0), (0, 0, 1), 1), "start: expected"),
-        (lambda: ConvexTool.sphere(1).rotated(2 * np.eye(3)), "rotation"),
-        (contradictory_guard, "leave tool_radius at 0"),
-    ],
-)
-def test_what_is_no_tool_or_contradicts_it_is_told(make, says):
-    with pytest.raises(keepout.Error, match=says):
-        make()

@@ -7,29 +7,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from surfaces import run
 
 import keepout
 
 examples = Path(__file__).resolve().parents[2] / "examples" / "python"
 
 
-def run(example, *arguments):
-    ended = subprocess.run(
-        [sys.executable, examples / example, *arguments], capture_output=True, text=True
-    )
-    assert ended.returncode == 0, ended.stderr
-    return ended.stdout
-
-
 def test_first_steps(sphere_file):
-    words = run("first_steps.py", sphere_file).split()
+    words = run(sys.executable, examples / "first_steps.py", sphere_file).split()
     assert int(words[words.index("in") + 1]) > 100
     tip = np.array([float(word) for word in words[-3:]])
     assert keepout.Index(keepout.load_mesh(sphere_file)).distances([tip])[0] >= 0.5 - 1e-9
 
 
 def test_joints(sphere_file):
-    words = run("joints.py", sphere_file).replace(",", "").split()
+    words = run(sys.executable, examples / "joints.py", sphere_file).replace(",", "").split()
     assert int(words[words.index("in") + 1]) > 100
     # The arm moves along arcs, of which its Jacobian knows the tangents: 0.2 mm of 60 mm.
     assert 0.499 < float(words[words.index("nearest") + 1]) < 0.51
@@ -51,8 +44,8 @@ def test_the_path_over_the_skull(request, tmp_path):
         path = request.getfixturevalue("skull_file")
     except pytest.skip.Exception:
         path = request.getfixturevalue("sphere_file")
-    said = run("path_over_the_skull.py", path, "--out", tmp_path / "p.png", "--cycles", "300",
-               "--size", "300")  # fmt: skip
+    said = run(sys.executable, examples / "path_over_the_skull.py", path, "--out", tmp_path / "p.png",
+               "--cycles", "300", "--size", "300")  # fmt: skip
     assert "limited" in said and "picture" in said
     closest = float(said.split("closest to the bone: ")[1].split()[0])
     assert closest >= 0.5

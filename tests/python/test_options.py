@@ -4,10 +4,11 @@
 import ast
 import json
 import os
-import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from surfaces import run
 
 import keepout
 
@@ -33,11 +34,6 @@ def made(mesh, name, **options):
     if name == "MotionConstraint":
         return keepout.MotionConstraint(mesh, **options)
     return keepout.InstrumentGuard(mesh, keepout.free_ball(1.0), **options)
-
-
-def run(*arguments, input=""):
-    ended = subprocess.run([command, *arguments], input=input, capture_output=True, text=True, check=True)
-    return ended.stdout
 
 
 def test_there_are_options():
@@ -73,26 +69,25 @@ def test_the_stubs_have_it(name, option):
 
 def test_the_page_of_options_has_them():
     page = Path(__file__).parents[2] / "docs" / "options.py"
-    ended = subprocess.run([os.sys.executable, page, "--check"], capture_output=True, text=True)
-    assert ended.returncode == 0, ended.stderr
+    run(sys.executable, page, "--check")
 
 
 @needs_command
 def test_the_help_of_the_command_has_them():
     for name in ("replay", "simulate", "serve"):
-        words = run(name, "--help").split()
+        words = run(command, name, "--help").split()
         assert [o.name for o in of_command if f"--{o.command}" not in words] == []
         text = " ".join(words)
         assert [o.name for o in of_command if " ".join(o.description.split()) not in text] == []
-    assert [o.name for o in of_requests if o.name not in run("serve", "--help").replace(".", ",").split()
-            and f"{o.name}," not in run("serve", "--help").replace(".", ",").split()] == []
+    words = [word.rstrip(".,") for word in run(command, "serve", "--help").split()]
+    assert [o.name for o in of_requests if o.name not in words] == []
 
 
 @needs_command
 @pytest.mark.parametrize("option", of_command, ids=lambda o: o.name)
 def test_the_command_and_serve_take_those_of_a_tip(option):
     value = other_value(option)
-    answer = run("serve", "cube", f"--{option.command}", str(value), input='{"do":"info"}\n')
+    answer = run(command, "serve", "cube", f"--{option.command}", str(value), input='{"do":"info"}\n')
     assert json.loads(answer)["settings"][option.name] == value
 
 
@@ -101,12 +96,12 @@ def test_the_command_and_serve_take_those_of_a_tip(option):
 def test_serve_takes_those_of_an_instrument(option):
     request = {"do": "instrument", "urdf": "none", "capsules": [[0] * 9], option.name: other_value(option)}
     wrong = request | {option.name: []}
-    answers = run("serve", "cube", input=json.dumps(request) + "\n" + json.dumps(wrong) + "\n").splitlines()
+    answers = run(command, "serve", "cube", input=json.dumps(request) + "\n" + json.dumps(wrong) + "\n").splitlines()
     assert json.loads(answers[0])["error"]["kind"] == "no_instrument"
     assert json.loads(answers[1])["error"]["message"] == f"'{option.name}' must be {option.range}"
 
 
 @needs_command
 def test_info_of_serve_has_those_of_a_tip():
-    settings = json.loads(run("serve", "cube", input='{"do":"info"}\n'))["settings"]
+    settings = json.loads(run(command, "serve", "cube", input='{"do":"info"}\n'))["settings"]
     assert [o.name for o in tables["MotionConstraint"] if o.name not in settings] == []

@@ -2,11 +2,11 @@
 """pip install . works without a network, and what it installs stands by itself."""
 
 import os
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import surfaces
 
 root = Path(__file__).resolve().parents[2]
 build = os.environ.get("KEEPOUT_BUILD_DIR")
@@ -19,18 +19,10 @@ print(keepout.__version__, keepout.MotionConstraint(mesh).step((0.2, 0.2, 0.5), 
 """
 
 
-def run(*command, **environment):
+def run(*command):
     # Nothing of the build tree, and no index of packages.
     clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
-    ended = subprocess.run(
-        command,
-        cwd=root,
-        env={**clean, "PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1", **environment},
-        capture_output=True,
-        text=True,
-    )
-    assert ended.returncode == 0, ended.stdout + ended.stderr
-    return ended.stdout
+    return surfaces.run(*command, cwd=root, env={**clean, "PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"})
 
 
 @pytest.mark.skipif(not build, reason="KEEPOUT_BUILD_DIR names no build directory")

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Python gives what C++ gives, bit for bit."""
 
-import csv
 import json
 import os
 import subprocess
 
 import numpy as np
 import pytest
-from surfaces import poses
+from surfaces import command_replay, poses, run
 
 import keepout
 
@@ -73,33 +72,19 @@ def test_the_replay_of_the_command(sphere_file, closed_loop, tmp_path):
         turn = np.linspace(0, 20, len(lines))[:, None]
         goals = 9.5 * np.hstack([np.cos(turn), np.sin(turn), np.sin(3 * turn) / 2])
         lines = np.hstack([goals, np.broadcast_to([12.0, 0, 0], goals.shape)])
-    np.savetxt(tmp_path / "poses.txt", lines, fmt="%.17g")
     flags = ["--closed-loop", "--max-step", "0.5"] if closed_loop else []
-    # fmt: off
-    subprocess.run(
-        [command, "replay", sphere_file, "--poses", tmp_path / "poses.txt", "--out",
-         tmp_path / "steps.csv", "--tool-radius", "0.3", "--margin", "0.2", *flags],
-        check=True, capture_output=True)
-    # fmt: on
-    with open(tmp_path / "steps.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
+    motion, names, planes = command_replay(
+        sphere_file, lines, tmp_path, "--tool-radius", "0.3", "--margin", "0.2", *flags)
     guard = keepout.MotionConstraint(mesh, **settings)
     steps = guard.replay(lines, closed_loop=closed_loop, max_step=0.5)
-    motion = np.array([[float(row[axis]) for axis in ("ux", "uy", "uz")] for row in rows])
     np.testing.assert_array_equal(steps.motion, motion)
-    assert [keepout.Status(s).name for s in steps.status] == [row["status"] for row in rows]
-    np.testing.assert_array_equal(steps.planes, [int(row["planes"]) for row in rows])
+    assert [keepout.Status(s).name for s in steps.status] == names
+    np.testing.assert_array_equal(steps.planes, planes)
 
 
 @needs_command
 def test_the_inspection_of_the_command(sphere_file):
-    output = subprocess.run(
-        [command, "inspect", sphere_file, "--json", "--self-intersections"],
-        check=True,
-        capture_output=True,
-        text=True,
-    ).stdout
-    told = json.loads(output)
+    told = json.loads(run(command, "inspect", sphere_file, "--json", "--self-intersections"))
     found = keepout.load_mesh(sphere_file).inspect(self_intersections=True)
     for name in (name for name in dir(found) if not name.startswith("_")):
         value = getattr(found, name)

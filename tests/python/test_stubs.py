@@ -1,31 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The stubs say what the module has."""
 
-import ast
 import inspect
 import os
-import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from surfaces import run
 
 import keepout
 
 package = Path(keepout.__file__).parent
 
 
-def run(arguments, folder):
+def run_mypy(folder, *arguments):
     pytest.importorskip("mypy")
-    ended = subprocess.run(
-        [sys.executable, "-m", *arguments],
-        cwd=folder,
-        env={**os.environ, "MYPYPATH": str(package.parent)},
-        capture_output=True,
-        text=True,
-    )
-    assert ended.returncode == 0, ended.stdout + ended.stderr
+    run(sys.executable, "-m", *arguments, cwd=folder, env={**os.environ, "MYPYPATH": str(package.parent)})
 
 
 def test_stubtest(tmp_path):
@@ -41,7 +32,7 @@ def test_stubtest(tmp_path):
         r"keepout\._results\.NamedTuple",  # a function in Python 3.11, which mypy 1.0 does not know
     ]
     (tmp_path / "allowed").write_text("\n".join(allowed))
-    run(["mypy.stubtest", "keepout", "--allowlist", "allowed"], tmp_path)
+    run_mypy(tmp_path, "mypy.stubtest", "keepout", "--allowlist", "allowed")
 
 
 use = """
@@ -81,54 +72,7 @@ keepout.MotionConstraint(mesh, query="far")  # type: ignore[arg-type]
 def test_mypy_accepts_right_use_and_no_other(tmp_path):
     (tmp_path / "use.py").write_text(use + misuse)
     # numpy's own stubs take mypy the longest, the first time.
-    run(["mypy", "--strict", "--cache-dir", str(package.parent / "mypy_cache"), "use.py"], tmp_path)
-
-
-def signature(doc):
-    """Names of the arguments in the line that pybind11 writes, and which of them have a default."""
-    line = re.match(r"\w+\((.*)\) -> ", doc).group(1)
-    line = re.sub(r"<[^>]*>", "None", line)
-    function = ast.parse(f"def f({line}): ...").body[0]
-    return arguments_of(function)
-
-
-def arguments_of(function):
-    a = function.args
-    defaults = [None] * (len(a.args) - len(a.defaults)) + list(a.defaults)
-    positional = [(arg.arg, default is not None) for arg, default in zip(a.args, defaults)]
-    keywords = [(arg.arg, default is not None) for arg, default in zip(a.kwonlyargs, a.kw_defaults)]
-    return positional, keywords
-
-
-def default_values(function):
-    a = function.args
-    pairs = list(zip(a.args[len(a.args) - len(a.defaults) :], a.defaults))
-    pairs += [(arg, value) for arg, value in zip(a.kwonlyargs, a.kw_defaults) if value]
-    return {arg.arg: ast.literal_eval(value) for arg, value in pairs}
-
-
-def compiled_functions():
-    """Every function of the stubs that is compiled, which stubtest cannot look into."""
-    stubs = ast.parse((package / "__init__.pyi").read_text())
-    for item in stubs.body:
-        if isinstance(item, ast.FunctionDef):
-            yield item.name, item, getattr(keepout, item.name).__doc__
-        if isinstance(item, ast.ClassDef):
-            for member in item.body:
-                special = isinstance(member, ast.FunctionDef) and member.decorator_list
-                if not isinstance(member, ast.FunctionDef) or special or member.name == "__len__":
-                    continue
-                method = getattr(getattr(keepout, item.name), member.name)
-                yield f"{item.name}.{member.name}", member, method.__doc__
-
-
-@pytest.mark.parametrize("name, stub, doc", [pytest.param(*f, id=f[0]) for f in compiled_functions()])
-def test_signatures(name, stub, doc):
-    assert arguments_of(stub) == signature(doc), name
-    line = doc.splitlines()[0]
-    for argument, value in default_values(stub).items():
-        written = re.search(rf"\b{argument}: [^=]* = ([^,)]*)", line).group(1)
-        assert ast.literal_eval(written) == value, f"{name}: {argument}"
+    run_mypy(tmp_path, "mypy", "--strict", "--cache-dir", str(package.parent / "mypy_cache"), "use.py")
 
 
 def test_all_that_is_public_is_in_the_stubs():
