@@ -7,16 +7,16 @@
 
 #include "keepout/error.h"
 #include "keepout/factory/make_instrument_constraint.h"
+#include "operators/attacker.h"
 #include "plan/judge_joint_path.h"
 #include "plan/problems.h"
-#include "verify/robot/hand.h"
 
 namespace keepout::app {
 namespace {
 
 constexpr int cycles_of_the_hand = 3000;
 constexpr int looked_at_each = 20;         // [cycles]
-constexpr double speed_of_the_hand = 4.0;  // see RobotHand
+constexpr double speed_of_the_hand = 4.0;  // see Attacker
 constexpr double least_advance = 30;       // [mm]
 constexpr double finer_than = 2.0;         // the farthest place is not looked for [mm]
 constexpr std::size_t most_starts = 100;   // to each problem that is asked for
@@ -33,7 +33,7 @@ std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& sta
   InstrumentConstraint straight = make_instrument_constraint(
       on.scene.mesh(), on.scene.shared_index(), instrument, {.options = {.margin = on.margin}});
   oracle::InstrumentOracle judge(on.scene.tree(), on.robot.judged(), start.base);
-  RobotHand hand(on.scene, random, speed_of_the_hand);
+  Attacker hand(on.scene, random, speed_of_the_hand);
   ChainState state;
   instrument.chain().forward_kinematics(start.positions, state);
   const Pose first = state.flange();

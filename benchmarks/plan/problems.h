@@ -63,7 +63,7 @@ std::vector<PlanningProblem> draw_problems(PlanningScene& where, double clearanc
 /// keeps twice the margin:
 ///
 /// 1. The instrument begins before a random place of the surface, 5 to 20 mm off it (find_start).
-/// 2. From there a hand pushes, slides and turns it about (RobotHand), for 3000 certified steps.
+/// 2. From there a hand pushes, slides and turns it about (Attacker), for 3000 certified steps.
 /// 3. The goal is the place on its way that is farthest ahead, along the tool as it is at the
 ///    start, among those to which the straight motion of the joints leads through the mesh; to
 ///    within some 2 mm. Unless it is 30 mm ahead, another beginning is tried.

@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "keepout/factory/make_motion_constraint.h"
-#include "path.h"
+#include "operators/attacker.h"
 #include "shared/timing.h"
+#include "verify/tip_joints.h"
 
 namespace keepout::app {
 namespace {
@@ -27,7 +28,7 @@ Random random_of(std::uint64_t seed, std::uint64_t trajectory) {
 struct Attempt {
   Attempt(Scene& scene, Guard& guard, Random& random)
       : setup(draw_setup(scene, random)),
-        path(scene, random, setup),
+        attacker(scene, random, setup.route, setup.longest_step, required_clearance(setup.options)),
         joints(setup, random),
         judge(scene, setup),
         tip(setup.tip) {
@@ -35,8 +36,8 @@ struct Attempt {
   }
 
   Setup setup;
-  Path path;
-  Joints joints;
+  Attacker attacker;
+  TipJoints joints;
   Judge judge;
   Vec3 tip;
   int failures = 0;  // since it last moved
@@ -104,7 +105,7 @@ void run_trajectory(Scene& scene, Guard& guard, std::uint64_t number, std::uint6
       attempt.emplace(scene, guard, random);
       ++tally.tips;
     }
-    Motion motion{.tip = attempt->tip, .desired = attempt->path.next(attempt->tip)};
+    Motion motion{.tip = attempt->tip, .desired = attempt->attacker.next(attempt->tip).linear};
     attempt->joints.attach(motion);
     const Step step = guard.step(motion);
     const Verdict verdict = attempt->judge.judge(motion, step);

@@ -8,9 +8,9 @@
 #include "keepout/activation/certified.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
+#include "operators/attacker.h"
 #include "verify/robot/campaign.h"
 #include "verify/robot/excess.h"
-#include "verify/robot/hand.h"
 #include "verify/robot/judge.h"
 
 namespace keepout::app {
@@ -79,7 +79,7 @@ class RobotAttempt {
         subject_(campaign.make_subject(setup_)),
         judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
                subject_->tolerance()),
-        hand_(*setup_.meshes[0].scene, random, setup_.speed),
+        attacker_(*setup_.meshes[0].scene, random, setup_.speed),
         positions_(setup_.start.positions),
         levels_(setup_.meshes.size() * judged_.bodies.size()) {
     if (setup_.is_drawn) return;
@@ -147,7 +147,7 @@ class RobotAttempt {
   /// Returns the commanded motion of the flange, of an operator who looks at the first mesh.
   Twist wanted(const Vec3& flange) {
     const Pose& mesh = judge_.pose(0);
-    Twist twist = hand_.next(mesh.rotation.transpose() * (flange - mesh.position));
+    Twist twist = attacker_.next(mesh.rotation.transpose() * (flange - mesh.position));
     twist.linear = mesh.rotation * twist.linear;
     twist.angular = mesh.rotation * twist.angular;
     return twist;
@@ -240,7 +240,7 @@ class RobotAttempt {
   std::unique_ptr<RobotSubject> subject_;
   std::optional<MotionConstraint> point_;  // of a ball at the tip alone: timed beside it
   RobotJudge judge_;
-  RobotHand hand_;
+  Attacker attacker_;
   std::vector<double> positions_;
   std::vector<double> levels_;           // see RobotJudge::judge
   double margin_ = 0.0;                  // at present [mm]

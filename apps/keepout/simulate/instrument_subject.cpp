@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/solvers/active_set.h"
+#include "operators/attacker.h"
+#include "record/drawn_mesh.h"
+#include "record/json_parts.h"
+#include "shared/clip.h"
+#include "simulate/subject.h"
+#include "verify/robot/campaign.h"
+#include "verify/robot/judge.h"
+
+namespace keepout::app {
+namespace {
+
+/// The guard of an instrument.
+enum class Mode : std::uint8_t { certified, linearised, tip_only, none };
+const std::vector<std::string> mode_names{"certified", "linearised", "tip only", "none"};
+
+/// The bodies of the PSM, in its order.
+constexpr std::array<const char*, 3> body_names{"shaft", "wrist", "jaw"};
+
+constexpr std::array<const char*, manners.size()> manner_names{
+    "pushing with the jaw", "leaning with the shaft", "rotating the wrist"};
+
+Columns<RunTally> mode_columns() {
+  Columns<RunTally> columns{
+      {"mesh", &RunTally::mesh, "mesh", -12},
+      {"speed", &RunTally::speed, "speed", 5},
+      {"mode", &RunTally::guard, "mode", -10},
+      {"cycles", &RunTally::cycles, "cycles", 7},
+      {"refused", [](const RunTally& t) { return Json(t.with(Outcome::stopped)); }, "refused", 7},
+      {"limits_broken", &RunTally::limits_broken, "limits", 6}};
+  for (std::size_t b = 0; b < body_names.size(); ++b) {
+    const std::string body = body_names[b];
+    const auto of_body = [b](auto figure) {
+      return [=](const RunTally& t) { return Json(t.bodies[b].*figure); };
+    };
+    columns.push_back({body + "_below", of_body(&BodyTally::below), body + " close", 11});
+    columns.push_back({body + "_in_mesh", of_body(&BodyTally::in_mesh), "in mesh", 7});
+    columns.push_back(
+        {body + "_deepest_mm", of_body(&BodyTally::deepest), "deepest", 7, number_text<"%.2f">});
+  }
+  return columns;
+}
+
+constexpr const char* columns_meaning =
+    R"(close: cycles in which the body was closer than the certified distance, as an independent judge sees
+five poses of each; in mesh: of them, those in which the mesh reached into it; deepest: how far, in mm,
+at most its radius. refused: cycles without a proven motion; limits: cycles that broke a joint's.
+)";
+
+/// The cycles of a stroke in one mode, and which was the worst.
+Json run_json(const std::string& mode, const std::vector<Cycle>& cycles) {
+  Json places = Json::array(), clearances = Json::array();
+  for (const Cycle& cycle : cycles) {
+    Json& at = places.emplace_back();
+    for (const Vec3& place : cycle.places) {
+      at.push_back(json_of(Vec3((1e3 * place).array().round() / 1e3)));
+    }
+    Json& least = clearances.emplace_back();
+    for (const double mm : cycle.clearances) {
+      least.push_back(or_null(std::round(1e6 * mm) / 1e6));
+    }
+  }
+  const auto worst = std::ranges::min_element(cycles, {}, &Cycle::least);
+  return {{"mode", mode},
+          {"worst", worst - cycles.begin()},
+          {"places", std::move(places)},
+          {"clearance_mm", std::move(clearances)}};
+}
+
+/// A stroke that a page shows.
+struct ShownStroke {
+  double told = -1.0;  // by how much guarded bodies missed the margin, in all modes together [mm]
+  Json json = {};
+};
+
+/// A mesh, and of each manner the stroke on it that tells most.
+struct ShownMesh {
+  Json json;
+  std::array<ShownStroke, manners.size()> strokes = {};
+};
+
+class InstrumentSubject final : public Subject {
+ public:
+  explicit InstrumentSubject(const SimulateOptions& options)
+      : options_(options), margin_(options.constraint.options.margin) {}
+
+  std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
+    const std::string name = path.stem().string();
+    const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, options_.load).mesh;
+    on_.emplace(RobotScene{{name, mesh, options_.constraint.index}, margin_});
+    shown_.push_back({drawn_mesh(name, *mesh)});
+    shown_.back().json["surface"] = on_->scene.has_sides() ? "closed" : "open";
+    return mesh;
+  }
+
+  const std::vector<std::string>& guards() const override { return mode_names; }
+
+  Stroke draw(std::uint64_t number, double speed) override {
+    return instrument_stroke(*on_, options_.strokes, number, speed);
+  }
+
+  /// The step of all modes is the same, and differs in its meshes: it has none where only the tip
+  /// is guarded, or nothing is. Then it is damped least squares within the limits of the joints.
+  double start(const Stroke& stroke, std::size_t guard) override {
+    const auto mode = static_cast<Mode>(guard);
+    const Scene& scene = on_->scene;
+    const Instrument instrument = on_->robot.make(stroke.start.base);
+    InstrumentOptions step = options_of({.margin = margin_}, instrument.chain(), stroke.speed);
+    if (mode == Mode::linearised) step.certified = CertifiedMotion::linearised;
+    joints_.emplace(instrument, std::make_unique<ActiveSet>(), step);
+    tip_.reset();
+    if (mode == Mode::tip_only) {  // a ball at the end of the jaw
+      tip_ = make_motion_constraint(scene.mesh(), scene.shared_index(),
+                                    {.options = {.radius = 10.0 * stroke.speed,
+                                                 .tool_radius = instrument.bodies().back().radius,
+                                                 .margin = margin_}});
+    } else if (mode != Mode::none) {
+      joints_->add_mesh(scene.mesh(), scene.shared_index());
+    }
+    speed_ = stroke.speed;
+    random_ = stroke.random;
+    q_ = stroke.start.positions;
+    judge_.emplace(JudgedScene{on_->robot.judged(), stroke.start.base, {{scene.tree()}}},
+                   joints_->instrument().chain(), random_, q_, step, joints_->tolerance());
+    return margin_ - step.band - 3.0 * joints_->tolerance();
+  }
+
+  Cycle follow(const Pose& goal) override {
+    ChainState state;
+    joints_->instrument().chain().forward_kinematics(q_, state);
+    const Pose at = state.flange();
+    const Eigen::AngleAxisd turn(Mat3(goal.rotation * at.rotation.transpose()));
+    Twist asked{.linear = clipped(goal.position - at.position, speed_ * fastest_way),
+                .angular = clipped(turn.angle() * turn.axis(), speed_ * fastest_turn)};
+    if (tip_) asked.linear = tip_->step({.tip = at.position, .desired = asked.linear}).motion;
+    const InstrumentStep step = joints_->step(q_, asked);
+    for (std::size_t k = 0; step.ok() && k < q_.size(); ++k) q_[k] += step.increment[k];
+    Cycle cycle;
+    cycle.outcome = !step.ok()                    ? Outcome::stopped
+                    : step.status != Status::free ? Outcome::limited
+                                                  : Outcome::moved_freely;
+    cycle.limits_broken = judge_->judge(q_).limits_broken;
+    for (std::size_t b = 0; b < body_names.size(); ++b) {
+      cycle.clearances[b] = judge_->least()[b];
+      cycle.places[b] = judge_->oracle().axis(b).to;
+    }
+    return cycle;
+  }
+
+  void keep(FollowedStroke followed) override {
+    const Stroke& stroke = followed.stroke;
+    ShownStroke one{0.0,
+                    {{"manner", manner_names[static_cast<std::size_t>(stroke.manner)]},
+                     {"speed", stroke.speed},
+                     {"number", stroke.number},
+                     {"port", json_of(stroke.start.base.position)},
+                     {"runs", Json::array()}}};
+    for (std::size_t mode = 0; mode < mode_names.size(); ++mode) {
+      const std::vector<Cycle>& cycles = followed.runs[mode];
+      const double least = std::ranges::min_element(cycles, {}, &Cycle::least)->least();
+      if (mode_names[mode] != "none") one.told += std::max(0.0, margin_ - least);
+      one.json["runs"].push_back(run_json(mode_names[mode], cycles));
+    }
+    ShownStroke& shown = shown_.back().strokes[static_cast<std::size_t>(stroke.manner)];
+    if (one.told > shown.told) shown = std::move(one);
+  }
+
+  SimulationResult result(const std::vector<RunTally>& rows,
+                          const std::vector<RunTally>& totals) override {
+    std::vector<std::string> account;
+    for (const RunTally& total : totals) {
+      const BodyTally& any = total.any;
+      account.push_back("Mode “" + total.guard + "”: some body was too close in " +
+                        counted(any.below, "cycle") + ", in the mesh in " + grouped(any.in_mesh) +
+                        (any.in_mesh > 0 ? ", up to " + length_text(any.deepest) + "." : "."));
+    }
+    const RunTally& certified = totals.front();
+    const bool is_broken = certified.any.below + certified.limits_broken > 0;
+    Json record =
+        new_record({.kind = "simulate_robot",
+                    .command = options_.command,
+                    .subject = "A simulated operator drove the instrument of a robot, " +
+                               options_.robot + ", against anatomy: the same strokes in each mode",
+                    .headline = std::string("The certified step ") +
+                                (is_broken ? "broke its promise in some of "
+                                           : "kept shaft, wrist and jaw off the anatomy in all ") +
+                                counted(certified.cycles, "cycle") + ".",
+                    .account = account,
+                    .machine = this_machine(),
+                    .settings = {{"robot", options_.robot},
+                                 {"strokes", grouped(options_.strokes.count)},
+                                 {"cycles per stroke", grouped(options_.strokes.cycles)},
+                                 {"margin", trimmed(margin_) + " mm"},
+                                 {"seed", std::to_string(options_.strokes.seed)},
+                                 {"index", options_.constraint.index}}});
+    record["certified_mm"] = margin_ - joints_->options().band;
+    for (std::size_t b = 0; b < body_names.size(); ++b) {
+      record["bodies"].push_back(
+          {{"name", body_names[b]}, {"radius_mm", joints_->instrument().bodies()[b].radius}});
+    }
+    record["rows"] = json_of(mode_columns(), rows);
+    for (ShownMesh& mesh : shown_) {
+      mesh.json["strokes"] = Json::array();
+      for (ShownStroke& stroke : mesh.strokes) {
+        if (stroke.told >= 0.0) mesh.json["strokes"].push_back(std::move(stroke.json));
+      }
+      record["meshes"].push_back(std::move(mesh.json));
+    }
+    return {.record = std::move(record),
+            .columns = mode_columns(),
+            .legend = columns_meaning,
+            .is_broken = is_broken};
+  }
+
+ private:
+  const SimulateOptions& options_;
+  double margin_;  // [mm]
+  std::optional<RobotScene> on_;
+  std::vector<ShownMesh> shown_;
+  std::optional<InstrumentConstraint> joints_;
+  std::optional<MotionConstraint> tip_;  // guards the tip alone
+  std::optional<RobotJudge> judge_;
+  Random random_{0};       // of the judge
+  std::vector<double> q_;  // positions of the joints
+  double speed_ = 1.0;
+};
+
+}  // namespace
+
+std::unique_ptr<Subject> make_instrument_subject(const SimulateOptions& options) {
+  return std::make_unique<InstrumentSubject>(options);
+}
+
+}  // namespace keepout::app
