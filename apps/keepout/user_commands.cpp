@@ -131,9 +131,7 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
         "Then time indices, rules and solvers side by side on this mesh, into the same report: a "
         "quick 'keepout bench'");
   }
-  command.add_flag_callback(
-      "--verbose", [&options] { options.tables = Tables::printed; },
-      "Print the tables of the report as well");
+  command.add_flag("--verbose", options.is_verbose, "Print the tables of --bench as well");
   add_constraint_options(command, options.constraint);
   add_length(command, "--max-step", options.max_step, Zero::refused,
              "Longest increment to desire in a cycle");

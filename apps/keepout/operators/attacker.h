@@ -51,27 +51,23 @@ class Attacker {
 
  private:
   void look(const Vec3& at);
-  void draw_route(const Vec3& at);
   Vec3 target_on_triangle() const;
-  Vec3 tip_motion(const Vec3& tip);
-  Twist flange_motion(const Vec3& flange);
+  Twist wish(const Vec3& at, bool is_turn);
 
   Scene* scene_;
   Random* random_;
-  Route route_;
-  double longest_ = 0.0;          // motion of a tip in a cycle [length]
+  Route route_ = Route::press;
+  double longest_ = 0.0;          // motion in a cycle [length]
+  double turn_ = 0.0;             // of a flange in a cycle [rad]
   double kept_ = 0.0;             // clearance of a tip [length]
   double speed_ = 0.0;            // of a flange
   std::size_t period_;            // of turning back, or choosing another goal or route [cycles]
   std::size_t attention_;         // how often it looks where the surface is [cycles]
   bool has_all_lengths_ = false;  // motions of all lengths, not of the longest only
   std::size_t cycle_ = 0;
-  double way_ = 0.0, turn_ = 0.0;  // of the flange on its route, in a cycle [length], [rad]
-  double guess_ = 0.0;             // how far the surface is [length]
-  TriangleId triangle_ = 0;        // the nearest
-  Vec3 inwards_ = Vec3::UnitX();   // unit vector to the surface
-  Vec3 heading_ = Vec3::UnitY();   // unit vector
-  Vec3 axis_ = Vec3::UnitX();      // of the turn, unit vector
+  double guess_ = 0.0;       // how far the surface is [length]
+  TriangleId triangle_ = 0;  // the nearest
+  Vec3 inwards_ = Vec3::UnitX(), heading_ = Vec3::UnitY(), axis_ = Vec3::UnitX();  // unit vectors
   Vec3 goal_ = Vec3::Zero();
 };
 

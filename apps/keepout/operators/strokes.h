@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <functional>
 #include <vector>
 
 #include "simulate/audit.h"
@@ -46,32 +46,13 @@ inline double smooth(double t) {
 /// How far in a stroke is, from 0 to 1: it goes in and comes back in a quarter of its time each.
 inline double lowered(double time) { return smooth(4.0 * time) * smooth(4.0 * (1.0 - time)); }
 
-/// Draws strokes of a tip: from free space to below the surface, along underneath it, and back up,
-/// with a tremor.
+/// Returns a source of strokes of a tip: from free space to below the surface, along underneath it,
+/// and back up, with a tremor. The source throws Error if no place is free.
 ///
 /// Strokes go in where the surface faces outwards, as seen from the middle of the mesh, or, if that
-/// is nowhere free (a flat sheet, a mesh that keeps the tool inside), at any free place.
-class TipStrokes {
- public:
-  /// `audit` must outlive the strokes.
-  TipStrokes(Audit& audit, const StrokeSettings& settings);
-
-  /// Draws the next stroke. Throws Error if no place is free.
-  Stroke next();
-
- private:
-  SurfacePoint on_surface(const Vec3& near);
-  SurfacePoint draw_place();
-  std::optional<SurfacePoint> place_to_start(double height);
-  std::vector<SurfacePoint> slide_over(const SurfacePoint& start, double length);
-
-  Audit& audit_;
-  Random random_;
-  std::size_t cycles_;
-  double scale_;  // of lengths: 1 on a mesh of 100 mm and more
-  std::vector<Vec3>
-      points_;  // of the surface, drawn many at a time: each draw visits all triangles
-};
+/// is nowhere free (a flat sheet, a mesh that keeps the tool inside), at any free place. `audit`
+/// must outlive the source.
+std::function<Stroke()> tip_strokes(Audit& audit, const StrokeSettings& settings);
 
 /// Draws a stroke of an instrument. It comes from a port on the outside, 100 to 150 mm from the
 /// surface, its tip 5 to 20 mm before it (find_start). From there the operator goes in and comes

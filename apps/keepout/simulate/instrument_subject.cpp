@@ -34,7 +34,9 @@ Columns<RunTally> mode_columns() {
       {"mode", &RunTally::guard, "mode", -10},
       {"cycles", &RunTally::cycles, "cycles", 7},
       {"refused", [](const RunTally& t) { return Json(t.with(Outcome::stopped)); }, "refused", 7},
-      {"limits_broken", &RunTally::limits_broken, "limits", 6}};
+      {"limits_broken", &RunTally::breaches, "limits", 6},
+      {"below", [](const RunTally& t) { return Json(t.any.below); }, "close", 7},
+      {"in_mesh", [](const RunTally& t) { return Json(t.any.in_mesh); }, "in mesh", 7}};
   for (std::size_t b = 0; b < body_names.size(); ++b) {
     const std::string body = body_names[b];
     const auto of_body = [b](auto figure) {
@@ -49,7 +51,7 @@ Columns<RunTally> mode_columns() {
 }
 
 constexpr const char* columns_meaning =
-    R"(close: cycles in which the body was closer than the certified distance, as an independent judge sees
+    R"(close: cycles in which a body was closer than the certified distance, as an independent judge sees
 five poses of each; in mesh: of them, those in which the mesh reached into it; deepest: how far, in mm,
 at most its radius. refused: cycles without a proven motion; limits: cycles that broke a joint's.
 )";
@@ -74,18 +76,6 @@ Json run_json(const std::string& mode, const std::vector<Cycle>& cycles) {
           {"clearance_mm", std::move(clearances)}};
 }
 
-/// A stroke that a page shows.
-struct ShownStroke {
-  double told = -1.0;  // by how much guarded bodies missed the margin, in all modes together [mm]
-  Json json = {};
-};
-
-/// A mesh, and of each manner the stroke on it that tells most.
-struct ShownMesh {
-  Json json;
-  std::array<ShownStroke, manners.size()> strokes = {};
-};
-
 class InstrumentSubject final : public Subject {
  public:
   explicit InstrumentSubject(const SimulateOptions& options)
@@ -95,12 +85,14 @@ class InstrumentSubject final : public Subject {
     const std::string name = path.stem().string();
     const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, options_.load).mesh;
     on_.emplace(RobotScene{{name, mesh, options_.constraint.index}, margin_});
-    shown_.push_back({drawn_mesh(name, *mesh)});
-    shown_.back().json["surface"] = on_->scene.has_sides() ? "closed" : "open";
+    Json& drawn = meshes_.emplace_back(drawn_mesh(name, *mesh));
+    drawn["surface"] = on_->scene.has_sides() ? "closed" : "open";
+    drawn["strokes"] = Json::array();
+    told_.fill(-1.0);
     return mesh;
   }
 
-  const std::vector<std::string>& guards() const override { return mode_names; }
+  std::vector<std::string> guards() const override { return mode_names; }
 
   Stroke draw(std::uint64_t number, double speed) override {
     return instrument_stroke(*on_, options_.strokes, number, speed);
@@ -146,7 +138,7 @@ class InstrumentSubject final : public Subject {
     cycle.outcome = !step.ok()                    ? Outcome::stopped
                     : step.status != Status::free ? Outcome::limited
                                                   : Outcome::moved_freely;
-    cycle.limits_broken = judge_->judge(q_).limits_broken;
+    cycle.is_breach = judge_->judge(q_).limits_broken;
     for (std::size_t b = 0; b < body_names.size(); ++b) {
       cycle.clearances[b] = judge_->least()[b];
       cycle.places[b] = judge_->oracle().axis(b).to;
@@ -154,45 +146,44 @@ class InstrumentSubject final : public Subject {
     return cycle;
   }
 
+  /// Keeps the stroke of each manner in which guarded bodies missed the margin most, in all modes
+  /// together.
   void keep(FollowedStroke followed) override {
     const Stroke& stroke = followed.stroke;
-    ShownStroke one{0.0,
-                    {{"manner", manner_names[static_cast<std::size_t>(stroke.manner)]},
-                     {"speed", stroke.speed},
-                     {"number", stroke.number},
-                     {"port", json_of(stroke.start.base.position)},
-                     {"runs", Json::array()}}};
+    const auto manner = static_cast<std::size_t>(stroke.manner);
+    Json json{{"manner", manner_names[manner]},
+              {"speed", stroke.speed},
+              {"number", stroke.number},
+              {"port", json_of(stroke.start.base.position)},
+              {"runs", Json::array()}};
+    double told = 0.0;  // [mm]
     for (std::size_t mode = 0; mode < mode_names.size(); ++mode) {
       const std::vector<Cycle>& cycles = followed.runs[mode];
       const double least = std::ranges::min_element(cycles, {}, &Cycle::least)->least();
-      if (mode_names[mode] != "none") one.told += std::max(0.0, margin_ - least);
-      one.json["runs"].push_back(run_json(mode_names[mode], cycles));
+      if (mode_names[mode] != "none") told += std::max(0.0, margin_ - least);
+      json["runs"].push_back(run_json(mode_names[mode], cycles));
     }
-    ShownStroke& shown = shown_.back().strokes[static_cast<std::size_t>(stroke.manner)];
-    if (one.told > shown.told) shown = std::move(one);
+    if (told <= told_[manner]) return;
+    told_[manner] = told;
+    meshes_.back()["strokes"][manner] = std::move(json);
   }
 
-  SimulationResult result(const std::vector<RunTally>& rows,
-                          const std::vector<RunTally>& totals) override {
-    std::vector<std::string> account;
-    for (const RunTally& total : totals) {
-      const BodyTally& any = total.any;
-      account.push_back("Mode “" + total.guard + "”: some body was too close in " +
-                        counted(any.below, "cycle") + ", in the mesh in " + grouped(any.in_mesh) +
-                        (any.in_mesh > 0 ? ", up to " + length_text(any.deepest) + "." : "."));
+  SimulationResult result(const std::vector<RunTally>& runs) override {
+    std::size_t cycles = 0, broken = 0;  // certified
+    for (const RunTally& run : runs) {
+      if (run.guard != mode_names.front()) continue;
+      cycles += run.cycles;
+      broken += run.any.below + run.breaches;
     }
-    const RunTally& certified = totals.front();
-    const bool is_broken = certified.any.below + certified.limits_broken > 0;
     Json record =
         new_record({.kind = "simulate_robot",
                     .command = options_.command,
                     .subject = "A simulated operator drove the instrument of a robot, " +
                                options_.robot + ", against anatomy: the same strokes in each mode",
                     .headline = std::string("The certified step ") +
-                                (is_broken ? "broke its promise in some of "
-                                           : "kept shaft, wrist and jaw off the anatomy in all ") +
-                                counted(certified.cycles, "cycle") + ".",
-                    .account = account,
+                                (broken == 0 ? "kept shaft, wrist and jaw off the anatomy in all "
+                                             : "broke its promise in some of ") +
+                                counted(cycles, "cycle") + ".",
                     .machine = this_machine(),
                     .settings = {{"robot", options_.robot},
                                  {"strokes", grouped(options_.strokes.count)},
@@ -205,25 +196,20 @@ class InstrumentSubject final : public Subject {
       record["bodies"].push_back(
           {{"name", body_names[b]}, {"radius_mm", joints_->instrument().bodies()[b].radius}});
     }
-    record["rows"] = json_of(mode_columns(), rows);
-    for (ShownMesh& mesh : shown_) {
-      mesh.json["strokes"] = Json::array();
-      for (ShownStroke& stroke : mesh.strokes) {
-        if (stroke.told >= 0.0) mesh.json["strokes"].push_back(std::move(stroke.json));
-      }
-      record["meshes"].push_back(std::move(mesh.json));
-    }
+    record["rows"] = json_of(mode_columns(), runs);
+    record["meshes"] = std::move(meshes_);
     return {.record = std::move(record),
             .columns = mode_columns(),
             .legend = columns_meaning,
-            .is_broken = is_broken};
+            .is_broken = broken > 0};
   }
 
  private:
   const SimulateOptions& options_;
   double margin_;  // [mm]
   std::optional<RobotScene> on_;
-  std::vector<ShownMesh> shown_;
+  Json meshes_ = Json::array();
+  std::array<double, manners.size()> told_ = {};  // of the strokes kept on the last mesh [mm]
   std::optional<InstrumentConstraint> joints_;
   std::optional<MotionConstraint> tip_;  // guards the tip alone
   std::optional<RobotJudge> judge_;

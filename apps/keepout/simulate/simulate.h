@@ -28,9 +28,6 @@ struct PartTimings {
 using TimeParts = std::function<PartTimings(
     const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh, std::ostream& out)>;
 
-/// Whether the tables of the report are printed too.
-enum class Tables { in_the_report, printed };
-
 struct SimulateOptions {
   std::vector<std::filesystem::path> meshes;  // one; with a robot any number, by default real ones
   LoadOptions load = {};
@@ -38,16 +35,14 @@ struct SimulateOptions {
   std::vector<std::string> rules;       // run beside the tool without a fixture
   MotionConstraintSettings constraint;  // its activation is each of the rules in turn
   StrokeSettings strokes;
-  double max_step = 0.5;         // longest increment commanded in a cycle [mm]
-  TimeParts time_parts = {};     // unset in programs that cannot
-  bool is_timing_parts = false;  // whether to do so after the simulation
-  Tables tables = Tables::in_the_report;
+  double max_step = 0.5;                 // longest increment commanded in a cycle [mm]
+  TimeParts time_parts = {};             // unset in programs that cannot
+  bool is_timing_parts = false;          // whether to do so after the simulation
+  bool is_verbose = false;               // prints the tables of these timings
   std::string robot;                     // whose instrument is driven instead; empty: none
   std::vector<double> speeds{1.0, 5.0};  // of it, in multiples of 0.5 mm and 0.02 rad a cycle
   std::string called_as = "keepout";     // what the user is told to type next
   std::string command;                   // that does it again
-
-  bool has_robot() const { return !robot.empty(); }
 };
 
 /// Moves a tip, or the instrument of a robot, over and into the anatomy in closed loop, without a

@@ -22,14 +22,14 @@ struct FollowedStroke {
 
 /// The outcome of a simulation, for a record and a terminal.
 struct SimulationResult {
-  Json record;             // see docs/records.md
-  Columns<RunTally> columns;  // of the table of all rows
+  Json record;                // see docs/records.md
+  Columns<RunTally> columns;  // of the table of all runs
   std::string_view legend = {};
   bool is_broken = false;  // a promise was
 };
 
-/// The tool that an operator moves over meshes, under each of its guards. The closed loop over it
-/// is that of simulate().
+/// The tool that an operator moves over meshes, under each of its guards, in the closed loop of
+/// simulate().
 class Subject {
  public:
   virtual ~Subject() = default;
@@ -37,7 +37,7 @@ class Subject {
   /// Loads the next mesh. Throws Error.
   virtual std::shared_ptr<const Mesh> open(const std::filesystem::path& mesh) = 0;
   /// Returns the names of the guards; "none" lets the tool go anywhere.
-  virtual const std::vector<std::string>& guards() const = 0;
+  virtual std::vector<std::string> guards() const = 0;
   /// Draws the next stroke. Throws Error if there is no place for it.
   virtual Stroke draw(std::uint64_t number, double speed) = 0;
 
@@ -48,16 +48,16 @@ class Subject {
 
   /// Keeps what the record shows of a stroke.
   virtual void keep(FollowedStroke followed) = 0;
-  /// Returns the result. `rows`: one for each mesh, speed and guard; `totals`: for each guard.
-  virtual SimulationResult result(const std::vector<RunTally>& rows,
-                                  const std::vector<RunTally>& totals) = 0;
+  /// Returns the result of runs, one for each mesh, speed and guard.
+  virtual SimulationResult result(const std::vector<RunTally>& runs) = 0;
 };
 
-/// A tip, without a fixture and under each rule. Throws Error for options that contradict.
+/// A tip, without a fixture and under each rule. Throws Error for options that contradict. The
+/// options must outlive it.
 std::unique_ptr<Subject> make_tip_subject(const SimulateOptions& options);
 
 /// The instrument of a robot, in joint space: with the certified step, with one that certifies a
-/// linearized motion, with a certified tip only, and without a guard.
+/// linearized motion, with a certified tip only, and without a guard. The options must outlive it.
 std::unique_ptr<Subject> make_instrument_subject(const SimulateOptions& options);
 
 }  // namespace keepout::app

@@ -11,12 +11,10 @@ void BodyTally::add(double clearance, double required) {
 }
 
 void RunTally::add(const std::vector<Cycle>& stroke, double required) {
-  const std::size_t inside_before = any.in_mesh, crossings_before = crossings;
+  const std::size_t inside_before = any.in_mesh, breaches_before = breaches;
   for (const Cycle& cycle : stroke) {
-    ++cycles;
     ++outcomes[static_cast<std::size_t>(cycle.outcome)];
-    crossings += cycle.is_crossing ? 1 : 0;
-    limits_broken += cycle.limits_broken ? 1 : 0;
+    breaches += cycle.is_breach ? 1 : 0;
     any.add(cycle.least(), required);
     for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].add(cycle.clearances[b], required);
     least = std::min(least, cycle.least());
@@ -24,8 +22,9 @@ void RunTally::add(const std::vector<Cycle>& stroke, double required) {
   }
   const bool is_inside = any.in_mesh > inside_before;
   ++strokes;
+  cycles += stroke.size();
   strokes_inside += is_inside ? 1 : 0;
-  strokes_breached += is_inside || crossings > crossings_before ? 1 : 0;
+  strokes_breached += is_inside || breaches > breaches_before ? 1 : 0;
 }
 
 }  // namespace keepout::app

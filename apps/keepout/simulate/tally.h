@@ -21,7 +21,7 @@ enum class Outcome : std::uint8_t {
   stopped        // none of it was, or, of a tip, less than a nanometer
 };
 
-/// One control cycle of a simulated stroke, as it ended. A tip is the first body; an instrument has
+/// One control cycle of a simulated stroke, as it ended. A tip is one body; an instrument has
 /// shaft, wrist and jaw.
 struct Cycle {
   static constexpr double far = std::numeric_limits<double>::infinity();
@@ -33,8 +33,7 @@ struct Cycle {
   std::array<double, 3> clearances{far, far, far};
   float step_us = 0.0F;  // time that the step of a tip took; 0 without a fixture [us]
   Outcome outcome = Outcome::moved_freely;
-  bool is_crossing = false;    // the tip passed through a triangle
-  bool limits_broken = false;  // of the joints
+  bool is_breach = false;  // the tip passed through a triangle, or a joint left its limits
 
   double least() const { return *std::ranges::min_element(clearances); }
 };
@@ -48,21 +47,20 @@ struct BodyTally {
   void add(double clearance, double required);
 };
 
-/// The figures of strokes under one guard.
+/// The figures of all strokes on a mesh, at one speed, under one guard.
 struct RunTally {
   std::string mesh = {};
   double speed = 1.0;
   std::string guard = {};
   std::size_t strokes = 0, cycles = 0;
   std::array<std::size_t, 3> outcomes = {};  // cycles, by outcome
-  std::size_t crossings = 0, limits_broken = 0;
-  std::size_t strokes_inside = 0;    // with at least one cycle inside
-  std::size_t strokes_breached = 0;  // with a cycle inside, or with a crossing
-  BodyTally any = {};                // of the bodies together
+  std::size_t breaches = 0;                  // cycles
+  std::size_t strokes_inside = 0;            // with at least one cycle inside
+  std::size_t strokes_breached = 0;          // with a cycle inside, or with a breach
+  BodyTally any = {};                        // of the bodies together
   std::array<BodyTally, 3> bodies = {};
-  double least = Cycle::far;          // clearance [mm]
-  std::vector<double> times_us = {};  // of the steps
-  Timing step = {};                   // of times_us, once all strokes are added
+  double least = Cycle::far;  // clearance [mm]
+  std::vector<double> times_us = {};
 
   /// Adds a stroke, whose bodies are required to keep a clearance. [mm]
   void add(const std::vector<Cycle>& stroke, double required);
