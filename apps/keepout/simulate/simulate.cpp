@@ -13,7 +13,7 @@
 #include "shared/progress.h"
 #include "shared/stop_signal.h"
 #include "shared/wrapped_text.h"
-#include "simulate/subject.h"
+#include "simulate/simulated_tool.h"
 
 namespace keepout::app {
 namespace {
@@ -26,15 +26,15 @@ struct Runs {
 };
 
 /// Runs the closed loops. Stops after the stroke in which a signal came.
-Runs run_strokes(Subject& subject, const std::vector<std::filesystem::path>& meshes,
+Runs run_strokes(SimulatedTool& tool, const std::vector<std::filesystem::path>& meshes,
                  const std::vector<double>& speeds, std::size_t count) {
   const StopSignal stop;
   Progress progress("simulate", meshes.size() * speeds.size() * count);
   Runs all;
   for (const auto& mesh : meshes) {
     if (!all.is_complete) break;
-    all.mesh = subject.open(mesh);
-    const std::vector<std::string> guards = subject.guards();
+    all.mesh = tool.open(mesh);
+    const std::vector<std::string> guards = tool.guards();
     for (const double speed : speeds) {
       for (const std::string& guard : guards) {
         all.runs.push_back({.mesh = mesh.stem().string(), .speed = speed, .guard = guard});
@@ -43,17 +43,17 @@ Runs run_strokes(Subject& subject, const std::vector<std::filesystem::path>& mes
       for (std::uint64_t number = 0; number < count && all.is_complete; ++number) {
         FollowedStroke followed;
         try {
-          followed.stroke = subject.draw(number, speed);
+          followed.stroke = tool.draw(number, speed);
         } catch (const Error& error) {
           throw Error(mesh.string() + ": " + error.what());
         }
         for (std::size_t guard = 0; guard < guards.size(); ++guard) {
-          const double required = subject.start(followed.stroke, guard);
+          const double required = tool.start(followed.stroke, guard);
           auto& cycles = followed.runs.emplace_back();
-          for (const Pose& goal : followed.stroke.goals) cycles.push_back(subject.follow(goal));
+          for (const Pose& goal : followed.stroke.goals) cycles.push_back(tool.follow(goal));
           runs[guard].add(cycles, required);
         }
-        subject.keep(std::move(followed));
+        tool.keep(std::move(followed));
         progress.advance();
         all.is_complete = !stop.has_come();
       }
@@ -84,13 +84,13 @@ void print_next(const SimulateOptions& options, const std::string& mesh, std::os
 
 int simulate(const SimulateOptions& options, std::ostream& out) {
   const bool has_tip = options.robot.empty();
-  const auto subject = has_tip ? make_tip_subject(options) : make_instrument_subject(options);
+  const auto tool = has_tip ? make_guarded_tip(options) : make_guarded_instrument(options);
   std::vector<std::filesystem::path> meshes = options.meshes;
   if (meshes.empty()) meshes = {"skull", "airway", "brain"};
   OutputFiles outputs = options.files.open(meshes);
-  const Runs done = run_strokes(*subject, meshes, has_tip ? std::vector{1.0} : options.speeds,
+  const Runs done = run_strokes(*tool, meshes, has_tip ? std::vector{1.0} : options.speeds,
                                 options.strokes.count);
-  auto [record, columns, legend, is_broken] = subject->result(done.runs);
+  auto [record, columns, legend, is_broken] = tool->result(done.runs);
   print_rows(out, columns, done.runs);
   out << legend << '\n';
   PartTimings timings;

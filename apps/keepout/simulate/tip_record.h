@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "simulate/audit.h"
-#include "simulate/subject.h"
+#include "simulate/simulated_tool.h"
 
 namespace keepout::app {
 

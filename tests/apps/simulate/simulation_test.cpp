@@ -4,15 +4,18 @@
 #include "meshes.h"
 #include "messages.h"
 #include "record/record.h"
+#include "shared/names.h"
 #include "shared/number_text.h"
-#include "simulate/subject.h"
+#include "simulate/simulated_tool.h"
 #include "trials.h"
 
 namespace keepout::app {
 namespace {
 
 Cycle cycle(double clearance, float step_us = 0.0F, Outcome outcome = Outcome::moved_freely) {
-  Cycle one{.step_us = step_us, .outcome = outcome};
+  Cycle one;
+  one.step_us = step_us;
+  one.outcome = outcome;
   one.places.front() = Vec3(0.2, 0.2, -clearance);
   one.clearances.front() = clearance;
   return one;
@@ -41,17 +44,19 @@ FollowedStroke stroke_of(std::vector<Cycles> runs) {
 
 /// The record of such strokes over a mesh.
 Json record_of(const std::vector<FollowedStroke>& strokes, const char* mesh = "cube") {
-  SimulateOptions options{.meshes = {mesh}, .rules = {"certified", "paper"}};
+  SimulateOptions options;
+  options.meshes = {mesh};
+  options.rules = {"certified", "paper"};
   options.rules.resize(strokes.front().runs.size() - 1);
-  const auto subject = make_tip_subject(options);
-  subject->open(mesh);
+  const auto tool = make_guarded_tip(options);
+  tool->open(mesh);
   std::vector<RunTally> runs;
-  for (const std::string& rule : subject->guards()) runs.push_back({.guard = rule});
+  for (const std::string& rule : tool->guards()) runs.push_back({.guard = rule});
   for (const FollowedStroke& followed : strokes) {
     for (std::size_t r = 0; r < runs.size(); ++r) runs[r].add(followed.runs[r], 0.05);
-    subject->keep(followed);
+    tool->keep(followed);
   }
-  return subject->result(runs).record;
+  return tool->result(runs).record;
 }
 
 /// What the record says of one run alone.

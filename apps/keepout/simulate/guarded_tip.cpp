@@ -10,9 +10,9 @@
 namespace keepout::app {
 namespace {
 
-class TipSubject final : public Subject {
+class GuardedTip final : public SimulatedTool {
  public:
-  explicit TipSubject(const SimulateOptions& options) : options_(options) {
+  explicit GuardedTip(const SimulateOptions& options) : options_(options) {
     require_within_reach(options.max_step, options.constraint.options.radius);
   }
 
@@ -84,8 +84,8 @@ class TipSubject final : public Subject {
 
 }  // namespace
 
-std::unique_ptr<Subject> make_tip_subject(const SimulateOptions& options) {
-  return std::make_unique<TipSubject>(options);
+std::unique_ptr<SimulatedTool> make_guarded_tip(const SimulateOptions& options) {
+  return std::make_unique<GuardedTip>(options);
 }
 
 }  // namespace keepout::app

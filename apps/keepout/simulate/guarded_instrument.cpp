@@ -10,7 +10,7 @@
 #include "record/drawn_mesh.h"
 #include "record/json_parts.h"
 #include "shared/clip.h"
-#include "simulate/subject.h"
+#include "simulate/simulated_tool.h"
 #include "verify/robot/campaign.h"
 #include "verify/robot/judge.h"
 
@@ -76,9 +76,9 @@ Json run_json(const std::string& mode, const std::vector<Cycle>& cycles) {
           {"clearance_mm", std::move(clearances)}};
 }
 
-class InstrumentSubject final : public Subject {
+class GuardedInstrument final : public SimulatedTool {
  public:
-  explicit InstrumentSubject(const SimulateOptions& options)
+  explicit GuardedInstrument(const SimulateOptions& options)
       : options_(options), margin_(options.constraint.options.margin) {}
 
   std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
@@ -220,8 +220,8 @@ class InstrumentSubject final : public Subject {
 
 }  // namespace
 
-std::unique_ptr<Subject> make_instrument_subject(const SimulateOptions& options) {
-  return std::make_unique<InstrumentSubject>(options);
+std::unique_ptr<SimulatedTool> make_guarded_instrument(const SimulateOptions& options) {
+  return std::make_unique<GuardedInstrument>(options);
 }
 
 }  // namespace keepout::app

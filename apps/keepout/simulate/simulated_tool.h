@@ -30,9 +30,9 @@ struct SimulationResult {
 
 /// The tool that an operator moves over meshes, under each of its guards, in the closed loop of
 /// simulate().
-class Subject {
+class SimulatedTool {
  public:
-  virtual ~Subject() = default;
+  virtual ~SimulatedTool() = default;
 
   /// Loads the next mesh. Throws Error.
   virtual std::shared_ptr<const Mesh> open(const std::filesystem::path& mesh) = 0;
@@ -54,10 +54,10 @@ class Subject {
 
 /// A tip, without a fixture and under each rule. Throws Error for options that contradict. The
 /// options must outlive it.
-std::unique_ptr<Subject> make_tip_subject(const SimulateOptions& options);
+std::unique_ptr<SimulatedTool> make_guarded_tip(const SimulateOptions& options);
 
 /// The instrument of a robot, in joint space: with the certified step, with one that certifies a
 /// linearized motion, with a certified tip only, and without a guard. The options must outlive it.
-std::unique_ptr<Subject> make_instrument_subject(const SimulateOptions& options);
+std::unique_ptr<SimulatedTool> make_guarded_instrument(const SimulateOptions& options);
 
 }  // namespace keepout::app
