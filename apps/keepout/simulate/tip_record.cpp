@@ -102,8 +102,9 @@ std::string headline(const std::vector<RunTally>& runs, SurfaceKind surface) {
       text += "; " + listed(kept_out) + (is_closed ? " kept it out" : " did not");
     }
   }
+  const bool is_test = !runs.front().kept_out();
   return text +
-         (runs.front().kept_out() ? ", but so did no fixture: these strokes test no rule." : ".");
+         (is_test ? "." : ". Without a fixture it stayed out too: these strokes test no rule.");
 }
 
 /// One cycle of a run.
