@@ -87,32 +87,29 @@ std::vector<Guide> balls_about(const Vec3& place) {
 }
 
 std::vector<Scene> scenes() {
+  const auto at_tip_of_cone = [](std::string name, VertexId faces, double slope) {
+    return Scene{.name = std::move(name),
+                 .surface = make_cone(faces, slope),
+                 .near = 1.5,
+                 .middle = {0, 0, 1}};
+  };
   std::vector<Scene> all;
   for (const VertexId faces : {400u, 4'000u, 20'000u, 200'000u}) {
     for (const double slope : {0.1, 1.0, 5.0}) {
       char name[64];
       std::snprintf(name, sizeof name, "tip of a cone, %u faces, slope %g", unsigned{faces}, slope);
-      all.push_back({name,
-                     make_cone(faces, slope),
-                     {.options = {.radius = 5.0, .margin = 1.0}},
-                     1.5,
-                     {0, 0, 1}});
+      all.push_back(at_tip_of_cone(name, faces, slope));
     }
   }
-  all.push_back({"the same, 7 joints",
-                 make_cone(4'000, 1.0),
-                 {.options = {.radius = 5.0, .margin = 1.0, .damping = 1e-6}},
-                 1.5,
-                 {0, 0, 1},
-                 true});
-  all.push_back({"the same, 65,536 nodes, 1,000 refinements",
-                 make_cone(4'000, 1.0),
-                 {.options = {.radius = 5.0, .margin = 1.0, .refinements = 1'000, .nodes = 65'536}},
-                 1.5,
-                 {0, 0, 1}});
+  all.push_back(at_tip_of_cone("the same, 7 joints", 4'000, 1.0));
+  all.back().settings.options.damping = 1e-6;
+  all.back().with_joints = true;
+  all.push_back(at_tip_of_cone("the same, 65,536 nodes, 1,000 refinements", 4'000, 1.0));
+  all.back().settings.options.refinements = 1'000;
+  all.back().settings.options.nodes = 65'536;
   for (const VertexId faces : {400u, 4'000u}) {
-    Scene guided{std::to_string(faces) + " faces, 16 round guides", make_cone(faces, 1.0)};
-    guided.middle = {0, 0, 1};
+    Scene guided = at_tip_of_cone(std::to_string(faces) + " faces, 16 round guides", faces, 1.0);
+    guided.near = 1.0;
     guided.with_guides = true;
     all.push_back(guided);
     guided.name = "the same, 7 joints";
@@ -120,25 +117,18 @@ std::vector<Scene> scenes() {
     guided.with_joints = true;
     all.push_back(guided);
   }
-  all.push_back({"centre of a sphere of 1 M triangles", sphere(700, 50.0), {}, 1e-3});
-  all.push_back({"the same of 2 M, about the centre", sphere(1'000, 60.0), {}, 0.5});
-  all.push_back({"the same, margin as far as the wall",
-                 sphere(700, 50.0),
-                 {.options = {.radius = 5.0, .margin = 49.0}},
-                 3.0});
-  all.push_back({"the same, distances always",
-                 sphere(700, 50.0),
-                 {.options = {.distances = Distances::always}},
-                 1e-3});
-  all.push_back({"200,000 triangles crossing each other",
-                 soup(200'000, 3.0),
-                 {.options = {.radius = 5.0, .margin = 0.01}},
-                 10.0});
-  all.push_back({"2 M small ones",
-                 soup(2'000'000, 0.02),
-                 {.options = {.radius = 5.0, .margin = 0.01}},
-                 10.0});
-  all.push_back({"100,000 times the same triangle", copies(100'000), {}, 3.0});
+  const auto add = [&](const char* name, Surface surface, const StepOptions& options, double near) {
+    all.push_back({name, std::move(surface), {.options = options}, near});
+  };
+  add("centre of a sphere of 1 M triangles", sphere(700, 50.0), {}, 1e-3);
+  add("the same of 2 M, about the centre", sphere(1'000, 60.0), {}, 0.5);
+  add("the same, margin as far as the wall", sphere(700, 50.0), {.radius = 5.0, .margin = 49.0},
+      3.0);
+  add("the same, distances always", sphere(700, 50.0), {.distances = Distances::always}, 1e-3);
+  const StepOptions close{.radius = 5.0, .margin = 0.01};
+  add("200,000 triangles crossing each other", soup(200'000, 3.0), close, 10.0);
+  add("2 M small ones", soup(2'000'000, 0.02), close, 10.0);
+  add("100,000 times the same triangle", copies(100'000), {}, 3.0);
   for (const Shape& shape : shapes()) {
     const Mesh mesh(shape.make());
     const double size = mesh.bounds().size().norm();

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // keepout-bench: the commands of keepout, and those that compare, which keepout calls here.
-#include <iostream>
-
 #include "bench/bench.h"
-#include "bench/parts_on_mesh.h"
 #include "compare/compare.h"
 #include "plan/plan.h"
 #include "user_commands.h"
 
 int main(int argc, char** argv) {
   using namespace keepout::app;
-  const auto bench_with_notes = [](const BenchOptions& options, std::ostream& out) {
-    return bench(options, out, std::cerr);
-  };
   std::vector<Command> commands = user_commands(time_parts);
-  commands.push_back(command("bench", add_bench, bench_with_notes));
+  commands.push_back(command("bench", add_bench, bench));
   commands.push_back(command("compare", add_compare, compare));
   commands.push_back(command("plan", add_plan, plan));
   return run_program(commands, argc, argv);

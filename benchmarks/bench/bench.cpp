@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <ostream>
 
-#include "bench/benchmark.h"
 #include "compare/compare.h"
-#include "compare/comparison.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
@@ -203,7 +202,7 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
 }
 
-int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
+int bench(const BenchOptions& options, std::ostream& out) {
   if (options.list) {
     list_parts(out);
     return EXIT_SUCCESS;
@@ -235,7 +234,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
     failure = std::current_exception();
   }
   if (benchmark.rows.empty()) {
-    notes << "keepout: stopped before any row was finished: nothing was written\n";
+    std::cerr << "keepout: stopped before any row was finished: nothing was written\n";
     return exit_interrupted;
   }
   // What has been measured is safe before anything else is tried.
@@ -249,7 +248,7 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   }
   outputs.reset();
   outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
-  write_record(*outputs, record, files, notes);
+  write_record(*outputs, record, files, std::cerr);
   print_headline(out, benchmark);
   out << "report: " << files.page->string() << '\n';
   if (!failure && !stop.has_come()) return EXIT_SUCCESS;
@@ -257,11 +256,42 @@ int bench(const BenchOptions& options, std::ostream& out, std::ostream& notes) {
   for (const auto& path : {files.kept_json(), files.csv}) {
     if (path) kept.push_back(path->string());
   }
-  notes << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
-        << counted(benchmark.planned, "row") << " were finished, and are kept in " << listed(kept)
-        << '\n';
+  std::cerr << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
+            << counted(benchmark.planned, "row") << " were finished, and are kept in "
+            << listed(kept) << '\n';
   if (failure) std::rethrow_exception(failure);
   return exit_interrupted;
+}
+
+PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
+                       std::ostream& out) {
+  const StopSignal stop;
+  Benchmark benchmark;
+  run_benchmark({.command = options.command,
+                 .subjects = {{.mesh = options.meshes.front().string()}},
+                 .combinations = combinations_of({.radii = {5.0, 1.0}}),
+                 .queries = 1500,
+                 .seconds = 0.3},
+                stop, benchmark, out);
+  Comparison comparison;
+  const std::size_t rows = benchmark.rows.size();
+  if (!stop.has_come()) {
+    comparison = compare_parts(options.meshes.front().stem().string(), mesh,
+                               {.poses = 12, .problems = 400, .pairs = 100},
+                               [&stop] { return stop.has_come(); });
+    print(out, comparison);
+  } else if (rows == 0) {
+    std::cerr << "keepout: stopped before any row of the benchmark was finished: the report is of "
+                 "the simulation alone\n";
+  } else {
+    std::cerr << "keepout: stopped; " << grouped(rows) << " of "
+              << counted(benchmark.planned, "row")
+              << " of the benchmark were finished, and are kept in the report\n";
+  }
+  return {.benchmark = rows == 0 ? Json() : json_of(benchmark),
+          .comparison = json_of(comparison),
+          .combinations = rows,
+          .complete = rows >= benchmark.planned && comparison.complete};
 }
 
 }  // namespace keepout::app

@@ -1,15 +1,39 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/measure.h"
-
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "bench/bench.h"
+#include "compare/compare.h"
+#include "keepout/error.h"
+#include "keepout/index/brute_force.h"
+#include "record/json_parts.h"
 #include "shared/number_text.h"
 
 namespace keepout::app {
 namespace {
+
+/// Brute force is asked about so many of the motions: tens of milliseconds each.
+constexpr std::size_t sample_count = 8;
+
+/// JSON has no 64-bit whole numbers that every reader keeps.
+std::string hexadecimal(std::uint64_t value) {
+  return formatted("%016llx", static_cast<unsigned long long>(value));
+}
+
+/// Of what a query finds, to the last bit.
+std::uint64_t hash_of(std::span<const Hit> hits) {
+  BitHash hash;
+  for (const Hit& hit : hits) {
+    hash.add(std::uint64_t{hit.triangle});
+    for (const double x : hit.closest.offset) hash.add(x);
+    hash.add(hit.closest.distance);
+    hash.add(static_cast<std::uint64_t>(hit.closest.feature));
+  }
+  return hash.value();
+}
 
 /// Of each query and step. [us]
 struct Times {
@@ -85,15 +109,17 @@ std::size_t judge(std::span<const Answer> answers, std::span<const Motion> motio
     const Answer& expected = reference.answer(i);
     hash.add(static_cast<std::uint64_t>(got.status));
     for (const double x : got.motion) hash.add(x);
-    if (std::has_single_bit(i + 1)) row.first_hashes.push_back(hash.value());
+    if (std::has_single_bit(i + 1)) {
+      row["hashes_of_first"][std::to_string(i + 1)] = hexadecimal(hash.value());
+    }
     if (!is_ok(got.status)) ++unsolved;
     if (is_wrong(got, expected, accuracy, motions[i], reference.proves_motions())) ++wrong;
     if (is_worse(got, expected, motions[i])) ++worse;
   }
   const auto count = static_cast<double>(answers.size());
-  row.unsolved_share = static_cast<double>(unsolved) / count;
-  row.worse_share = static_cast<double>(worse) / count;
-  row.hash = hash.value();
+  row["unsolved_share"] = static_cast<double>(unsolved) / count;
+  row["worse_share"] = static_cast<double>(worse) / count;
+  row["hash"] = hexadecimal(hash.value());
   return wrong;
 }
 
@@ -120,26 +146,82 @@ std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Refe
     reaching += reference.hits.empty() ? 0 : 1;
     wrong += hash_of(reference.hits.view()) == expected[i] ? 0 : 1;
   }
-  row.candidates_mean = static_cast<double>(candidates) / static_cast<double>(count);
-  row.hits_mean = static_cast<double>(hits) / static_cast<double>(count);
-  row.reaching_share = static_cast<double>(reaching) / static_cast<double>(count);
+  row["candidates_mean"] = static_cast<double>(candidates) / static_cast<double>(count);
+  row["hits_mean"] = static_cast<double>(hits) / static_cast<double>(count);
+  row["reaching_share"] = static_cast<double>(reaching) / static_cast<double>(count);
   return wrong;
 }
 
 }  // namespace
 
+Reference::Reference(std::shared_ptr<const SpatialIndex> right, std::shared_ptr<const Mesh> mesh,
+                     const MotionConstraintSettings& settings, std::span<const Motion> motions)
+    : candidates(std::min(settings.capacity.triangles, mesh->triangle_count())),
+      hits(candidates.capacity()),
+      guard_(make_motion_constraint(mesh, std::move(right), settings)),
+      proves_motions_(settings.activation == "certified"),
+      motions_(motions) {
+  const auto brute_force = std::make_shared<const BruteForce>(mesh);
+  MotionConstraint exhaustive = make_motion_constraint(std::move(mesh), brute_force, settings);
+  for (const Motion& motion : motions_) balls_.push_back(guard_.region(motion));
+  for (std::size_t s = 0; s < sample_count; ++s) {
+    const std::size_t motion = s * motions_.size() / sample_count;
+    const std::span<const Hit> found = hits_of(*brute_force, balls_[motion]);
+    samples_.push_back({motion, {found.begin(), found.end()}});
+    fits_ = fits_ && !candidates.overflowed();
+    if (!fits_) return;
+    const Answer expected = exhaustive.step(motions_[motion]);
+    if (Answer(guard_.step(motions_[motion])) != expected) {
+      throw Error(
+          "the steps of the reference are not those of brute force: this is a fault in "
+          "keepout; please report it");
+    }
+  }
+  if (!is_found_by(guard_.index())) {
+    throw Error("the reference's index misses triangles: please report it");
+  }
+}
+
+const Answer& Reference::answer(std::size_t motion) {
+  while (answers_.size() <= motion) answers_.push_back(guard_.step(motions_[answers_.size()]));
+  return answers_[motion];
+}
+
+std::uint64_t Reference::hits_hash(std::size_t motion) {
+  while (hits_hashes_.size() <= motion) {
+    hits_hashes_.push_back(hash_of(hits_of(guard_.index(), balls_[hits_hashes_.size()])));
+  }
+  return hits_hashes_[motion];
+}
+
+bool Reference::is_found_by(const SpatialIndex& index) {
+  return std::ranges::all_of(samples_, [&](const Sample& sample) {
+    return std::ranges::equal(hits_of(index, balls_[sample.motion]), sample.hits, is_same);
+  });
+}
+
+std::span<const Hit> Reference::hits_of(const SpatialIndex& index, const Ball& ball) {
+  candidates.clear();
+  hits.clear();
+  index.collect(ball, candidates);
+  refine(mesh(), ball, candidates.view(), hits);
+  return hits.view();
+}
+
 void measure(MotionConstraint& constraint, double accuracy, std::span<const Motion> motions,
              Reference& reference, double seconds, const StopSignal& stop, BenchmarkRow& row) {
   if (!reference.is_found_by(constraint.index())) {
-    row.remark = "not timed: the triangles are not those of brute force";
+    row["remark"] = "not timed: the triangles are not those of brute force";
     return;
   }
   Times times;
   const std::vector<Answer> staged = ask_by_stages(constraint, motions, seconds, stop, times);
   const std::span<const Motion> asked = motions.first(staged.size());
-  const std::vector<Answer> answers = ask(constraint, asked, stop, times, row.planes_mean);
+  double planes_mean = 0.0;
+  const std::vector<Answer> answers = ask(constraint, asked, stop, times, planes_mean);
   if (stop.has_come()) return;
-  row.queries = asked.size();
+  row["queries"] = asked.size();
+  row["planes_mean"] = planes_mean;
   std::size_t wrong = judge(answers, asked, reference, accuracy, row);
   // The same parts that were asked for the same: whatever differs is wrong in one of the two.
   for (std::size_t i = 0; i < asked.size(); ++i) wrong += staged[i] == answers[i] ? 0 : 1;
@@ -147,26 +229,28 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
       ask_for_triangles(constraint.index(), asked.size(), reference, stop, times, row);
   if (stop.has_come()) return;
   if (missed > 0) {
-    row.remark = "not timed: " + grouped(missed) + " of " + grouped(asked.size()) +
-                 " queries do not find what the reference finds";
+    row["remark"] = "not timed: " + grouped(missed) + " of " + grouped(asked.size()) +
+                    " queries do not find what the reference finds";
   }
   if (wrong > 0) {
-    row.remark = "not timed: " + grouped(wrong) + " of " + counted(asked.size(), "step") +
-                 " are not those of the reference";
+    row["remark"] = "not timed: " + grouped(wrong) + " of " + counted(asked.size(), "step") +
+                    " are not those of the reference";
   }
-  row.verified = wrong == 0 && missed == 0;
-  if (!row.verified) return;
-  row.collect = timing_of(times.collect);
-  row.query = timing_of(times.query);
-  row.step = timing_of(times.step);
-  if (constraint.makes_queries()) row.step_query = timing_of(times.step_query);
-  row.activate = timing_of(times.activate);
-  row.solve = timing_of(times.solve);
+  if (wrong + missed > 0) return;
+  row["verified"] = true;
+  row["collect_us"] = timing_of(times.collect);
+  row["query_us"] = timing_of(times.query);
+  const Timing step = timing_of(times.step);
+  row["step_us"] = step;
+  if (step.p50 > 0.0) row["rate_khz"] = 1e3 / step.p50;
+  if (constraint.makes_queries()) row["step_query_us"] = timing_of(times.step_query);
+  row["activate_us"] = timing_of(times.activate);
+  row["solve_us"] = timing_of(times.solve);
   // A median of finding nothing says nothing, and a solver that gives up early only looks fast.
-  if (row.reaching_share < 0.5) {
-    row.remark = "not ranked: no triangle is in reach of more than half of the motions";
-  } else if (row.unsolved_share > 0.01) {
-    row.remark = "not ranked: more than 1 % of the steps have no answer";
+  if (row["reaching_share"] < 0.5) {
+    row["remark"] = "not ranked: no triangle is in reach of more than half of the motions";
+  } else if (row["unsolved_share"] > 0.01) {
+    row["remark"] = "not ranked: more than 1 % of the steps have no answer";
   }
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/run_benchmark.h"
-
 #include <algorithm>
 #include <map>
 #include <memory>
@@ -9,7 +7,7 @@
 #include <ostream>
 #include <utility>
 
-#include "bench/measure.h"
+#include "bench/bench.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/error.h"
@@ -17,12 +15,45 @@
 #include "keepout/index/pd_tree.h"
 #include "keepout/solvers/registry.h"
 #include "shared/machine.h"
+#include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
-#include "shared/used_cores.h"
 
 namespace keepout::app {
 namespace {
+
+constexpr const char* reference_index = "wide_bvh";
+constexpr const char* reference_solver = "active_set";
+constexpr const char* certified = "certified";
+constexpr const char* usual_index = "fcl_obbrss";
+constexpr const char* usual_solver = "nlopt_slsqp";
+
+using Names = std::vector<std::string>;
+using Radii = std::vector<double>;
+
+/// Appends every combination of these, each once, of parts that there are.
+void add(std::vector<Combination>& all, const Names& index_names, const Names& rules,
+         const Names& solvers, const Radii& radii) {
+  const std::vector<std::optional<double>> any(radii.begin(), radii.end()), none(1);
+  for (const std::string& index : index_names) {
+    for (const std::string& rule : rules) {
+      for (const std::string& solver : solvers) {
+        if (!index_backends().has(index) || !activation_rules().has(rule) ||
+            !solver_backends().has(solver)) {
+          continue;
+        }
+        for (const std::optional<double>& radius : rule == certified ? none : any) {
+          const Combination combination{index, rule, solver, radius};
+          if (std::ranges::find(all, combination) == all.end()) all.push_back(combination);
+        }
+      }
+    }
+  }
+}
+
+Names or_else(const Names& asked, const Names& otherwise) {
+  return asked.empty() ? otherwise : asked;
+}
 
 /// Room for every step that shall be timed.
 constexpr Capacity room{
@@ -39,17 +70,93 @@ class Trial {
   /// All but the subject must outlive this; `memory` is added to. Throws Error when there is no
   /// such mesh.
   Trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
-        const StopSignal& stop);
-
-  /// Builds the index unless the combination before had the same. Of no use once it was stopped.
-  BenchmarkRow measure(const Combination& combination);
+        const StopSignal& stop)
+      : subject_(subject),
+        plan_(plan),
+        memory_(memory),
+        stop_(stop),
+        loaded_(load(subject)),
+        reference_index_(std::make_shared<const PdTree>(loaded_.mesh)) {
+    Random random(plan.seed);
+    const MotionKind kind{.clearance = margin};
+    motions_ = plan.poses == Poses::contact
+                   ? contact_motions(*loaded_.mesh, *reference_index_, plan.queries, kind, random)
+                   : unrelated_motions(*loaded_.mesh, plan.queries, kind, random);
+  }
 
   /// The mesh, and what reading its file took.
   const LoadedSubject& loaded() const noexcept { return loaded_; }
 
+  /// Builds the index unless the combination before had the same. Of no use once it was stopped.
+  BenchmarkRow measure(const Combination& combination) {
+    if (row_["index"] != combination.index) build(combination.index);
+    BenchmarkRow row = row_;
+    if (combination.radius) row["radius"] = *combination.radius;
+    row["activation"] = combination.activation;
+    row["solver"] = combination.solver;
+    if (!index_) return row;
+
+    // The certified rule looks only where the motion leads, and the paper's take the tip as it is.
+    MotionConstraintSettings settings{
+        .activation = combination.activation,
+        .options = {.radius = combination.radius.value_or(5.0),
+                    .margin = combination.activation == "certified" ? margin : 0.0},
+        .inside = Inside::taken_as_is,
+        .capacity = room};
+    Reference& expected = references_
+                              .try_emplace({settings.activation, settings.options.radius},
+                                           reference_index_, loaded_.mesh, settings, motions_)
+                              .first->second;
+    if (!expected.fits()) {
+      row["remark"] = "not timed: more than " + grouped(expected.candidates.capacity()) +
+                      " triangles are in reach; ask for a smaller radius";
+      return row;
+    }
+    const double accuracy = combination.solver == settings.solver
+                                ? 0.0
+                                : solver_backends().named(combination.solver).accuracy;
+    settings.solver = combination.solver;
+    MotionConstraint constraint = make_motion_constraint(loaded_.mesh, index_, settings);
+    app::measure(constraint, accuracy, motions_, expected, plan_.seconds, stop_, row);
+    return row;
+  }
+
  private:
-  void build(const std::string& index);
-  Reference& reference(const MotionConstraintSettings& settings);
+  void build(const std::string& index) {
+    index_.reset();  // two large ones need not fit
+    const std::size_t triangles = loaded_.mesh->triangle_count();
+    row_ = new_row();
+    row_.update({{"mesh", label_of(subject_)},
+                 {"triangles", triangles},
+                 {"vertices", loaded_.mesh->vertex_count()},
+                 {"load_s", loaded_.seconds},
+                 {"load_cores", loaded_.cores},
+                 {"index", index}});
+    const auto count = static_cast<double>(triangles);
+    constexpr double while_building = 1.5;  // some hold more then
+    if (const auto taken = memory_.find(index); taken != memory_.end()) {
+      const double needed = while_building * taken->second * count;
+      const auto available = static_cast<double>(available_memory());
+      if (needed > available) {
+        row_["remark"] = "not built: needs up to " + rounded(1e-9 * needed, 2) + " GB, and " +
+                         rounded(1e-9 * available, 2) + " GB are free";
+        return;
+      }
+    }
+    try {
+      const IndexBackend& backend = index_backends().named(index);
+      const UsedCores used;
+      index_ = backend.make(loaded_.mesh);
+      row_["build_s"] = used.seconds();
+      row_["build_cores"] = used.own();
+      memory_[index] = static_cast<double>(index_->memory()) / count;
+      row_["bytes_per_triangle"] = memory_[index];
+    } catch (const Error& error) {
+      row_["remark"] = std::string("not built: ") + error.what();
+    } catch (const std::bad_alloc&) {
+      row_["remark"] = "not built: out of memory";
+    }
+  }
 
   Subject subject_;
   const BenchmarkPlan& plan_;
@@ -58,104 +165,11 @@ class Trial {
   LoadedSubject loaded_;
   std::vector<Motion> motions_;
   std::shared_ptr<const SpatialIndex> reference_index_;
-  std::map<std::string, MotionConstraint> guards_;                  // of each rule
   std::map<std::pair<std::string, double>, Reference> references_;  // of each rule and radius
   std::shared_ptr<const SpatialIndex> index_;                       // at hand; null: not built
-  BenchmarkRow row_;  // so much of it as is the same for all combinations with that index
+  BenchmarkRow row_ =
+      new_row();  // so much of it as is the same for all combinations with that index
 };
-
-Trial::Trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
-             const StopSignal& stop)
-    : subject_(subject),
-      plan_(plan),
-      memory_(memory),
-      stop_(stop),
-      loaded_(load(subject)),
-      reference_index_(std::make_shared<const PdTree>(loaded_.mesh)) {
-  Random random(plan.seed);
-  const MotionKind kind{.clearance = margin};
-  motions_ = plan.poses == Poses::contact
-                 ? contact_motions(*loaded_.mesh, *reference_index_, plan.queries, kind, random)
-                 : unrelated_motions(*loaded_.mesh, plan.queries, kind, random);
-}
-
-Reference& Trial::reference(const MotionConstraintSettings& settings) {
-  auto guard = guards_.find(settings.activation);
-  if (guard == guards_.end()) {
-    guard = guards_
-                .emplace(settings.activation,
-                         make_motion_constraint(loaded_.mesh, reference_index_, settings))
-                .first;
-  }
-  return references_
-      .try_emplace({settings.activation, settings.options.radius}, guard->second, loaded_.mesh,
-                   settings, motions_)
-      .first->second;
-}
-
-void Trial::build(const std::string& index) {
-  if (row_.index == index) return;
-  index_.reset();  // two large ones need not fit
-  row_ = {.mesh = label_of(subject_),
-          .triangles = loaded_.mesh->triangle_count(),
-          .vertices = loaded_.mesh->vertex_count(),
-          .load_s = loaded_.seconds,
-          .load_cores = loaded_.cores,
-          .index = index};
-  const IndexBackend& backend = index_backends().named(index);
-  const auto count = static_cast<double>(row_.triangles);
-  constexpr double while_building = 1.5;  // some hold more then
-  if (const auto taken = memory_.find(index); taken != memory_.end()) {
-    const double needed = while_building * taken->second * count;
-    const auto available = static_cast<double>(available_memory());
-    if (needed > available) {
-      row_.remark = "not built: needs up to " + rounded(1e-9 * needed, 2) + " GB, and " +
-                    rounded(1e-9 * available, 2) + " GB are free";
-      return;
-    }
-  }
-  try {
-    const UsedCores used;
-    index_ = backend.make(loaded_.mesh);
-    row_.build_s = used.seconds();
-    row_.build_cores = used.own();
-    row_.bytes_per_triangle = memory_[index] = static_cast<double>(index_->memory()) / count;
-  } catch (const Error& error) {
-    row_.remark = std::string("not built: ") + error.what();
-  } catch (const std::bad_alloc&) {
-    row_.remark = "not built: out of memory";
-  }
-}
-
-BenchmarkRow Trial::measure(const Combination& combination) {
-  build(combination.index);
-  BenchmarkRow row = row_;
-  row.radius = combination.radius;
-  row.activation = combination.activation;
-  row.solver = combination.solver;
-  if (!index_) return row;
-
-  // The certified rule looks only where the motion leads, and the paper's take the tip as it is.
-  MotionConstraintSettings settings{
-      .activation = combination.activation,
-      .options = {.radius = combination.radius.value_or(5.0),
-                  .margin = combination.activation == "certified" ? margin : 0.0},
-      .inside = Inside::taken_as_is,
-      .capacity = room};
-  Reference& expected = reference(settings);
-  if (!expected.fits()) {
-    row.remark = "not timed: more than " + grouped(expected.candidates.capacity()) +
-                 " triangles are in reach; ask for a smaller radius";
-    return row;
-  }
-  const double accuracy = combination.solver == settings.solver
-                              ? 0.0
-                              : solver_backends().named(combination.solver).accuracy;
-  settings.solver = combination.solver;
-  MotionConstraint constraint = make_motion_constraint(loaded_.mesh, index_, settings);
-  app::measure(constraint, accuracy, motions_, expected, plan_.seconds, stop_, row);
-  return row;
-}
 
 void run_trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
                const StopSignal& stop, Benchmark& benchmark, std::ostream& out) {
@@ -205,6 +219,33 @@ Benchmark new_benchmark(const BenchmarkPlan& plan) {
 }
 
 }  // namespace
+
+bool names_parts(const Selection& selection) {
+  return !(selection.indices.empty() && selection.activations.empty() && selection.solvers.empty());
+}
+
+std::vector<Combination> combinations_of(const Selection& selection) {
+  const Radii radii = selection.radii.empty() ? Radii{5.0, 1.0, 0.25} : selection.radii;
+  std::vector<Combination> all;
+  if (names_parts(selection)) {
+    add(all, or_else(selection.indices, {reference_index}),
+        or_else(selection.activations, {"paper", certified}),
+        or_else(selection.solvers, {reference_solver}), radii);
+  } else {
+    Names fast_indices = index_names();
+    std::erase(fast_indices, "brute_force");  // takes a thousand times as long
+    add(all, fast_indices, {"paper", certified}, {reference_solver}, radii);
+    add(all, {reference_index}, {"all_faces"}, {reference_solver}, radii);
+    add(all, {reference_index}, {"paper", certified}, solver_names(), radii);
+    add(all, {usual_index}, {"paper"}, {usual_solver}, radii);
+  }
+  // By index, as the table has them.
+  std::ranges::stable_sort(all, {}, [](const Combination& combination) {
+    const auto& table = index_backends();
+    return std::ranges::find(table, combination.index, &IndexBackend::name) - table.begin();
+  });
+  return all;
+}
 
 void run_benchmark(const BenchmarkPlan& plan, const StopSignal& stop, Benchmark& benchmark,
                    std::ostream& out) {

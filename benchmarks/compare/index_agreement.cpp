@@ -7,17 +7,16 @@
 #include <optional>
 #include <utility>
 
-#include "compare/agreement.h"
-#include "compare/reference.h"
+#include "compare/compare.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/motions.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/oracle/distance.h"
 #include "keepout/registry.h"
-#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {
@@ -33,9 +32,8 @@ struct Finding {
 
 /// What one index came to under one rule.
 struct Findings {
-  bool searched = false;             // by the rule
-  std::vector<Finding> at = {};      // each pose
-  double closest_point_error = 0.0;  // the worst [mm]
+  IndexAgreement row;
+  std::vector<Finding> at = {};  // each pose; kept of brute force alone
 };
 
 std::vector<Motion> motions_of(const IndexComparison& comparison) {
@@ -105,8 +103,7 @@ bool are_among(const std::vector<HalfSpace>& some, const std::vector<HalfSpace>&
   return true;
 }
 
-void compare(const Finding& got, const Finding& expected, bool searched,
-             IndexAgreement& agreement) {
+void compare(const Finding& got, const Finding& expected, IndexAgreement& agreement) {
   ++agreement.poses;
   agreement.missed += missing(expected.hits, got.hits);
   agreement.invented += missing(got.hits, expected.hits) + (got.repeats ? 1 : 0);
@@ -114,7 +111,7 @@ void compare(const Finding& got, const Finding& expected, bool searched,
       std::max(agreement.step_difference, (got.motion - expected.motion).norm());
   // A rule that searches may leave out planes that no motion in question comes near.
   const bool same_planes = are_among(got.planes, expected.planes) &&
-                           (searched || got.planes.size() == expected.planes.size());
+                           (agreement.searched || got.planes.size() == expected.planes.size());
   if (!same_planes) {
     agreement.plane_angle =
         std::max(agreement.plane_angle, plane_angle(got.planes, expected.planes));
@@ -124,19 +121,13 @@ void compare(const Finding& got, const Finding& expected, bool searched,
   }
 }
 
-/// Sets the error of the closest points, which takes long: once where they are the same as known.
-void judge_closest_points(const Mesh& mesh, std::span<const Motion> motions, Findings& findings,
-                          const Findings* known = nullptr) {
-  double& worst = findings.closest_point_error;
-  if (known != nullptr) worst = known->closest_point_error;
-  for (std::size_t i = 0; i < motions.size(); ++i) {
-    const std::vector<Hit>& hits = findings.at[i].hits;
-    if (known != nullptr && std::ranges::equal(hits, known->at[i].hits, is_same)) continue;
-    worst = std::max(worst, closest_point_error(mesh, motions[i].tip, hits));
-  }
-}
-
 }  // namespace
+
+bool is_same(const Hit& one, const Hit& other) {
+  return one.triangle == other.triangle && one.closest.offset == other.closest.offset &&
+         one.closest.distance == other.closest.distance &&
+         one.closest.feature == other.closest.feature;
+}
 
 std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
                                             const Stopped& stopped) {
@@ -144,30 +135,47 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
   const std::vector<Motion> motions = motions_of(comparison);
   Progress progress("compare indices", motions.size() * comparison.activations.size() *
                                            (comparison.indices.size() + 1));
-  // One pose after the other, as a program would ask; nothing when it was stopped.
-  const auto ask = [&](const std::shared_ptr<const SpatialIndex>& index,
-                       const std::string& rule) -> std::optional<Findings> {
+  // One pose after the other, as a program would ask, held to the truth unless that is what is
+  // sought; nothing when it was stopped.
+  const auto ask = [&](const std::string& name, const std::shared_ptr<const SpatialIndex>& index,
+                       const std::string& rule,
+                       const Findings* truth = nullptr) -> std::optional<Findings> {
     constexpr double radius = 1.0;  // of the motion sphere [mm]
     MotionConstraint guard =
         make_motion_constraint(mesh, index, {.activation = rule, .options = {.radius = radius}});
     const double reach = guard.options().radius + guard.options().margin;
     Budget budget;
     Neighborhood around(mesh, index, mesh->triangle_count(), budget);
-    Findings findings{.searched = !guard.makes_queries()};
-    for (const Motion& motion : motions) {
-      if (stopped()) return std::nullopt;
+    Findings findings{.row = {.mesh = comparison.mesh_name,
+                              .index = name,
+                              .activation = rule,
+                              .searched = !guard.makes_queries()}};
+    const auto find = [&](std::size_t i) -> Finding {
+      const Motion& motion = motions[i];
       const bool fits = around.gather({motion.tip, reach});  // unless some come twice
       const Step step = guard.step(motion);
       TriangleBuffer& candidates = around.candidates();
       std::ranges::sort(candidates);
-      findings.at.push_back(
-          {.hits = {around.hits().begin(), around.hits().end()},
-           .planes = {step.planes.begin(), step.planes.end()},
-           .status = step.status,
-           .motion = step.motion,
-           .repeats = !fits || std::ranges::adjacent_find(candidates) != candidates.end()});
-      progress.advance();
-    }
+      return {.hits = {around.hits().begin(), around.hits().end()},
+              .planes = {step.planes.begin(), step.planes.end()},
+              .status = step.status,
+              .motion = step.motion,
+              .repeats = !fits || std::ranges::adjacent_find(candidates) != candidates.end()};
+    };
+    double& worst = findings.row.closest_point_error;
+    if (truth != nullptr) worst = truth->row.closest_point_error;
+    const auto judge = [&](std::size_t i, Finding found) {
+      // Exact arithmetic takes long: once where the hits are the same.
+      if (truth == nullptr || !std::ranges::equal(found.hits, truth->at[i].hits, is_same)) {
+        worst = std::max(worst, closest_point_error(*mesh, motions[i].tip, found.hits));
+      }
+      if (truth != nullptr) {
+        compare(found, truth->at[i], findings.row);
+      } else {
+        findings.at.push_back(std::move(found));
+      }
+    };
+    if (!ask_all(motions.size(), progress, stopped, find, judge)) return std::nullopt;
     return findings;
   };
 
@@ -175,28 +183,17 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
   const auto brute_force = std::make_shared<const BruteForce>(mesh);
   std::vector<IndexAgreement> agreements;
   for (const std::string& rule : comparison.activations) {
-    std::optional<Findings> findings = ask(brute_force, rule);
-    if (!findings) return agreements;
-    judge_closest_points(*mesh, motions, *findings);
-    expected.emplace(rule, *std::move(findings));
+    std::optional<Findings> truth = ask("brute_force", brute_force, rule);
+    if (!truth) return agreements;
+    expected.emplace(rule, *std::move(truth));
   }
   for (const std::string& name : comparison.indices) {
     // One at a time: of a large mesh they need not fit all at once.
     const std::shared_ptr<const SpatialIndex> index = index_backends().named(name).make(mesh);
     for (const std::string& rule : comparison.activations) {
-      std::optional<Findings> got = ask(index, rule);
+      std::optional<Findings> got = ask(name, index, rule, &expected.at(rule));
       if (!got) return agreements;
-      const Findings& truth = expected.at(rule);
-      judge_closest_points(*mesh, motions, *got, &truth);
-      IndexAgreement& agreement =
-          agreements.emplace_back(IndexAgreement{.mesh = comparison.mesh_name,
-                                                 .index = name,
-                                                 .activation = rule,
-                                                 .searched = got->searched,
-                                                 .closest_point_error = got->closest_point_error});
-      for (std::size_t i = 0; i < motions.size(); ++i) {
-        compare(got->at[i], truth.at[i], got->searched, agreement);
-      }
+      agreements.push_back(std::move(got->row));
     }
   }
   return agreements;

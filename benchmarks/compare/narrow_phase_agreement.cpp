@@ -8,11 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "compare/agreement.h"
+#include "compare/compare.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/fixtures/random.h"
-#include "shared/progress.h"
-#include "shared/timing.h"
 
 namespace keepout::app {
 namespace {
@@ -95,38 +93,38 @@ std::vector<Pair> make_pairs(const Mesh& mesh, const std::vector<ConvexTool>& to
   return pairs;
 }
 
-NarrowPhaseAgreement agreement_of(const NarrowPhaseBackend& backend,
-                                  const std::vector<ConvexTool>& tools,
-                                  const std::vector<Pair>& pairs) {
+/// Returns nothing if it was stopped.
+std::optional<NarrowPhaseAgreement> agreement_of(const NarrowPhaseBackend& backend,
+                                                 const std::vector<ConvexTool>& tools,
+                                                 const std::vector<Pair>& pairs, Progress& progress,
+                                                 const Stopped& stopped) {
   std::vector<std::unique_ptr<NarrowPhase>> narrow_phases;
   for (const ConvexTool& tool : tools) narrow_phases.push_back(backend.make(tool));
 
-  NarrowPhaseAgreement row;
-  row.pairs = pairs.size();
+  NarrowPhaseAgreement row{.backend = std::string(backend.name), .pairs = pairs.size()};
   std::vector<double> errors;
-  std::vector<double> times;
-  for (const Pair& pair : pairs) {
-    const BenchClock::time_point start = BenchClock::now();
-    const NarrowPhaseAnswer answer =
-        narrow_phases[pair.tool]->separation(pair.position, pair.triangle);
-    times.push_back(microseconds_since(start));
-    if (!answer.answered() || !std::isfinite(answer.separation.distance)) {
-      ++row.failed;
-      continue;
-    }
+  const auto ask = [&](std::size_t i) {
+    return narrow_phases[pairs[i].tool]->separation(pairs[i].position, pairs[i].triangle);
+  };
+  const auto judge = [&](std::size_t i, const NarrowPhaseAnswer& answer) {
+    const Pair& pair = pairs[i];
     const Separation& told = answer.separation;
+    if (!answer.answered() || !std::isfinite(told.distance)) {
+      ++row.failed;
+      return;
+    }
     row.contradicted += (told.distance > 0.0) != (pair.exact.distance > 0.0);
     errors.push_back(std::abs(told.distance - pair.exact.distance));
     const double proven =
         separation_along(told.normal, tools[pair.tool], pair.position, pair.triangle);
     row.worst_unproven = std::max(row.worst_unproven, pair.exact.distance - proven);
-  }
+  };
+  const std::optional<Timing> timing = ask_all(pairs.size(), progress, stopped, ask, judge);
+  if (!timing) return std::nullopt;
+  row.us = *timing;
   const Timing spread = timing_of(errors);  // errors have ranks as times do
   row.median_error = spread.p50;
   row.worst_error = spread.max;
-  const Timing timing = timing_of(times);
-  row.median_us = timing.p50;
-  row.p99_us = timing.p99.value_or(timing.max);
   return row;
 }
 
@@ -137,7 +135,7 @@ std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::s
                                                         const Stopped& stopped) {
   const auto kinds = tools_to_compare();
   Progress progress("compare narrow phases",
-                    kinds.size() * std::size(relations) * narrow_phase_backends().size());
+                    kinds.size() * std::size(relations) * narrow_phase_backends().size() * pairs);
   std::vector<NarrowPhaseAgreement> rows;
   Random random(seed);
   for (const auto& [name, tool] : kinds) {
@@ -145,13 +143,11 @@ std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::s
     for (const Relation& relation : relations) {
       const std::vector<Pair> same = make_pairs(mesh, tools, relation, pairs, random);
       for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
-        if (stopped()) return rows;
-        NarrowPhaseAgreement row = agreement_of(backend, tools, same);
-        row.backend = backend.name;
-        row.tool = name;
-        row.relation = relation.name;
-        rows.push_back(std::move(row));
-        progress.advance();
+        auto row = agreement_of(backend, tools, same, progress, stopped);
+        if (!row) return rows;
+        row->tool = name;
+        row->relation = relation.name;
+        rows.push_back(*std::move(row));
       }
     }
   }

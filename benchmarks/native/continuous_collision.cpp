@@ -17,13 +17,9 @@ namespace {
 class ContinuousCollision : public Sweep {
  public:
   ContinuousCollision(const Mesh& mesh, double radius) : ball_(radius) {
-    std::vector<fcl::Vector3d> vertices;
-    for (VertexId v = 0; v < mesh.vertex_count(); ++v) vertices.push_back(mesh.vertex(v));
+    const std::vector<fcl::Vector3d> vertices(mesh.vertices().begin(), mesh.vertices().end());
     std::vector<fcl::Triangle> triangles;
-    for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-      const Corners& c = mesh.corners(t);
-      triangles.emplace_back(c[0], c[1], c[2]);
-    }
+    for (const Corners& c : mesh.triangles()) triangles.emplace_back(c[0], c[1], c[2]);
     mesh_.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size()));
     mesh_.addSubModel(vertices, triangles);
     if (mesh_.endModel() != fcl::BVH_OK) throw Error("FCL does not take the mesh");
@@ -53,7 +49,6 @@ class ContinuousCollision : public Sweep {
 }  // namespace
 
 std::unique_ptr<Sweep> continuous_collision(const Mesh& mesh, double radius) {
-  if (!(radius > 0.0)) throw Error("the ball needs a radius > 0");
   return std::make_unique<ContinuousCollision>(mesh, radius);
 }
 

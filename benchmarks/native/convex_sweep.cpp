@@ -13,6 +13,8 @@
 
 // Debian ships Bullet in both precisions, and the one links with headers set for the other.
 static_assert(sizeof(btScalar) == sizeof(double), "Bullet is used in double precision");
+static_assert(sizeof(keepout::Vec3) == 3 * sizeof(double) &&
+              sizeof(keepout::Corners) == 3 * sizeof(int));
 
 namespace keepout::peers {
 namespace {
@@ -21,25 +23,14 @@ constexpr double allowed_penetration = 0.0;
 
 btVector3 bullet(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-std::vector<double> coordinates_of(const Mesh& mesh) {
-  std::vector<double> out;
-  for (const Vec3& vertex : mesh.vertices()) out.insert(out.end(), vertex.begin(), vertex.end());
-  return out;
-}
-
-std::vector<int> corners_of(const Mesh& mesh) {
-  std::vector<int> out;
-  for (const Corners& c : mesh.triangles()) out.insert(out.end(), c.begin(), c.end());
-  return out;
-}
-
 class ConvexSweep : public Sweep {
  public:
   ConvexSweep(const Mesh& mesh, double radius)
-      : points_(coordinates_of(mesh)),
-        numbers_(corners_of(mesh)),
-        arrays_(static_cast<int>(numbers_.size() / 3), numbers_.data(), 3 * sizeof(int),
-                static_cast<int>(points_.size() / 3), points_.data(), 3 * sizeof(double)),
+      : points_(mesh.vertices().begin(), mesh.vertices().end()),
+        corners_(mesh.triangles().begin(), mesh.triangles().end()),
+        arrays_(static_cast<int>(corners_.size()), reinterpret_cast<int*>(corners_.data()),
+                sizeof(Corners), static_cast<int>(points_.size()), points_.front().data(),
+                sizeof(Vec3)),
         shape_(&arrays_, true),
         ball_(radius) {
     shape_.setMargin(0.0);
@@ -57,8 +48,8 @@ class ConvexSweep : public Sweep {
   }
 
  private:
-  std::vector<double> points_;  // the shape reads both lists
-  std::vector<int> numbers_;
+  std::vector<Vec3> points_;  // the shape reads both lists
+  std::vector<Corners> corners_;
   btTriangleIndexVertexArray arrays_;
   btBvhTriangleMeshShape shape_;
   mutable btCollisionObject object_;  // Bullet asks for one that it might change
@@ -68,7 +59,6 @@ class ConvexSweep : public Sweep {
 }  // namespace
 
 std::unique_ptr<Sweep> convex_sweep(const Mesh& mesh, double radius) {
-  if (!(radius > 0.0)) throw Error("the ball needs a radius > 0");
   // In Bullet's tree 21 bits hold the number of a triangle.
   constexpr std::size_t most_triangles = std::size_t{1} << 21;
   if (mesh.triangle_count() > most_triangles) throw Error("more triangles than Bullet can number");

@@ -2,44 +2,106 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <tuple>
+#include <vector>
 
+#include "keepout/error.h"
 #include "keepout/mesh/mesh.h"
+#include "keepout/oracle/best_step.h"
 #include "keepout/oracle/safety_oracle.h"
 
 namespace keepout::peers {
 
 /// Points or motions, a row each. [length]
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using RowsRef = Eigen::Ref<const Rows>;
 
 /// Says what became of a tip, with arithmetic and search of its own: the oracle, for many motions
 /// at once. The answers do not depend on their order; the time is least where each is near the
 /// last.
 class Judge {
  public:
-  explicit Judge(const std::shared_ptr<const Mesh>& mesh);
+  explicit Judge(const std::shared_ptr<const Mesh>& mesh)
+      : oracle_(mesh), closed_(oracle_.inside(oracle_.tree()->bounds().low).has_value()) {}
 
   /// Whether there is an inside.
   bool closed() const { return closed_; }
 
   /// Of each point from the mesh, less than 0 inside of a closed one. [length]
-  Eigen::VectorXd distances(const Eigen::Ref<const Rows>& points);
+  Eigen::VectorXd distances(const RowsRef& points) {
+    require_finite(points.allFinite());
+    Eigen::VectorXd out(points.rows());
+    bool is_inside = false;
+    for (Eigen::Index i = 0; i < points.rows(); ++i) {
+      const Vec3 point = points.row(i);
+      // A way that does not touch the mesh leads to no other side of it.
+      const bool may_differ =
+          i == 0 || (closed_ && oracle_.check(points.row(i - 1), point, 0.0).crosses);
+      if (closed_ && may_differ) is_inside = *oracle_.inside(point);
+      const double distance = oracle_.distance(point);
+      out[i] = is_inside ? -distance : distance;
+    }
+    return out;
+  }
 
   /// Of each straight motion from the mesh at its nearest: 0 if and only if it touches, and
   /// infinite where it is more than `reach`. The less the reach, the faster. [length]
-  Eigen::VectorXd least_distances(const Eigen::Ref<const Rows>& starts,
-                                  const Eigen::Ref<const Rows>& ends, double reach);
+  Eigen::VectorXd least_distances(const RowsRef& starts, const RowsRef& ends, double reach) {
+    Eigen::VectorXd out(require_pairs(starts, ends));
+    require_finite(starts.allFinite() && ends.allFinite());
+    const oracle::TriangleTree& tree = *oracle_.tree();
+    std::vector<TriangleId> near;
+    for (Eigen::Index i = 0; i < starts.rows(); ++i) {
+      const oracle::Segment motion{starts.row(i), ends.row(i)};
+      near.clear();
+      const double at_start = oracle_.distance(motion.from);  // of the whole way it is no more
+      tree.collect_within(std::min(reach, at_start), motion, near);
+      double least = at_start;
+      for (const TriangleId t : near) {
+        const Triangle triangle = tree.mesh().triangle(t);
+        if (oracle::bracket_distance(motion, triangle).low >= least) continue;
+        least = std::min(least, oracle::narrow_distance(motion, triangle).estimate);
+      }
+      out[i] = least <= reach ? least : std::numeric_limits<double>::infinity();
+    }
+    return out;
+  }
 
   /// Which straight motions touch the mesh, exactly.
-  Eigen::Array<bool, Eigen::Dynamic, 1> crossings(const Eigen::Ref<const Rows>& starts,
-                                                  const Eigen::Ref<const Rows>& ends);
+  Eigen::Array<bool, Eigen::Dynamic, 1> crossings(const RowsRef& starts, const RowsRef& ends) {
+    Eigen::Array<bool, Eigen::Dynamic, 1> out(require_pairs(starts, ends));
+    for (Eigen::Index i = 0; i < starts.rows(); ++i) {
+      out[i] = oracle_.check(starts.row(i), ends.row(i), 0.0).crosses;
+    }
+    return out;
+  }
 
   /// The best safe step, what it costs, and what a safe one costs at least: oracle/best_step.h.
   /// Throws Error if the tip is on the mesh.
-  std::tuple<Vec3, double, double> best_step(const Vec3& tip, const Vec3& desired, double margin);
+  std::tuple<Vec3, double, double> best_step(const Vec3& tip, const Vec3& desired, double margin) {
+    require_finite(tip.allFinite() && desired.allFinite());
+    if (oracle_.distance(tip) == 0.0) throw Error("a tip on the mesh has no best step");
+    const Vec3 middle = tip + 0.5 * desired;
+    std::vector<TriangleId> near;
+    oracle_.tree()->collect_within(0.5 * desired.norm() + 1.001 * margin, {middle, middle}, near);
+    const oracle::BestStep best =
+        oracle::best_step(oracle_.tree()->mesh(), near, tip, desired, margin);
+    return {best.motion, best.cost, best.bound};
+  }
 
  private:
+  /// Returns their number.
+  static Eigen::Index require_pairs(const RowsRef& starts, const RowsRef& ends) {
+    if (starts.rows() != ends.rows()) throw Error("each start needs an end, and each end a start");
+    return starts.rows();
+  }
+  static void require_finite(bool is_finite) {
+    if (!is_finite) throw Error("points and motions must be finite");
+  }
+
   oracle::SafetyOracle oracle_;
   bool closed_;
 };

@@ -28,8 +28,7 @@ using py::literals::operator""_a;
 using CornerRows = Eigen::Matrix<std::uint32_t, Eigen::Dynamic, 3, Eigen::RowMajor>;
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 
-Mesh mesh_of(const Eigen::Ref<const Rows>& vertices,
-             const Eigen::Ref<const CornerRows>& triangles) {
+Mesh mesh_of(const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles) {
   Surface surface;
   for (const auto& v : vertices.rowwise()) surface.vertices.emplace_back(v);
   for (const auto& t : triangles.rowwise()) surface.triangles.push_back({t[0], t[1], t[2]});
@@ -42,8 +41,7 @@ Judges the motions of a tip past a mesh with exact arithmetic, and shares nothin
 
 Judge(vertices, triangles): (n, 3) and (m, 3). One for each thread. Motions that are near each other
 are judged fastest in their order. Lengths are in the unit of the mesh.)")
-      .def(py::init([](const Eigen::Ref<const Rows>& vertices,
-                       const Eigen::Ref<const CornerRows>& triangles) {
+      .def(py::init([](const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles) {
              return Judge(std::make_shared<const Mesh>(mesh_of(vertices, triangles)));
            }),
            "vertices"_a, "triangles"_a, Unlocked())
@@ -71,9 +69,11 @@ void bind_sweeps(py::module_& module) {
   const auto add = [&](const char* name, auto make, const char* doc) {
     module.def(
         name,
-        [make](const Eigen::Ref<const Rows>& vertices,
-               const Eigen::Ref<const CornerRows>& triangles,
-               double radius) { return make(mesh_of(vertices, triangles), radius); },
+        [make](const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles,
+               double radius) {
+          if (!(radius > 0.0)) throw Error("the ball needs a radius > 0");
+          return make(mesh_of(vertices, triangles), radius);
+        },
         "vertices"_a, "triangles"_a, "radius"_a, Unlocked(), doc);
   };
   add("continuous_collision", &continuous_collision,

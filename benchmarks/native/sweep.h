@@ -7,8 +7,8 @@
 
 namespace keepout::peers {
 
-/// What another library says of a small ball that moves past a mesh. Each copies the mesh. `radius`
-/// > 0: the ball's, which is the distance to be kept. [length]
+/// What another library says of a small ball that moves past a mesh. Each copies the mesh.
+/// Precondition: `radius` > 0, the ball's, which is the distance to be kept. [length]
 class Sweep {
  public:
   virtual ~Sweep() = default;

@@ -1,32 +1,104 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
+#include <array>
 #include <optional>
+#include <string>
 #include <utility>
 
+#include "keepout/error.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/ompl/joint_planning.h"
+#include "operators/attacker.h"
 #include "plan/judge_joint_path.h"
 #include "plan/planning.h"
-#include "shared/named_mesh.h"
+#include "verify/robot/robot_scene.h"
 
 namespace keepout::app {
 namespace {
 
 namespace base = ompl::base;
 
+constexpr int cycles_of_the_hand = 3000;
+constexpr int looked_at_each = 20;         // [cycles]
+constexpr double speed_of_the_hand = 4.0;  // see Attacker
+constexpr double least_advance = 30;       // [mm]
+constexpr double finer_than = 2.0;         // the farthest place is not looked for [mm]
+constexpr std::size_t most_starts = 100;   // to each problem that is asked for
+
+/// Where the hand leads an instrument from a beginning, if that is far enough and in the way of the
+/// straight motion.
+std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& start,
+                                           Random& random) {
+  const Instrument instrument = on.robot.make(start.base);
+  // A period so long that a hand is not slowed down by the limits of velocity.
+  InstrumentConstraint guard = make_instrument_constraint(
+      on.scene.mesh(), on.scene.shared_index(), instrument,
+      {.options = {.margin = 2.1 * on.margin, .band = 0.1 * on.margin, .period = 0.1}});
+  InstrumentConstraint straight = make_instrument_constraint(
+      on.scene.mesh(), on.scene.shared_index(), instrument, {.options = {.margin = on.margin}});
+  oracle::InstrumentOracle judge(on.scene.tree(), on.robot.judged(), start.base);
+  Attacker hand(on.scene, random, speed_of_the_hand);
+  ChainState state;
+  instrument.chain().forward_kinematics(start.positions, state);
+  const Pose first = state.flange();
+  const Vec3 along = first.rotation.col(2);
+
+  PlanningProblem problem{.start = start.positions, .base = start.base};
+  double farthest = least_advance;
+  std::vector<double> q = start.positions;
+  for (int cycle = 1; cycle <= cycles_of_the_hand; ++cycle) {
+    const InstrumentStep step = guard.step(q, hand.next(state.flange().position));
+    for (std::size_t k = 0; k < step.increment.size(); ++k) q[k] += step.increment[k];
+    instrument.chain().forward_kinematics(q, state);
+    const double advance = along.dot(state.flange().position - first.position);
+    if (cycle % looked_at_each != 0 || advance <= farthest + finer_than) continue;
+    const std::array<std::vector<double>, 2> way{start.positions, q};
+    if (judge_joint_path(judge, straight, way).entering == 0) continue;
+    problem.goal = q;
+    farthest = advance;
+  }
+  if (problem.goal.empty()) return std::nullopt;
+  const Mat3& base = start.base.rotation;
+  problem.members = {
+      {"base_position", json_of(start.base.position)},
+      {"base_rotation", {json_of(base.row(0)), json_of(base.row(1)), json_of(base.row(2))}},
+      {"start", problem.start},
+      {"goal", problem.goal},
+      {"advance_mm", farthest}};
+  return problem;
+}
+
 /// All checkers ask the same guards.
 class InstrumentPlanning final : public Planning {
  public:
-  InstrumentPlanning(const PlanOptions& options, const std::filesystem::path& mesh)
-      : options_(&options),
-        on_{{mesh.filename().string(), load_named_mesh(mesh).mesh, "wide_bvh"},
-            options.margin,
-            robot_named(options.robot)} {}
+  InstrumentPlanning(const PlanOptions& options, Scene scene)
+      : options_(&options), on_{std::move(scene), options.margin, robot_named(options.robot)} {}
 
   const Scene& scene() const override { return on_.scene; }
 
+  /// Draws problems, each with a solution that keeps twice the margin:
+  ///
+  /// 1. The instrument begins before a random place of the surface, 5 to 20 mm off it (find_start).
+  /// 2. From there a hand pushes, slides and turns it about (Attacker), for 3000 certified steps.
+  /// 3. The goal is the place on its way that is farthest ahead, along the tool as it is at the
+  ///    start, among those to which the straight motion of the joints leads through the mesh; to
+  ///    within some 2 mm. Unless it is 30 mm ahead, another beginning is tried.
   std::vector<PlanningProblem> draw() override {
-    return draw_problems(on_, options_->problems, options_->seed);
+    Random random(options_->seed);
+    const std::size_t count = options_->problems;
+    std::vector<PlanningProblem> problems;
+    for (std::size_t i = 0; i < most_starts * count && problems.size() < count; ++i) {
+      // The hand begins with more than it is to keep.
+      const auto start = on_.start(random, 2.1);
+      if (!start) break;
+      std::optional<PlanningProblem> problem = led_by_hand(on_, *start, random);
+      if (!problem) continue;
+      problem->number = problems.size() + 1;
+      problems.push_back(std::move(*problem));
+    }
+    if (problems.size() == count) return problems;
+    throw Error(scene().name() + ": only " + std::to_string(problems.size()) + " of " +
+                std::to_string(count) + " problems were found for " + std::string(on_.robot.name) +
+                "; ask for fewer --problems, or for a smaller --margin");
   }
 
   void open(const PlanningProblem& problem) override {
@@ -37,23 +109,18 @@ class InstrumentPlanning final : public Planning {
     oracle_.emplace(on_.scene.tree(), on_.robot.judged(), problem.base);
   }
 
-  base::PlannerPtr planner(const Checker& checker, CheckTimer& timer) override {
-    const auto space = std::make_shared<base::SpaceInformation>(joint_space());
-    base::MotionValidatorPtr motions;
-    if (checker.is_keepouts()) motions = make_motion_validator(space, guards_);
-    if (!motions) space->setStateValidityCheckingResolution(checker.resolution);
-    set_timed_checkers(space, make_state_validity_checker(space, guards_), std::move(motions),
-                       timer);
-    return named_planner(options_->planner, space, options_->range);
+  base::StateSpacePtr space() const override {
+    return make_joint_space(guards_->borrow()->instrument());
+  }
+
+  Checks checks(const base::SpaceInformationPtr& space, const Checker& checker) override {
+    return {make_state_validity_checker(space, guards_),
+            checker.is_keepouts() ? make_motion_validator(space, guards_) : nullptr};
   }
 
   Json judge(const Path& path) override {
-    if (path.empty()) {
-      return {{"motions", nullptr},  {"too_close", nullptr},    {"entering", nullptr},
-              {"unproven", nullptr}, {"clearance_mm", nullptr}, {"length_mm", nullptr}};
-    }
     const JointPathVerdict verdict = judge_joint_path(*oracle_, *guards_->borrow(), path);
-    base::ScopedState<> a(joint_space()), b(a);
+    base::ScopedState<> a(space()), b(a);
     double length = 0.0;
     for (std::size_t i = 1; i < path.size(); ++i) {
       a = path[i - 1];
@@ -64,17 +131,12 @@ class InstrumentPlanning final : public Planning {
             {"too_close", verdict.too_close},
             {"entering", verdict.entering},
             {"unproven", verdict.unproven},
-            {"clearance_mm",
-             std::isfinite(verdict.clearance) ? Json(verdict.clearance) : Json(nullptr)},
+            {"clearance_mm", or_null(verdict.clearance)},
             {"length_mm", length},
             {"path", path}};
   }
 
  private:
-  base::StateSpacePtr joint_space() const {
-    return make_joint_space(guards_->borrow()->instrument());
-  }
-
   const PlanOptions* options_;
   RobotScene on_;
   std::shared_ptr<InstrumentPool> guards_;
@@ -83,13 +145,8 @@ class InstrumentPlanning final : public Planning {
 
 }  // namespace
 
-std::vector<std::unique_ptr<Planning>> plannings_of_an_instrument(const PlanOptions& options) {
-  std::vector<std::filesystem::path> meshes = options.meshes;
-  if (meshes.empty()) meshes = {"airway", "skull"};
-  std::vector<std::unique_ptr<Planning>> all;
-  for (const auto& mesh : meshes)
-    all.push_back(std::make_unique<InstrumentPlanning>(options, mesh));
-  return all;
+std::unique_ptr<Planning> planning_of_an_instrument(const PlanOptions& options, Scene scene) {
+  return std::make_unique<InstrumentPlanning>(options, std::move(scene));
 }
 
 }  // namespace keepout::app

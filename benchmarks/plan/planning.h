@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <ompl/base/Planner.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <iosfwd>
@@ -9,9 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "plan/ompl_run.h"
+#include "keepout/geometry/pose.h"
 #include "plan/plan.h"
-#include "plan/problems.h"
+#include "shared/columns.h"
+#include "verify/scene.h"
 
 namespace keepout::app {
 
@@ -33,27 +36,68 @@ struct Checker {
   bool slides() const noexcept { return kind == Kind::sliding; }
 };
 
-/// Plans on one mesh, for a tip or for a whole instrument.
+/// States that straight motions join: of a tip its coordinates [mm], of an instrument the positions
+/// of its joints.
+using Path = std::vector<std::vector<double>>;
+
+/// From where to where a tip or an instrument is to be led.
+struct PlanningProblem {
+  std::size_t number = 0;  // from 1
+  std::vector<double> start = {}, goal = {};
+  Pose base = {};     // of the instrument
+  Json members = {};  // of its runs in the record: all of this, and how hard it is
+};
+
+/// What a planner asks in a space; without `motions` it samples, as OMPL does by itself.
+struct Checks {
+  ompl::base::StateValidityCheckerPtr states;
+  ompl::base::MotionValidatorPtr motions = {};
+};
+
+/// Plans on one mesh, for a tip or for a whole instrument. All spaces are RealVectorStateSpaces.
 class Planning {
  public:
   virtual ~Planning() = default;
   virtual const Scene& scene() const = 0;
   /// True if the mesh is planned within, not around.
   virtual bool is_within() const { return false; }
-  /// Draws the problems. Throws Error if it finds too few.
+  /// Draws the problems, by a rule that knows no planner; each has a solution. Throws Error if it
+  /// finds too few.
   virtual std::vector<PlanningProblem> draw() = 0;
   /// Makes what checks and judges the runs of a problem, which must outlive them.
   virtual void open(const PlanningProblem& problem) = 0;
-  /// Makes a planner under a checker, in a space of its own. The timer must outlive it.
-  virtual ompl::base::PlannerPtr planner(const Checker& checker, CheckTimer& timer) = 0;
-  /// Returns what the oracle finds on a path, by its name in the record; null if the path is empty.
+  virtual ompl::base::StateSpacePtr space() const = 0;
+  virtual Checks checks(const ompl::base::SpaceInformationPtr& space, const Checker& checker) = 0;
+  /// Makes the planner of a checker that slides; null: such a checker has none here.
+  virtual ompl::base::PlannerPtr sliding(const ompl::base::SpaceInformationPtr&) { return {}; }
+  /// Returns what the oracle finds on a path of one state or more, by its name in the record.
   virtual Json judge(const Path& path) = 0;
 };
 
-/// The meshes that the options name, each to be planned for a tip. `options` must outlive them.
-std::vector<std::unique_ptr<Planning>> plannings_of_a_tip(const PlanOptions& options);
-/// Like plannings_of_a_tip, but for the instrument of options.robot.
-std::vector<std::unique_ptr<Planning>> plannings_of_an_instrument(const PlanOptions& options);
+/// Plans in a scene for a tip, or for the instrument of options.robot. `options` must outlive it.
+std::unique_ptr<Planning> planning_of_a_tip(const PlanOptions& options, Scene scene);
+std::unique_ptr<Planning> planning_of_an_instrument(const PlanOptions& options, Scene scene);
+
+/// The scene of a plan for a tip: a mesh, and its free side.
+struct TipScene {
+  Scene scene;
+  bool is_within = false;     // planned within the mesh, not around it
+  bool starts_below = false;  // only in the lowest tenth of the bounds, along z
+  Box bounds = {};            // of the state space [mm]
+};
+
+/// Draws problems for a tip, each with a solution that keeps the clearance:
+///
+/// 1. A grid of 1/200 of the mesh's diagonal is flooded (FreeCells): around the mesh from a corner
+///    of the bounds, within it from the widest of 1000 places drawn in it, in its lowest tenth
+///    where starts are below.
+/// 2. Start and goal are drawn evenly among the cells reached that are no farther from the mesh
+///    than five times the clearance; starts as the scene has it.
+/// 3. A pair is taken when the way along the grid is at least a quarter of the diagonal long and
+///    1.3 times as long as in the open, and the straight way from one to the other touches the
+///    mesh.
+std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, std::size_t count,
+                                           std::uint64_t seed);
 
 /// The checkers that are compared: for a tip sampled at each resolution, the same widened, then
 /// both of keepout's; for an instrument sampled and certified.

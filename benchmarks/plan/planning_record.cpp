@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <limits>
+#include <numeric>
 #include <ostream>
 #include <utility>
 
@@ -20,62 +20,43 @@ using Group = std::vector<const Json*>;
 /// Returns the figure of a group for a column.
 using Figure = std::function<Json(const Group&)>;
 
-/// Returns the median, the mean of the middle two of an even number of values; null without values.
+Figure same(const char* member) {
+  return [=](const Group& runs) { return runs.front()->at(member); };
+}
+
+/// Reduces a member of the runs that have it; most have it only if they are solved.
+Figure figure(const char* member, Json (*reduce)(std::vector<double>)) {
+  return [=](const Group& runs) {
+    std::vector<double> values;
+    for (const Json* run : runs) {
+      const Json& value = run->at(member);
+      if (value.is_null()) continue;
+      values.push_back(value.is_boolean() ? (value ? 1.0 : 0.0) : value.get<double>());
+    }
+    return reduce(std::move(values));
+  };
+}
+
+Json sum(std::vector<double> values) {
+  return static_cast<std::size_t>(std::accumulate(values.begin(), values.end(), 0.0));
+}
+/// Returns the mean of the middle two of an even number of values; null without values.
 Json median(std::vector<double> values) {
   if (values.empty()) return nullptr;
   std::ranges::sort(values);
   const std::size_t middle = values.size() / 2;
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
-
-/// Returns a member of the runs that have it; most have it only if they are solved.
-std::vector<double> values_of(const Group& runs, const char* member) {
-  std::vector<double> values;
-  for (const Json* run : runs) {
-    if (!run->at(member).is_null()) values.push_back(run->at(member).get<double>());
-  }
-  return values;
+Json least(std::vector<double> values) {
+  return values.empty() ? Json() : Json(std::ranges::min(values));
 }
-
-Figure same(const char* member) {
-  return [=](const Group& runs) { return runs.front()->at(member); };
-}
-Figure median_of(const char* member) {
-  return [=](const Group& runs) { return median(values_of(runs, member)); };
-}
-Figure sum_of(const char* member) {
-  return [=](const Group& runs) {
-    std::size_t sum = 0;
-    for (const Json* run : runs) {
-      const Json& value = run->at(member);
-      if (value.is_null()) continue;
-      sum += value.is_boolean() ? value.get<bool>() : value.get<std::size_t>();
-    }
-    return Json(sum);
-  };
+/// Returns the greatest depth, of clearances.
+Json deepest(std::vector<double> values) {
+  return values.empty() ? 0.0 : std::max(0.0, -std::ranges::min(values));
 }
 Json valid(const Group& runs) {
   return static_cast<std::size_t>(std::ranges::count_if(
       runs, [](const Json* run) { return run->at("solved") && is_valid(*run); }));
-}
-Json least_clearance(const Group& runs) {
-  const std::vector<double> values = values_of(runs, "clearance_mm");
-  return values.empty() ? Json(nullptr) : Json(std::ranges::min(values));
-}
-Json deepest(const Group& runs) {
-  double deepest = 0.0;
-  for (const double clearance : values_of(runs, "clearance_mm")) {
-    deepest = std::max(deepest, -clearance);
-  }
-  return deepest;
-}
-
-std::string shown_count(const Json& value) {
-  return value.is_null() ? "-" : grouped(static_cast<std::size_t>(value.get<double>()));
-}
-template <int digits>
-std::string shown_figure(const Json& value) {
-  return value.is_null() ? "-" : rounded(value.get<double>(), digits);
 }
 
 bool is_of_an_instrument(const Json& run) { return run.contains("motions"); }
@@ -83,26 +64,28 @@ bool is_of_an_instrument(const Json& run) { return run.contains("motions"); }
 Columns<Group> summary_columns(bool is_instrument) {
   Columns<Group> columns{{"mesh", same("mesh"), "mesh", -12},
                          {"checker", same("checker"), "checker", -15},
-                         {"runs", &Group::size, "runs", 5, &shown_count},
-                         {"solved", sum_of("solved"), "solved", 6, &shown_count},
-                         {"valid", valid, "valid", 6, &shown_count}};
+                         {"runs", &Group::size, "runs", 5, count_text},
+                         {"solved", figure("solved", sum), "solved", 6, count_text},
+                         {"valid", valid, "valid", 6, count_text}};
+  const auto add = [&](std::initializer_list<Column<Group>> more) {
+    columns.insert(columns.end(), more);
+  };
   if (is_instrument) {
-    columns.insert(columns.end(), {{"motions", sum_of("motions"), "motions", 8, &shown_count},
-                                   {"too_close", sum_of("too_close"), "too close", 9, &shown_count},
-                                   {"entering", sum_of("entering"), "in mesh", 7, &shown_count},
-                                   {"unproven", sum_of("unproven"), "unproven", 8, &shown_count},
-                                   {"deepest_mm", deepest, "deepest mm", 10, &shown_figure<3>}});
+    add({{"motions", figure("motions", sum), "motions", 8, count_text},
+         {"too_close", figure("too_close", sum), "too close", 9, count_text},
+         {"entering", figure("entering", sum), "in mesh", 7, count_text},
+         {"unproven", figure("unproven", sum), "unproven", 8, count_text},
+         {"deepest_mm", figure("clearance_mm", deepest), "deepest mm", 10, figure_text<3>}});
   } else {
-    columns.insert(columns.end(),
-                   {{"entering", sum_of("enters"), "enters", 7, &shown_count},
-                    {"least_clearance_mm", least_clearance, "clearance mm", 12, &shown_figure<4>}});
+    add({{"entering", figure("enters", sum), "enters", 7, count_text},
+         {"least_clearance_mm", figure("clearance_mm", least), "clearance mm", 12,
+          figure_text<4>}});
   }
-  columns.insert(columns.end(),
-                 {{"median_seconds", median_of("seconds"), "median s", 9, &shown_figure<3>},
-                  {"median_checking_seconds", median_of("checking_seconds"), "checking s", 10,
-                   &shown_figure<3>},
-                  {"median_checks", median_of("checks"), "checks", 8, &shown_count},
-                  {"median_length_mm", median_of("length_mm"), "length mm", 9, &shown_figure<3>}});
+  add({{"median_seconds", figure("seconds", median), "median s", 9, figure_text<3>},
+       {"median_checking_seconds", figure("checking_seconds", median), "checking s", 10,
+        figure_text<3>},
+       {"median_checks", figure("checks", median), "checks", 8, count_text},
+       {"median_length_mm", figure("length_mm", median), "length mm", 9, figure_text<3>}});
   return columns;
 }
 
@@ -134,34 +117,6 @@ std::string headline_of(const Json& runs, bool is_instrument) {
                         : "come nearer to the anatomy than allowed, or enter it.");
 }
 
-/// Returns what the head of a record says of the options.
-RecordHead head_of(const PlanOptions& options) {
-  const bool is_instrument = !options.robot.empty();
-  const std::string each = is_instrument ? "each run" : "each problem";
-  const std::string kept = is_instrument ? "margin" : "clearance";
-  const std::string seconds = trimmed(options.seconds) + " s";
-  const std::string length = trimmed(is_instrument ? options.margin : options.clearance()) + " mm";
-  Json settings = {{"planner", options.planner},
-                   {"time for " + each, seconds},
-                   {kept, length},
-                   {"problems of each mesh", std::to_string(options.problems)}};
-  if (is_instrument) {
-    settings["robot"] = options.robot;
-    settings["runs of each problem"] = std::to_string(options.seeds);
-  } else {
-    settings["motion sphere radius"] = trimmed(options.radius) + " mm";
-  }
-  settings["seed"] = std::to_string(options.seed);
-  return {.kind = is_instrument ? "plan_robot" : "plan",
-          .command = options.command,
-          .subject =
-              "Plans for " + (is_instrument ? "a whole instrument, " + options.robot : "a tip") +
-              ", judged by an independent oracle: " + options.planner + ", " + seconds + " for " +
-              each + ", " + kept + " " + length + (options.simplify ? ", simplified" : ""),
-          .machine = this_machine(),
-          .settings = std::move(settings)};
-}
-
 }  // namespace
 
 bool is_valid(const Json& run) {
@@ -169,8 +124,7 @@ bool is_valid(const Json& run) {
 }
 
 bool is_keepouts(const Json& run) {
-  return run["checker"] == Checker{Checker::Kind::certified}.name() ||
-         run["checker"] == Checker{Checker::Kind::sliding}.name();
+  return run["checker"] == "certified" || run["checker"] == "sliding";
 }
 
 std::string Checker::name() const {
@@ -195,23 +149,35 @@ std::vector<Checker> checkers_of(const PlanOptions& options) {
 Json record_of(const PlanOptions& options, std::span<const std::unique_ptr<Planning>> plannings,
                Json runs, bool complete) {
   const bool is_instrument = !options.robot.empty();
-  RecordHead head = head_of(options);
-  head.complete = complete;
-  head.headline = headline_of(runs, is_instrument);
-  Json record = new_record(head);
-  if (is_instrument) {
-    record["robot"] = options.robot;
-  } else {
-    record["seed"] = options.seed;
-  }
+  const std::string each = is_instrument ? "each run" : "each problem";
+  const std::string kept = is_instrument ? "margin" : "clearance";
+  const std::string seconds = trimmed(options.seconds) + " s";
+  const std::string length = trimmed(is_instrument ? options.margin : options.clearance()) + " mm";
+  Json settings = {{"planner", options.planner},
+                   {"time for " + each, seconds},
+                   {kept, length},
+                   {"problems of each mesh", std::to_string(options.problems)}};
+  settings.update(is_instrument ? Json{{"robot", options.robot},
+                                       {"runs of each problem", std::to_string(options.seeds)}}
+                                : Json{{"motion sphere radius", trimmed(options.radius) + " mm"}});
+  settings["seed"] = std::to_string(options.seed);
+  Json record = new_record(
+      {.kind = is_instrument ? "plan_robot" : "plan",
+       .command = options.command,
+       .complete = complete,
+       .subject =
+           "Plans for " + (is_instrument ? "a whole instrument, " + options.robot : "a tip") +
+           ", judged by an independent oracle: " + options.planner + ", " + seconds + " for " +
+           each + ", " + kept + " " + length + (options.simplify ? ", simplified" : ""),
+       .headline = headline_of(runs, is_instrument),
+       .machine = this_machine(),
+       .settings = std::move(settings)});
+  record.update(is_instrument ? Json{{"robot", options.robot}} : Json{{"seed", options.seed}});
   record["planner"] = options.planner;
   record["seconds_allowed"] = options.seconds;
-  if (is_instrument) {
-    record["margin_mm"] = options.margin;
-  } else {
-    record["clearance_mm"] = options.clearance();
-    record["radius_mm"] = options.radius;
-  }
+  record.update(is_instrument
+                    ? Json{{"margin_mm", options.margin}}
+                    : Json{{"clearance_mm", options.clearance()}, {"radius_mm", options.radius}});
   record["range_mm"] = options.range;
   record["simplified"] = options.simplify;
   if (!is_instrument) {

@@ -54,24 +54,13 @@ class ClearPlaces final : public base::StateValidityChecker {
   mutable HitBuffer hits_;
 };
 
-base::SpaceInformationPtr space_of(const Box& bounds) {
-  auto space = std::make_shared<base::RealVectorStateSpace>(3);
-  base::RealVectorBounds limits(3);
-  for (unsigned int i = 0; i < 3; ++i) {
-    limits.setLow(i, bounds.low[i]);
-    limits.setHigh(i, bounds.high[i]);
-  }
-  space->setBounds(limits);
-  return std::make_shared<base::SpaceInformation>(space);
-}
-
 class TipPlanning final : public Planning {
  public:
-  TipPlanning(const PlanOptions& options, PlanningScene where)
+  TipPlanning(const PlanOptions& options, TipScene where)
       : options_(&options), where_(std::move(where)) {}
 
   const Scene& scene() const override { return where_.scene; }
-  bool is_within() const override { return where_.space == PlanningScene::Space::within; }
+  bool is_within() const override { return where_.is_within; }
 
   std::vector<PlanningProblem> draw() override {
     return draw_problems(where_, options_->clearance(), options_->problems, options_->seed);
@@ -95,125 +84,109 @@ class TipPlanning final : public Planning {
     });
   }
 
-  base::PlannerPtr planner(const Checker& checker, CheckTimer& timer) override {
-    const base::SpaceInformationPtr space = space_of(where_.bounds);
-    set_checkers(space, checker, timer);
-    const double range = options_->range;
-    if (!checker.slides()) return named_planner(options_->planner, space, range);
-    base::PlannerPtr planner = make_sliding_connect(space, steering_);
-    if (range > 0.0) planner->params().setParam("range", std::to_string(range));
-    return planner;
+  base::StateSpacePtr space() const override {
+    auto space = std::make_shared<base::RealVectorStateSpace>(3);
+    base::RealVectorBounds limits(3);
+    std::ranges::copy(where_.bounds.low, limits.low.begin());
+    std::ranges::copy(where_.bounds.high, limits.high.begin());
+    space->setBounds(limits);
+    return space;
   }
 
-  Json judge(const Path& path) override;
+  Checks checks(const base::SpaceInformationPtr& space, const Checker& checker) override {
+    if (checker.is_keepouts()) {
+      const std::shared_ptr<GuardPool>& guards = checker.slides() ? steering_ : validating_;
+      return {make_state_validity_checker(space, guards), make_motion_validator(space, guards)};
+    }
+    // Between two places so far apart no distance falls by more than half of it.
+    const double apart = checker.resolution * space->getStateSpace()->getMaximumExtent();
+    const bool is_widened = checker.kind == Checker::Kind::widened;
+    const double clearance = options_->clearance() + (is_widened ? 0.5 * apart : 0.0);
+    return {std::make_shared<ClearPlaces>(space, scene(), clearance)};
+  }
+
+  base::PlannerPtr sliding(const base::SpaceInformationPtr& space) override {
+    return make_sliding_connect(space, steering_);
+  }
+
+  /// Over the whole of each straight piece.
+  Json judge(const Path& path) override {
+    std::vector<Vec3> points;
+    for (const std::vector<double>& tip : path) points.emplace_back(tip.data());
+    oracle::SafetyOracle oracle = scene().oracle();
+    // No piece is farther off than its ends, so the search for the nearest need not reach farther.
+    double clearance = std::numeric_limits<double>::infinity();
+    for (const Vec3& point : points) clearance = std::min(clearance, oracle.distance(point));
+    bool enters = false;
+    std::size_t bad_pieces = 0;  // that touch the mesh or come too near
+    double length = 0.0;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const oracle::Finding finding =
+          oracle.check(points[i - 1], points[i], least_distance(), clearance);
+      clearance = std::min(clearance, finding.distance);
+      enters |= finding.crosses;
+      bad_pieces += finding.crosses || finding.below;
+      length += (points[i] - points[i - 1]).norm();
+    }
+    return {{"valid", bad_pieces == 0},
+            {"enters", enters},
+            {"bad_pieces", bad_pieces},
+            {"pieces", points.size() - 1},
+            {"clearance_mm", clearance},
+            {"length_mm", length},
+            {"path", path},
+            {"too_near", bad_pieces == 0 ? Json::array() : lengths_too_near(points)}};
+  }
 
  private:
-  void set_checkers(const base::SpaceInformationPtr& space, const Checker& checker,
-                    CheckTimer& timer) const;
-  double least_distance() const;
-  Json lengths_too_near(const std::vector<Vec3>& points) const;
+  /// The least distance that docs/certified-step.md promises of the clearance: m - 3 tau. [mm]
+  double least_distance() const {
+    // The tip may be 10 mm beyond the mesh along each axis.
+    const Vec3 farthest(scene().farthest() + 30.0, 0.0, 0.0);
+    const double margin = options_->clearance();
+    return margin -
+           3.0 * tolerance(scene(), {.radius = options_->radius, .margin = margin}, farthest);
+  }
+
+  /// The lengths of a path that is not valid that come too near: to half a millimetre.
+  Json lengths_too_near(const std::vector<Vec3>& points) const {
+    constexpr double longest = 0.5;  // of what is judged at once [mm]
+    oracle::SafetyOracle oracle = scene().oracle();
+    Json lengths = Json::array();
+    bool was_bad = false;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const Vec3 along = points[i] - points[i - 1];
+      const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / longest)));
+      for (int k = 0; k < pieces; ++k) {
+        const Vec3 from = points[i - 1] + along * (static_cast<double>(k) / pieces);
+        const Vec3 to = points[i - 1] + along * (static_cast<double>(k + 1) / pieces);
+        const bool is_bad = oracle.check(from, to, least_distance()).below;
+        if (is_bad && !was_bad) lengths.push_back(Json::array({json_of(from)}));
+        if (is_bad) lengths.back().push_back(json_of(to));
+        was_bad = is_bad;
+      }
+    }
+    return lengths;
+  }
 
   const PlanOptions* options_;
-  PlanningScene where_;
+  TipScene where_;
   std::shared_ptr<GuardPool> steering_, validating_;
 };
 
-void TipPlanning::set_checkers(const base::SpaceInformationPtr& space, const Checker& checker,
-                               CheckTimer& timer) const {
-  if (checker.is_keepouts()) {
-    const std::shared_ptr<GuardPool>& guards = checker.slides() ? steering_ : validating_;
-    set_timed_checkers(space, make_state_validity_checker(space, guards),
-                       make_motion_validator(space, guards), timer);
-    return;
-  }
-  // Between two places so far apart no distance falls by more than half of it.
-  const double apart = checker.resolution * space->getStateSpace()->getMaximumExtent();
-  const bool is_widened = checker.kind == Checker::Kind::widened;
-  const double clearance = options_->clearance() + (is_widened ? 0.5 * apart : 0.0);
-  space->setStateValidityCheckingResolution(checker.resolution);
-  set_timed_checkers(space, std::make_shared<ClearPlaces>(space, scene(), clearance), nullptr,
-                     timer);
-}
-
-/// The least distance that docs/certified-step.md promises of the clearance: m - 3 tau. [mm]
-double TipPlanning::least_distance() const {
-  // The tip may be 10 mm beyond the mesh along each axis.
-  const Vec3 farthest(scene().farthest() + 30.0, 0.0, 0.0);
-  const double margin = options_->clearance();
-  return margin -
-         3.0 * tolerance(scene(), {.radius = options_->radius, .margin = margin}, farthest);
-}
-
-/// The lengths of a path that is not valid that come too near: to half a millimetre.
-Json TipPlanning::lengths_too_near(const std::vector<Vec3>& points) const {
-  constexpr double longest = 0.5;  // of what is judged at once [mm]
-  oracle::SafetyOracle oracle = scene().oracle();
-  Json lengths = Json::array();
-  bool was_bad = false;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const Vec3 along = points[i] - points[i - 1];
-    const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / longest)));
-    for (int k = 0; k < pieces; ++k) {
-      const Vec3 from = points[i - 1] + along * (static_cast<double>(k) / pieces);
-      const Vec3 to = points[i - 1] + along * (static_cast<double>(k + 1) / pieces);
-      const bool is_bad = oracle.check(from, to, least_distance()).below;
-      if (is_bad && !was_bad) lengths.push_back(Json::array({json_of(from)}));
-      if (is_bad) lengths.back().push_back(json_of(to));
-      was_bad = is_bad;
-    }
-  }
-  return lengths;
-}
-
-/// Over the whole of each straight piece.
-Json TipPlanning::judge(const Path& path) {
-  if (path.empty()) {
-    return {{"valid", nullptr},  {"enters", nullptr},       {"bad_pieces", nullptr},
-            {"pieces", nullptr}, {"clearance_mm", nullptr}, {"length_mm", nullptr}};
-  }
-  std::vector<Vec3> points;
-  for (const std::vector<double>& tip : path) points.emplace_back(tip.data());
-  oracle::SafetyOracle oracle = scene().oracle();
-  // No piece is farther off than its ends, so the search for the nearest need not reach farther.
-  double clearance = std::numeric_limits<double>::infinity();
-  for (const Vec3& point : points) clearance = std::min(clearance, oracle.distance(point));
-  bool enters = false;
-  std::size_t bad_pieces = 0;  // that touch the mesh or come too near
-  double length = 0.0;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const oracle::Finding finding =
-        oracle.check(points[i - 1], points[i], least_distance(), clearance);
-    clearance = std::min(clearance, finding.distance);
-    enters |= finding.crosses;
-    bad_pieces += finding.crosses || finding.below;
-    length += (points[i] - points[i - 1]).norm();
-  }
-  return {{"valid", bad_pieces == 0},
-          {"enters", enters},
-          {"bad_pieces", bad_pieces},
-          {"pieces", points.size() - 1},
-          {"clearance_mm", clearance},
-          {"length_mm", length},
-          {"path", path},
-          {"too_near", bad_pieces == 0 ? Json::array() : lengths_too_near(points)}};
-}
-
 }  // namespace
 
-std::vector<std::unique_ptr<Planning>> plannings_of_a_tip(const PlanOptions& options) {
-  using Space = PlanningScene::Space;
-  std::vector<std::unique_ptr<Planning>> all;
-  const auto add = [&](auto... where) {
-    all.push_back(std::make_unique<TipPlanning>(options, load_planning_scene(where...)));
-  };
-  if (!options.meshes.empty()) {
-    add(options.meshes.front(), options.inside ? Space::within : Space::around);
-  } else {
-    // From the throat up into nose and sinuses.
-    add("airway", Space::within, PlanningScene::Starts::below);
-    add("skull", Space::around);
-  }
-  return all;
+std::unique_ptr<Planning> planning_of_a_tip(const PlanOptions& options, Scene scene) {
+  // From the throat up into nose and sinuses, unless the user names a mesh.
+  const bool is_airway = options.meshes.empty() && scene.name() == "airway";
+  TipScene where{.scene = std::move(scene),
+                 .is_within = is_airway || options.inside,
+                 .starts_below = is_airway};
+  constexpr double room_around = 10.0;  // [mm]
+  const Vec3 room = Vec3::Constant(where.is_within ? 0.0 : room_around);
+  const Box& bounds = where.scene.mesh()->bounds();
+  where.bounds = {bounds.low - room, bounds.high + room};
+  return std::make_unique<TipPlanning>(options, std::move(where));
 }
 
 }  // namespace keepout::app

@@ -8,14 +8,12 @@
 
 #include "keepout/error.h"
 #include "keepout/fixtures/random.h"
-#include "plan/problems.h"
-#include "shared/named_mesh.h"
+#include "plan/planning.h"
 
 namespace keepout::app {
 namespace {
 
 constexpr double cells_of_diagonal = 200.0;
-constexpr double room_around = 10.0;  // [mm]
 constexpr double nearest_clearances = 5.0;
 constexpr double least_way = 0.25;  // of the diagonal
 constexpr double least_detour = 1.3;
@@ -27,12 +25,6 @@ Vec3 draw(const Box& box, Random& random) {
   const double y = random.uniform(box.low.y(), box.high.y());
   const double z = random.uniform(box.low.z(), box.high.z());
   return {x, y, z};
-}
-
-/// The lowest tenth of a box.
-Box lowest(Box box) {
-  box.high.z() = box.low.z() + 0.1 * box.size().z();
-  return box;
 }
 
 /// The widest of some places in the bounds and within the mesh.
@@ -165,36 +157,20 @@ class FreeCells {
   std::vector<Cell> reached_;
 };
 
-using Cells = std::vector<FreeCells::Cell>;
-
 }  // namespace
 
-PlanningScene load_planning_scene(const std::filesystem::path& mesh, PlanningScene::Space space,
-                                  PlanningScene::Starts starts) {
-  Scene scene(mesh.filename().string(), load_named_mesh(mesh).mesh, "wide_bvh");
-  Box bounds = scene.mesh()->bounds();
-  if (space == PlanningScene::Space::around) {
-    bounds.low.array() -= room_around;
-    bounds.high.array() += room_around;
-  }
-  return {std::move(scene), space, starts, bounds};
-}
-
-std::vector<PlanningProblem> draw_problems(PlanningScene& where, double clearance,
-                                           std::size_t count, std::uint64_t seed) {
+std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, std::size_t count,
+                                           std::uint64_t seed) {
   Random random(seed);
   Scene& scene = where.scene;
   const double diagonal = scene.mesh()->bounds().size().norm();
   const double spacing = diagonal / cells_of_diagonal;
-  const Box start_box =
-      where.starts == PlanningScene::Starts::below ? lowest(where.bounds) : where.bounds;
-  const Vec3 from = where.space == PlanningScene::Space::around
-                        ? where.bounds.low
-                        : widest_within(scene, start_box, random);
+  Box start_box = where.bounds;
+  if (where.starts_below) start_box.high.z() = start_box.low.z() + 0.1 * start_box.size().z();
+  const Vec3 from = where.is_within ? widest_within(scene, start_box, random) : where.bounds.low;
   const double near_enough = nearest_clearances * clearance;
   const FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from);
-  Cells near;
-  Cells starts;
+  std::vector<FreeCells::Cell> near, starts;
   for (const FreeCells::Cell cell : cells.reached()) {
     if (cells.distance(cell) > near_enough) continue;
     near.push_back(cell);

@@ -1,234 +1,185 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is plugged into OMPL, held to an independent oracle. The only test that sees OMPL's headers.
-#include "keepout/ompl/planning.h"
-
+// What is plugged into OMPL, for a tip and for a whole instrument, held to independent oracles.
 #include <ompl/base/DiscreteMotionValidator.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
-#include <ompl/util/Console.h>
 #include <ompl/util/RandomNumbers.h>
 
-#include "keepout/factory/make_motion_constraint.h"
-#include "keepout/index/wide_bvh.h"
-#include "keepout/oracle/safety_oracle.h"
-#include "meshes.h"
-#include "messages.h"
-#include "states.h"
-#include "trials.h"
+#include <thread>
+
+#include "workplaces.h"
 
 namespace keepout::test::planning {
 namespace {
 
-constexpr double margin = 0.5;
-constexpr double tolerance = 1e-6;  // far above 3 tau of shapes of this size
+template <class Place>
+class PlanningAt : public testing::Test {};
+using Places = testing::Types<TipPlace, InstrumentPlace>;
+TYPED_TEST_SUITE(PlanningAt, Places);
 
-using SharedMesh = std::shared_ptr<const Mesh>;
-
-std::shared_ptr<GuardPool> guards_of(const SharedMesh& mesh, std::size_t most = 2) {
-  return std::make_shared<GuardPool>(
-      [mesh] { return make_motion_constraint(mesh, {.options = {.margin = margin}}); }, most);
-}
-
-base::SpaceInformationPtr space_around(const Mesh& mesh) {
-  ompl::msg::noOutputHandler();
-  auto space = std::make_shared<base::RealVectorStateSpace>(3);
-  base::RealVectorBounds bounds(3);
-  for (unsigned int i = 0; i < 3; ++i) {
-    bounds.setLow(i, mesh.bounds().low[i] - 10.0);
-    bounds.setHigh(i, mesh.bounds().high[i] + 10.0);
-  }
-  space->setBounds(bounds);
-  return std::make_shared<base::SpaceInformation>(space);
-}
-
-Vec3 any_place(const Mesh& mesh, Random& random) {
-  Vec3 place;
-  for (int i = 0; i < 3; ++i) {
-    place[i] = random.uniform(mesh.bounds().low[i] - 9.0, mesh.bounds().high[i] + 9.0);
-  }
-  return place;
-}
-
-class PlanningOn : public testing::TestWithParam<const char*> {};
-
-TEST_P(PlanningOn, TheValidatorAgreesWithTheOracleOnRandomMotions) {
-  const SharedMesh mesh = mesh_of(GetParam());
-  const base::SpaceInformationPtr space = space_around(*mesh);
-  set_certified_checkers(space, guards_of(mesh));
-  space->setup();
-  oracle::SafetyOracle oracle(mesh);
-  Random random(7);
-  int valid = 0, invalid = 0;
-  for (int i = 0; i < 800; ++i) {
-    const Vec3 from = any_place(*mesh, random);
-    // Short ones and long ones, of many pieces.
-    const Vec3 to = i % 2 == 0 ? any_place(*mesh, random)
-                               : Vec3(from + random.uniform(0.0, 8.0) * random.direction());
-    const State a(space, from), b(space, to);
-    if (!space->isValid(a.get())) continue;
-    const State last(space, {0, 0, 0});
-    std::pair<base::State*, double> last_valid{last.get(), -1.0};
-    const oracle::Finding whole = oracle.check(from, to, margin - tolerance);
-    if (space->checkMotion(a.get(), b.get(), last_valid)) {
-      ++valid;
-      EXPECT_FALSE(whole.below);
-      EXPECT_EQ(last_valid.second, -1.0) << "is not to be touched";
-      continue;
+TYPED_TEST(PlanningAt, NothingIsCalledValidThatTheOracleFindsTooClose) {
+  for (const char* shape : TypeParam::shapes) {
+    SCOPED_TRACE(shape);
+    TypeParam at(mesh_of(shape));
+    at.certify();
+    Random random(TypeParam::seed);
+    int valid = 0, invalid = 0, partly = 0;
+    for (int i = 0; i < at.motions(); ++i) {
+      const Coordinates from = at.any_state(random), to = at.any_end(i, from, random);
+      const State a(at.space, from), b(at.space, to), last(at.space, Coordinates(to.size(), 0.0));
+      if (!at.space->isValid(a.get())) {
+        EXPECT_FALSE(at.space->checkMotion(a.get(), b.get()));
+        continue;
+      }
+      EXPECT_FALSE(at.comes_nearer(from, from));
+      std::pair<base::State*, double> last_valid{last.get(), -1.0};
+      if (at.space->checkMotion(a.get(), b.get(), last_valid)) {
+        ++valid;
+        EXPECT_FALSE(at.comes_nearer(from, to));
+        EXPECT_EQ(last_valid.second, -1.0) << "is not to be touched";
+        continue;
+      }
+      ++invalid;
+      const double share = last_valid.second;
+      ASSERT_GE(share, 0.0);
+      ASSERT_LT(share, 1.0);
+      partly += share > 0.0 ? 1 : 0;
+      const Coordinates end = last.values();
+      for (std::size_t k = 0; k < to.size(); ++k) {
+        EXPECT_NEAR(end[k], from[k] + share * (to[k] - from[k]), 1e-12);
+      }
+      EXPECT_FALSE(at.comes_nearer(from, end));
+      EXPECT_TRUE(at.space->isValid(last.get()));
+      EXPECT_TRUE(at.space->checkMotion(a.get(), last.get()));
+      at.expect_a_reason(from, to, end);
     }
-    ++invalid;
-    ASSERT_GE(last_valid.second, 0.0);
-    ASSERT_LT(last_valid.second, 1.0);
-    const Vec3 last_tip(last.values().data());
-    EXPECT_LT((last_tip - (from + last_valid.second * (to - from))).norm(), 1e-9);
-    EXPECT_FALSE(oracle.check(from, last_tip, margin - tolerance).below);
-    EXPECT_TRUE(space->isValid(last.get()));
-    if (space->satisfiesBounds(b.get())) {
-      EXPECT_TRUE(oracle.check(from, to, margin + tolerance).below) << "refused without a reason";
-      // To within a piece's 2^-8 the whole of what there is is proven.
-      const Vec3 beyond = last_tip + (to - from).normalized() * 0.05;
-      EXPECT_TRUE(oracle.check(from, beyond, margin + tolerance).below);
-    }
+    EXPECT_GT(valid, at.least_of_each());
+    EXPECT_GT(invalid, at.least_of_each());
+    EXPECT_GT(partly, invalid / 4);
   }
-  EXPECT_GT(valid, 25);
-  EXPECT_GT(invalid, 25);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, PlanningOn,
-                         testing::Values("cube", "sphere", "gear", "thin_plates", "cortex",
-                                         "star_bumps", "tunnel", "triangle_soup"),
-                         by_name);
+TYPED_TEST(PlanningAt, AMotionThatLeavesTheBoundsEndsAtItsStart) {
+  TypeParam at(mesh_of("cube"));
+  at.certify();
+  const State from(at.space, at.start), to(at.space, at.out_of_bounds),
+      last(at.space, Coordinates(at.start.size(), 9.0)),
+      nowhere(at.space, Coordinates(at.start.size(), test::nan));
+  std::pair<base::State*, double> last_valid{last.get(), -1.0};
+  EXPECT_FALSE(at.space->getMotionValidator()->checkMotion(from.get(), to.get(), last_valid));
+  EXPECT_EQ(last_valid.second, 0.0);
+  EXPECT_EQ(last.values(), at.start);
+  EXPECT_FALSE(at.space->isValid(to.get()));
+  EXPECT_FALSE(at.space->isValid(nowhere.get()));
+}
+
+TYPED_TEST(PlanningAt, AMotionOutOfAGuideIsInvalid) {
+  const TypeParam at(mesh_of("cube"));
+  const State from(at.space, at.start), within(at.space, at.beside), out(at.space, at.farther);
+  EXPECT_TRUE(at.validator()->checkMotion(from.get(), out.get()));
+  using Pool = typename decltype(at.guards)::element_type;
+  const auto guided = std::make_shared<Pool>([&at] {
+    auto guard = at.make();
+    guard.set_guides({at.guide()});
+    return guard;
+  });
+  const auto validator = make_motion_validator(at.space, guided);
+  EXPECT_TRUE(validator->checkMotion(from.get(), within.get()));
+  EXPECT_FALSE(validator->checkMotion(from.get(), out.get()));
+  EXPECT_FALSE(make_state_validity_checker(at.space, guided)->isValid(out.get()));
+}
+
+TYPED_TEST(PlanningAt, NothingIsValidOnceTheMeshHasMoved) {
+  const TypeParam at(mesh_of("cube"));
+  const State from(at.space, at.start), to(at.space, at.farther);
+  const auto validator = at.validator();
+  const auto states = make_state_validity_checker(at.space, at.guards);
+  EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));
+  EXPECT_TRUE(states->isValid(from.get()));
+  at.index->refit(mesh_of("cube"));
+  EXPECT_FALSE(validator->checkMotion(from.get(), to.get()));
+  EXPECT_FALSE(states->isValid(from.get()));
+}
+
+TYPED_TEST(PlanningAt, ThreadsGetTheSameAnswersAndAreCounted) {
+  const TypeParam at(mesh_of("gear"));
+  const auto validator = at.validator();
+  constexpr std::size_t count = 4, motions = 200;  // more threads than guards: some wait
+  std::array<std::vector<bool>, count> results;
+  std::vector<std::thread> threads;
+  for (auto& result : results) {
+    threads.emplace_back([&] {
+      Random random(3);
+      for (std::size_t i = 0; i < motions; ++i) {
+        const State a(at.space, at.any_state(random)), b(at.space, at.any_state(random));
+        result.push_back(validator->checkMotion(a.get(), b.get()));
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& result : results) EXPECT_EQ(result, results.front());
+  EXPECT_NE(std::ranges::count(results.front(), true), 0);
+  EXPECT_EQ(validator->getCheckedMotionCount(), motions * count);
+  EXPECT_LE(at.guards->made(), 2u);
+}
 
 /// One plate of no thickness at z = 0, 100 wide.
-SharedMesh sheet() { return mesh_of(make_flat_plate(10.0, 1)); }
+std::shared_ptr<const Mesh> sheet() { return mesh_of(make_flat_plate(10.0, 1)); }
 
 TEST(Planning, SampledCheckingJumpsOverAPlateThatTheValidatorSees) {
-  const SharedMesh mesh = sheet();
-  const base::SpaceInformationPtr space = space_around(*mesh);
-  const auto guards = guards_of(mesh);
-  set_certified_checkers(space, guards);
-  space->setup();
-  const base::DiscreteMotionValidator sampled(space);
-  const State above(space, {1, 2, 0.6}), below(space, {1, 2, -0.6});
+  TipPlace at(sheet());
+  at.certify();
+  const base::DiscreteMotionValidator sampled(at.space);
+  const State above(at.space, {1, 2, 0.6}), below(at.space, {1, 2, -0.6});
   EXPECT_TRUE(sampled.checkMotion(above.get(), below.get()));
-  EXPECT_FALSE(space->checkMotion(above.get(), below.get()));
+  EXPECT_FALSE(at.space->checkMotion(above.get(), below.get()));
 }
 
 TEST(Planning, AStateNearerThanTheMarginIsInvalid) {
-  const SharedMesh mesh = sheet();
-  const base::SpaceInformationPtr space = space_around(*mesh);
-  set_certified_checkers(space, guards_of(mesh));
-  space->setup();
-  const auto is_valid = [&](double height) {
-    const State state(space, {3, 4, height});
-    return space->isValid(state.get());
-  };
-  EXPECT_TRUE(is_valid(margin));
-  EXPECT_TRUE(is_valid(-margin)) << "an open mesh has no sides";
-  EXPECT_FALSE(is_valid(margin - 1e-6));
-  EXPECT_FALSE(is_valid(0.0));
-  EXPECT_TRUE(is_valid(9.9));
-  EXPECT_FALSE(is_valid(10.1)) << "out of bounds";
-  EXPECT_FALSE(is_valid(test::nan));
+  const TipPlace at(sheet());
+  constexpr double margin = TipPlace::kept;
+  EXPECT_TRUE(at.is_valid({3, 4, margin}));
+  EXPECT_TRUE(at.is_valid({3, 4, -margin})) << "an open mesh has no sides";
+  EXPECT_FALSE(at.is_valid({3, 4, margin - 1e-6}));
+  EXPECT_FALSE(at.is_valid({3, 4, 0.0}));
+  EXPECT_TRUE(at.is_valid({3, 4, 9.9}));
+  EXPECT_FALSE(at.is_valid({3, 4, 10.1})) << "out of bounds";
 }
 
 TEST(Planning, WithSidesTheInsideIsInvalidAndWithoutItIsAnotherRoom) {
-  const SharedMesh mesh = mesh_of("sphere");
-  const base::SpaceInformationPtr space = space_around(*mesh);
-  const State centre(space, {0, 0, 0});
-  EXPECT_FALSE(make_state_validity_checker(space, guards_of(mesh))->isValid(centre.get()));
-  const auto no_sides = std::make_shared<GuardPool>([mesh] {
-    return make_motion_constraint(mesh,
-                                  {.options = {.margin = margin}, .inside = Inside::taken_as_is});
-  });
-  EXPECT_TRUE(make_state_validity_checker(space, no_sides)->isValid(centre.get()));
-  const State outside(space, {0, 0, 55});
-  EXPECT_FALSE(make_motion_validator(space, no_sides)->checkMotion(centre.get(), outside.get()));
-}
-
-TEST(Planning, AMotionThatLeavesTheBoundsEndsAtItsStart) {
-  const SharedMesh mesh = mesh_of("cube");
-  const base::SpaceInformationPtr space = space_around(*mesh);
-  const State from(space, {0, 0, 55}), to(space, {0, 0, 65});
-  expect_invalid_from_the_start(*make_motion_validator(space, guards_of(mesh)), space, from, to);
-}
-
-TEST(Planning, AMotionOutOfAGuideIsInvalid) {
-  const SharedMesh mesh = mesh_of("cube");
-  const base::SpaceInformationPtr space = space_around(*mesh);
-  const Vec3 start(0, 0, 55);
-  const auto guards = std::make_shared<GuardPool>([mesh, start] {
-    MotionConstraint guard = make_motion_constraint(mesh, {.options = {.margin = margin}});
-    guard.set_guides({Guide::point("corridor", Region::slab(start, Vec3::UnitX(), 1.0))});
-    return guard;
-  });
-  const State from(space, start), along(space, {0, 3, 55}), out(space, {3, 0, 55});
-  const auto validator = make_motion_validator(space, guards);
-  EXPECT_TRUE(validator->checkMotion(from.get(), along.get()));
-  EXPECT_FALSE(validator->checkMotion(from.get(), out.get()));
-  EXPECT_FALSE(make_state_validity_checker(space, guards)->isValid(out.get()));
-}
-
-TEST(Planning, NothingIsValidOnceTheMeshHasMoved) {
-  const SharedMesh mesh = mesh_of("cube");
-  const auto tree = std::make_shared<WideBvh>(mesh);
-  const base::SpaceInformationPtr space = space_around(*mesh);
-  const auto guards = std::make_shared<GuardPool>(
-      [mesh, tree] { return make_motion_constraint(mesh, tree, {.options = {.margin = margin}}); },
-      1);
-  const State from(space, {0, 0, 55}), to(space, {0, 3, 55});
-  const auto validator = make_motion_validator(space, guards);
-  EXPECT_TRUE(validator->checkMotion(from.get(), to.get()));
-  tree->refit(mesh_of("cube"));
-  EXPECT_FALSE(validator->checkMotion(from.get(), to.get()));
-  EXPECT_FALSE(make_state_validity_checker(space, guards)->isValid(from.get()));
-}
-
-TEST(Planning, ValidatorsCountAndMayBeCalledFromManyThreads) {
-  const SharedMesh mesh = mesh_of("gear");
-  const base::SpaceInformationPtr space = space_around(*mesh);
-  const auto guards = guards_of(mesh, 2);  // fewer than threads: some wait
-  const auto validator = make_motion_validator(space, guards);
-  answers_of_threads(*validator, space, 4,
-                     [&](Random& random) { return any_place(*mesh, random); });
-  EXPECT_LE(guards->made(), 2u);
+  const Coordinates centre{0, 0, 0};
+  EXPECT_FALSE(TipPlace(mesh_of("sphere")).is_valid(centre));
+  const TipPlace no_sides(mesh_of("sphere"), Inside::taken_as_is);
+  EXPECT_TRUE(no_sides.is_valid(centre));
+  const State from(no_sides.space, centre), outside(no_sides.space, {0, 0, 55});
+  EXPECT_FALSE(no_sides.validator()->checkMotion(from.get(), outside.get()));
 }
 
 TEST(Planning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
-  const SharedMesh mesh = mesh_of("cube");
-  const auto guards = guards_of(mesh);
-  const auto make = [&](const base::StateSpacePtr& space) {
-    return error_of(
-        [&] { make_motion_validator(std::make_shared<base::SpaceInformation>(space), guards); });
-  };
+  const TipPlace at(mesh_of("cube"));
   const auto plane = std::make_shared<base::RealVectorStateSpace>(2);
   plane->setBounds(-1, 1);
-  EXPECT_CONTAINS(make(plane), "RealVectorStateSpace>(3)");
-  const auto poses = std::make_shared<base::SE3StateSpace>();
-  EXPECT_CONTAINS(make(poses), "6 dimensions");
-  const auto unbounded = std::make_shared<base::RealVectorStateSpace>(3);
-  EXPECT_CONTAINS(make(unbounded), "setBounds");
-  EXPECT_CONTAINS(
-      error_of([&] { make_motion_validator(space_around(*mesh), std::shared_ptr<GuardPool>()); }),
-      "GuardPool");
-  EXPECT_THROW(set_certified_checkers(nullptr, guards), Error);
-  EXPECT_THROW(make_sliding_connect(space_around(*mesh), guards, {.sliding_step = 6.0}), Error);
+  EXPECT_CONTAINS(at.refusal(plane), "RealVectorStateSpace>(3)");
+  EXPECT_CONTAINS(at.refusal(std::make_shared<base::SE3StateSpace>()), "6 dimensions");
+  EXPECT_CONTAINS(at.refusal(std::make_shared<base::RealVectorStateSpace>(3)), "setBounds");
+  EXPECT_CONTAINS(error_of([&] { make_motion_validator(at.space, std::shared_ptr<GuardPool>()); }),
+                  "GuardPool");
+  EXPECT_THROW(set_certified_checkers(nullptr, at.guards), Error);
+  EXPECT_THROW(make_sliding_connect(at.space, at.guards, {.sliding_step = 6.0}), Error);
 }
 
 /// From one side of the cortex to the other.
 std::vector<Coordinates> planned(std::uint64_t seed, bool slides, double range = 0.0) {
-  const SharedMesh mesh = mesh_of("cortex");
-  const base::SpaceInformationPtr space = space_around(*mesh);
+  TipPlace at(mesh_of("cortex"));
   ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(seed));
-  const auto guards = guards_of(mesh);
-  set_certified_checkers(space, guards);
-  space->setup();
-  base::PlannerPtr planner = make_sliding_connect(space, guards);
-  if (!slides) planner = std::make_shared<ompl::geometric::RRTConnect>(space);
+  at.certify();
+  base::PlannerPtr planner = make_sliding_connect(at.space, at.guards);
+  if (!slides) planner = std::make_shared<ompl::geometric::RRTConnect>(at.space);
   if (range > 0.0) planner->params().setParam("range", std::to_string(range));
-  const State start(space, {-56, 0, 0}), goal(space, {56, 0, 0});
+  const State start(at.space, {-56, 0, 0}), goal(at.space, {56, 0, 0});
   const std::vector<Coordinates> path = solved(*planner, start, goal, 10.0);
   if (path.empty()) return path;
-  base::PlannerData data(space);
+  base::PlannerData data(at.space);
   planner->getPlannerData(data);
   EXPECT_GE(data.numVertices(), 2u);
   EXPECT_EQ(data.numStartVertices(), 1u);
@@ -236,8 +187,7 @@ std::vector<Coordinates> planned(std::uint64_t seed, bool slides, double range =
 }
 
 TEST(Planning, BothPlannersFindPathsThatTheOraclePasses) {
-  const SharedMesh mesh = mesh_of("cortex");
-  oracle::SafetyOracle oracle(mesh);
+  TipPlace at(mesh_of("cortex"));
   for (const bool slides : {false, true}) {
     for (const std::uint64_t seed : {1, 2, 3}) {
       const std::vector<Coordinates> tips = planned(seed, slides);
@@ -245,8 +195,7 @@ TEST(Planning, BothPlannersFindPathsThatTheOraclePasses) {
       EXPECT_EQ(tips.front(), (Coordinates{-56, 0, 0}));
       EXPECT_EQ(tips.back(), (Coordinates{56, 0, 0}));
       for (std::size_t i = 1; i < tips.size(); ++i) {
-        const Vec3 from(tips[i - 1].data()), to(tips[i].data());
-        EXPECT_FALSE(oracle.check(from, to, margin - tolerance).below);
+        EXPECT_FALSE(at.comes_nearer(tips[i - 1], tips[i]));
       }
     }
   }
@@ -259,8 +208,8 @@ TEST(Planning, TheSameSeedPlansTheSameAndTheRangeIsHeeded) {
 }
 
 TEST(Planning, AStartThatIsNotFreeEndsThePlanner) {
-  const SharedMesh mesh = mesh_of("sphere");
-  const base::SpaceInformationPtr space = space_around(*mesh);
+  const TipPlace at(mesh_of("sphere"));
+  const base::SpaceInformationPtr& space = at.space;
   // Not even when the space's own checker lets everything pass.
   space->setStateValidityChecker([](const base::State*) { return true; });
   space->setup();
@@ -270,13 +219,102 @@ TEST(Planning, AStartThatIsNotFreeEndsThePlanner) {
   const auto status = [&](const auto& start, const auto& goal) {
     definition->clearSolutionPaths();
     definition->setStartAndGoalStates(start, goal);
-    const auto planner = make_sliding_connect(space, guards_of(mesh));
+    const auto planner = make_sliding_connect(space, at.guards);
     planner->setProblemDefinition(definition);
     planner->setup();
     return static_cast<base::PlannerStatus::StatusType>(planner->solve(1.0));
   };
   EXPECT_EQ(status(inside, outside), base::PlannerStatus::INVALID_START);
   EXPECT_EQ(status(outside, inside), base::PlannerStatus::INVALID_GOAL);
+}
+
+// What tips have not.
+
+TEST(JointPlanning, ATipThatDipsBetweenTwoSamplesIsSeen) {
+  // It swings about the port, over a plate of no thickness: lowest halfway, by some micrometres.
+  InstrumentPlace at(mesh_of(make_flat_plate(10.0, 1)));
+  at.certify();
+  const base::DiscreteMotionValidator sampled(at.space);
+  const auto verdicts = [&](double above) {
+    const double insertion = 60.0 + 15.6 - 9.1 - 10.2 - 1.0 - above;
+    const Coordinates from{-0.018, 0, insertion, 0, 0, 0}, to{0.018, 0, insertion, 0, 0, 0};
+    EXPECT_NEAR(at.least(from, to, 100), above, 1e-9);
+    const State a(at.space, from), b(at.space, to);
+    return std::pair{sampled.checkMotion(a.get(), b.get()),
+                     at.space->checkMotion(a.get(), b.get())};
+  };
+  EXPECT_EQ(verdicts(InstrumentPlace::kept + 0.001), std::pair(true, true));
+  EXPECT_EQ(verdicts(InstrumentPlace::kept - 0.001), std::pair(true, false));
+  EXPECT_EQ(verdicts(InstrumentPlace::kept - 0.020), std::pair(false, false));
+}
+
+TEST(JointPlanning, TheLastValidStateMayBeTheMotionsOwn) {
+  const InstrumentPlace at(mesh_of("cube"));
+  const auto validator = at.validator();
+  const State from(at.space, {0, 0, 20, 0, 0, 0}), to(at.space, {0, 0, 130, 0, 0, 0});
+  std::pair<base::State*, double> last_valid{to.get(), -1.0};
+  EXPECT_FALSE(validator->checkMotion(from.get(), to.get(), last_valid));
+  EXPECT_GT(last_valid.second, 0.0);
+  EXPECT_EQ(to.values()[2], 20.0 + last_valid.second * 110.0);
+}
+
+TEST(JointPlanning, TheSpaceMeasuresHowFarAJointMovesTheInstrument) {
+  const InstrumentPlace at(mesh_of("cube"));
+  EXPECT_EQ(at.guards->options().margin, 0.2);
+  const auto& space = at.space->getStateSpace();
+  const auto apart = [&](int joint, double by) {
+    Coordinates q{0, 0, 120, 0, 0, 0};
+    const State a(at.space, q);
+    q[static_cast<std::size_t>(joint)] += by;
+    const State b(at.space, q);
+    return space->distance(a.get(), b.get());
+  };
+  EXPECT_DOUBLE_EQ(apart(2, 7.0), 7.0);
+  // At full insertion the tip is 240 - 15.6 + 9.1 + 10.2 from the port; bent, the wrist has 19.3.
+  EXPECT_NEAR(apart(0, 0.1), 24.37, 1e-9);
+  EXPECT_GT(apart(3, 0.1), 1.5);
+  EXPECT_LT(apart(3, 0.1), 1.93);
+  EXPECT_NEAR(apart(5, 0.1), 1.02, 1e-9);
+  // From all lower limits to all upper ones.
+  EXPECT_GT(space->getMaximumExtent(), 2.0 * 1.588 * 243.7);
+}
+
+TEST(JointPlanning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
+  const InstrumentPlace at(mesh_of("cube"));
+  EXPECT_CONTAINS(at.refusal(std::make_shared<base::RealVectorStateSpace>(3)), "make_joint_space");
+  EXPECT_CONTAINS(at.refusal(std::make_shared<base::SE3StateSpace>()), "6 dimensions");
+  const auto wide = std::make_shared<base::RealVectorStateSpace>(6);
+  EXPECT_CONTAINS(at.refusal(wide), "setBounds");
+  wide->setBounds(-2.0, 2.0);
+  EXPECT_CONTAINS(at.refusal(wide), "joint 'yaw'");
+  wide->setBounds(0.0, 0.5);
+  EXPECT_EQ(at.refusal(wide), "no error") << "any space within the limits will do";
+  EXPECT_CONTAINS(
+      error_of([&] { make_motion_validator(at.space, std::shared_ptr<InstrumentPool>()); }),
+      "InstrumentPool");
+  EXPECT_CONTAINS(error_of([&] { make_state_validity_checker(nullptr, at.guards); }),
+                  "SpaceInformation");
+  const Instrument free(Chain({{.name = "hinge"}}), {{"ball", {{1, Vec3::Zero()}}, 1.0}});
+  EXPECT_CONTAINS(error_of([&] { make_joint_space(free); }), "joint 'hinge' has no limits");
+}
+
+TEST(JointPlanning, APlannerFindsAPathThatTheJudgePasses) {
+  InstrumentPlace at(mesh_of("cube"));
+  ompl::RNG::setSeed(2);
+  at.certify();
+  // From one side of the cube to the other; straight on the shaft would go through it.
+  const double depth = (60.0 + 15.6 + 20.0) / std::cos(0.95);
+  const State start(at.space, {-0.95, 0, depth, 0, 0, 0}),
+      goal(at.space, {0.95, 0, depth, 0, 0, 0});
+  ASSERT_TRUE(at.space->isValid(start.get()));
+  ASSERT_TRUE(at.space->isValid(goal.get()));
+  ASSERT_FALSE(at.space->checkMotion(start.get(), goal.get()));
+  ompl::geometric::RRTConnect planner(at.space);
+  const std::vector<Coordinates> path = solved(planner, start, goal, 30.0);
+  ASSERT_GE(path.size(), 3u);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    EXPECT_GE(at.least(path[i - 1], path[i], 500), at.kept - at.tolerance);
+  }
 }
 
 }  // namespace

@@ -22,15 +22,15 @@ constexpr double tolerance = 1e-6;
 
 using Ending = ProjectingSteer::Ending;
 
-MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh) {
-  return make_motion_constraint(mesh, {.options = {.margin = margin}});
+MotionConstraint guard_at(std::string_view shape) {
+  return make_motion_constraint(mesh_of(shape), {.options = {.margin = margin}});
 }
 
 class SteerOn : public testing::TestWithParam<const char*> {};
 
 TEST_P(SteerOn, EachPieceIsProvenAndComesNearer) {
   const auto mesh = mesh_of(GetParam());
-  MotionConstraint guard = guard_of(mesh);
+  MotionConstraint guard = guard_at(GetParam());
   ProjectingSteer steer(guard);
   oracle::SafetyOracle oracle(mesh);
   Random random(11);
@@ -70,8 +70,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, SteerOn,
                          by_name);
 
 TEST(ProjectingSteer, SlidesAroundWhereAStraightMotionIsRefused) {
-  const auto mesh = mesh_of("sphere");
-  MotionConstraint guard = guard_of(mesh);
+  MotionConstraint guard = guard_at("sphere");
   const Vec3 from(-60, 0, 20), to(60, 0, 20);
   EXPECT_FALSE(proves(guard, from, to));
   ProjectingSteer steer(guard);
@@ -81,8 +80,7 @@ TEST(ProjectingSteer, SlidesAroundWhereAStraightMotionIsRefused) {
 }
 
 TEST(ProjectingSteer, EndsAsItSays) {
-  const auto mesh = mesh_of("cube");
-  MotionConstraint guard = guard_of(mesh);
+  MotionConstraint guard = guard_at("cube");
   ProjectingSteer steer(guard, {.most_steps = 40});
   EXPECT_EQ(steer.steer({0, 0, 0}, {0, 0, 60}).ending, Ending::not_free);  // inside
   EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, -60}).ending, Ending::stuck);   // flat on the top
@@ -100,8 +98,7 @@ TEST(ProjectingSteer, EndsAsItSays) {
 }
 
 TEST(ProjectingSteer, RefusesOptionsOutOfRange) {
-  const auto mesh = mesh_of("cube");
-  MotionConstraint guard = guard_of(mesh);
+  MotionConstraint guard = guard_at("cube");
   EXPECT_THROW(ProjectingSteer(guard, {.sliding_step = 5.1}), Error);
   EXPECT_THROW(ProjectingSteer(guard, {.sliding_step = -1.0}), Error);
   EXPECT_THROW(ProjectingSteer(guard, {.least_gain = 1.0}), Error);
@@ -125,8 +122,7 @@ TEST(StraightWay, ASolverThatGivesUpProvesTheSame) {
 }
 
 TEST(StraightWay, AbsurdWaysAreRefusedInNoTime) {
-  const auto mesh = mesh_of("cube");
-  MotionConstraint guard = guard_of(mesh);
+  MotionConstraint guard = guard_at("cube");
   const double huge = std::numeric_limits<double>::max();
   EXPECT_FALSE(proves(guard, {0, 0, 60}, {0, 0, huge}));
   EXPECT_FALSE(proves(guard, {0, 0, -huge}, {0, 0, huge}));
@@ -135,25 +131,25 @@ TEST(StraightWay, AbsurdWaysAreRefusedInNoTime) {
 }
 
 TEST(GuardPool, MakesOneAtOnceAndNoMoreThanItMay) {
-  const auto mesh = mesh_of("cube");
   int made = 0;
   GuardPool pool(
       [&] {
         // The second one cannot be made: whoever wants it waits for the first.
         if (++made == 2) throw std::runtime_error("no memory");
-        return guard_of(mesh);
+        return guard_at("cube");
       },
       8);
   EXPECT_EQ(pool.made(), 1u);
   EXPECT_EQ(pool.options().margin, margin);
-  GuardPool unbounded([&] { return guard_of(mesh); }, std::numeric_limits<std::size_t>::max());
+  GuardPool unbounded([&] { return guard_at("cube"); }, std::numeric_limits<std::size_t>::max());
   const GuardPool::Loan one = unbounded.borrow(), other = unbounded.borrow();
   EXPECT_EQ(unbounded.made(), 2u);
   EXPECT_THROW(GuardPool({}, 1), Error);
-  EXPECT_THROW(GuardPool([&] { return guard_of(mesh); }, 0), Error);
-  EXPECT_THROW(
-      GuardPool([&] { return make_motion_constraint(mesh, {.options = {.margin = -1.0}}); }),
-      Error);
+  EXPECT_THROW(GuardPool([&] { return guard_at("cube"); }, 0), Error);
+  EXPECT_THROW(GuardPool([&] {
+                 return make_motion_constraint(mesh_of("cube"), {.options = {.margin = -1.0}});
+               }),
+               Error);
 }
 
 }  // namespace

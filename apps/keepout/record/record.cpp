@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <ostream>
+#include <sstream>
 
 #include "keepout/version.h"
 #include "record/json_parts.h"
@@ -35,6 +36,13 @@ void print_lines(std::ostream& out, const Json& value, int depth) {
     print_lines(out, member, depth + 1);
   }
   out << (is_object ? "\n}" : "\n]");
+}
+
+/// Not bytes: our texts are in UTF-8.
+std::size_t characters_in(const std::string& word) {
+  std::size_t width = 0;
+  for (const char c : word) width += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  return width;
 }
 
 }  // namespace
@@ -106,6 +114,27 @@ void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& f
 
 void print_json(std::ostream& out, const Json& record) {
   print_lines(out, record, 0);
+  out << '\n';
+}
+
+void print_wrapped(std::ostream& out, const Json& text) {
+  constexpr std::size_t longest = 88;
+  if (text.is_array()) {
+    for (const Json& one : text) print_wrapped(out, one);
+    return;
+  }
+  std::istringstream words(text.get<std::string>());
+  std::size_t width = 0;
+  for (std::string word; words >> word;) {
+    const std::size_t more = characters_in(word);
+    if (width > 0) {
+      const bool fits = width + 1 + more <= longest;
+      out << (fits ? ' ' : '\n');
+      width = fits ? width + 1 : 0;
+    }
+    out << word;
+    width += more;
+  }
   out << '\n';
 }
 

@@ -70,4 +70,7 @@ void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& f
 /// The record itself, in lines that can be read and compared.
 void print_json(std::ostream& out, const Json& record);
 
+/// Prints a text, or each of a list, in lines that fit a terminal.
+void print_wrapped(std::ostream& out, const Json& text);
+
 }  // namespace keepout::app

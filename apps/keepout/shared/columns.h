@@ -32,8 +32,10 @@ inline std::string plain(const Json& value) {
 /// JSON has no infinity.
 inline Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// A count with its thousands set apart.
-inline std::string count_text(const Json& value) { return grouped(value.get<std::uint64_t>()); }
+/// A count with its thousands set apart; "-" for null.
+inline std::string count_text(const Json& value) {
+  return value.is_null() ? "-" : grouped(value.get<std::uint64_t>());
+}
 
 /// So many significant digits; "-" for null.
 template <int digits = 3>

@@ -8,36 +8,34 @@ namespace keepout::app {
 std::vector<Finding> findings_of(const MeshFindings& mesh,
                                  std::optional<std::size_t> self_intersections) {
   const std::vector<Finding> all{
-      {"inside_out", mesh.is_inside_out(), "", "",
+      {"inside_out", mesh.is_inside_out(), "",
        "the normals point into the solid: tissue and free space are swapped", "flip all triangles"},
-      {"looks_like_metres", mesh.looks_like_metres(), "", "",
+      {"looks_like_metres", mesh.looks_like_metres(), "",
        "smaller than 3 in every direction: in millimetres that is tiny, so these may be metres",
        "scale by 1000 if so, or by what 'unit' above names; nothing is rescaled here"},
-      {"looks_like_micrometres", mesh.looks_like_micrometres(), "", "",
+      {"looks_like_micrometres", mesh.looks_like_micrometres(), "",
        "larger than 3000 in some direction: 3 m in millimetres, so these may be micrometres, or "
        "something lies far from the rest",
        "divide by 1000 if so; nothing is rescaled here"},
       {"inconsistent_edges", mesh.inconsistent_edges, "inconsistently wound edge",
-       "inconsistently wound edges", "the two triangles there disagree about which side is free",
+       "the two triangles there disagree about which side is free",
        "orient the surface consistently"},
-      {"boundary_edges", mesh.boundary_edges, "boundary edge", "boundary edges",
+      {"boundary_edges", mesh.boundary_edges, "boundary edge",
        "the surface is open: nothing guards a hole, and a fixture by the paper's rule can also be "
        "passed at a rim",
        "close the holes, or keep the tool away from the rims"},
-      {"non_manifold_edges", mesh.non_manifold_edges, "non-manifold edge", "non-manifold edges",
+      {"non_manifold_edges", mesh.non_manifold_edges, "non-manifold edge",
        "three triangles or more meet there, so no rule can tell ridge from valley",
        "remove inner walls and duplicates, or use a rule that asks no neighbours"},
       {"self_intersections", self_intersections.value_or(0), "self-intersecting pair",
-       "self-intersecting pairs",
        "triangles cut through or lie on each other; behind such a place a tip may be wedged",
        "remesh the surface, or take its outer hull"},
-      {"duplicate_triangles", mesh.duplicate_triangles, "duplicate triangle", "duplicate triangles",
+      {"duplicate_triangles", mesh.duplicate_triangles, "duplicate triangle",
        "the same three vertices again; each calls for its own planes", "remove them"},
       {"degenerate_triangles", mesh.degenerate_triangles(), "degenerate triangle",
-       "degenerate triangles",
        "without an area they have no normal, and guard less than a proper triangle or nothing",
        "remesh, or collapse their short edges"},
-      {"pinched_vertices", mesh.pinched_vertices, "pinched vertex", "pinched vertices",
+      {"pinched_vertices", mesh.pinched_vertices, "pinched vertex",
        "parts of the surface hang together by a point there", "split the vertex, or remesh"},
   };
   std::vector<Finding> present;
@@ -48,12 +46,8 @@ std::vector<Finding> findings_of(const MeshFindings& mesh,
 }
 
 std::string text_of(const Finding& finding) {
-  std::string text;
-  if (!finding.many.empty()) {
-    text.append(grouped(finding.count)).append(" ");
-    text.append(finding.count == 1 ? finding.one : finding.many).append(": ");
-  }
-  return text.append(finding.meaning);
+  const std::string count = finding.one.empty() ? "" : counted(finding.count, finding.one) + ": ";
+  return count + std::string(finding.meaning);
 }
 
 }  // namespace keepout::app

@@ -16,7 +16,6 @@ struct Finding {
   std::string_view key;  // stable, for programs
   std::size_t count;     // 1 where there is nothing to count
   std::string_view one;  // what there are `count` of; empty where there is nothing to count
-  std::string_view many;
   std::string_view meaning;
   std::string_view advice;
 };

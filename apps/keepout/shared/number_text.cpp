@@ -17,8 +17,9 @@ std::string grouped(std::size_t count) {
 std::string counted(std::size_t count, std::string_view noun) {
   std::string result = grouped(count) + ' ';
   result += noun;
-  if (count != 1) result += noun.ends_with("s") || noun.ends_with("sh") ? "es" : "s";
-  return result;
+  if (count == 1) return result;
+  if (noun.ends_with("ex")) return result.replace(result.size() - 2, 2, "ices");
+  return result + (noun.ends_with("s") || noun.ends_with("sh") ? "es" : "s");
 }
 
 std::string how_often(std::size_t count) {
@@ -50,15 +51,8 @@ std::string length_text(double mm) {
   return "under 1\u00a0nm";
 }
 
-std::string mean_text(double mean) {
-  if (!(mean >= 1e3) || mean > 1e15) return rounded(mean);
-  return grouped(static_cast<std::size_t>(std::llround(mean)));
-}
-
 std::string time_text(double us) {
   return us >= 1e4 ? rounded(1e-3 * us) + "\u00a0ms" : rounded(us) + "\u00a0µs";
 }
-
-std::string ratio_text(double ratio) { return rounded(ratio, 2); }
 
 }  // namespace keepout::app

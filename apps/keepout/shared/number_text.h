@@ -35,13 +35,7 @@ std::string trimmed(double value, int digits = 6);
 /// A length in the unit that suits it, mm, um or nm, joined by a space that does not break.
 std::string length_text(double mm);
 
-/// A mean of counts: 0.130, 26.2, 10,151.
-std::string mean_text(double mean);
-
 /// A time in the unit that suits it, µs or ms, joined in the same way.
 std::string time_text(double us);
-
-/// How many times as large: 230, 14, 3.2.
-std::string ratio_text(double ratio);
 
 }  // namespace keepout::app

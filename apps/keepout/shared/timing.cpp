@@ -19,15 +19,4 @@ Timing timing_of(std::vector<double>& samples) {
   return timing;
 }
 
-Timing least_of(const Timing& one, const Timing& other) {
-  const auto lesser = [](const std::optional<double>& a, const std::optional<double>& b) {
-    return a && b ? std::min(a, b) : std::nullopt;
-  };
-  return {.p50 = std::min(one.p50, other.p50),
-          .p99 = lesser(one.p99, other.p99),
-          .p999 = lesser(one.p999, other.p999),
-          .max = std::min(one.max, other.max),
-          .samples = one.samples};
-}
-
 }  // namespace keepout::app

@@ -12,7 +12,6 @@
 #include "shared/number_text.h"
 #include "shared/progress.h"
 #include "shared/stop_signal.h"
-#include "shared/wrapped_text.h"
 #include "simulate/simulated_tool.h"
 
 namespace keepout::app {

@@ -113,7 +113,9 @@ struct Moment {
   std::size_t cycle = 0;
 };
 
-Json json_of(const Moment& moment) { return {{"stroke", moment.stroke}, {"cycle", moment.cycle}}; }
+Json moment_json(const Moment& moment) {
+  return {{"stroke", moment.stroke}, {"cycle", moment.cycle}};
+}
 
 /// The moments of a run that a page shows.
 struct Moments {
@@ -156,7 +158,7 @@ double length(double mm) { return to_digits(mm, 1e6); }
 
 Json place(const Vec3& point) { return {length(point.x()), length(point.y()), length(point.z())}; }
 
-Json json_of(const std::vector<Cycle>& cycles) {
+Json stroke_json(const std::vector<Cycle>& cycles) {
   Json tips = Json::array(), clearances = Json::array(), times = Json::array();
   std::string outcomes;
   for (const Cycle& cycle : cycles) {
@@ -242,14 +244,14 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
              {"kept_out", runs[r].kept_out()},
              {"words", words(runs[r], audit.surface())},
              {"summary", json_of(columns, runs[r])},
-             {"worst", json_of(moments[r].worst)},
+             {"worst", moment_json(moments[r].worst)},
              {"strokes", Json::array()},
              {"crossings", Json::array()}};
     for (const FollowedStroke& followed : strokes) {
-      run["strokes"].push_back(json_of(followed.runs[r]));
+      run["strokes"].push_back(stroke_json(followed.runs[r]));
     }
     for (const Moment& crossing : moments[r].crossings) {
-      run["crossings"].push_back(json_of(crossing));
+      run["crossings"].push_back(moment_json(crossing));
     }
     record["runs"].push_back(std::move(run));
   }

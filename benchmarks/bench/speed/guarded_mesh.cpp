@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "compare/reference.h"
+#include "bench/bench.h"
 #include "compare/subject.h"
 #include "keepout/error.h"
 #include "keepout/factory/make_motion_constraint.h"

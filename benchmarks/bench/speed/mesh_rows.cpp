@@ -8,8 +8,7 @@
 #include <system_error>
 #include <utility>
 
-#include "bench/speed/process.h"
-#include "bench/speed/speed_run.h"
+#include "bench/speed/speed.h"
 #include "compare/subject.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/factory/make_motion_constraint.h"
@@ -42,12 +41,10 @@ void measure_builds(SpeedRun& run, const IndexedMesh& on) {
   const MeasuredSide on_two_cores = time_build(run, on, "wide_bvh, 2 cores", 2);
   for (const Rival& rival : rivals) {
     const std::string name(rival.name);
-    const Attempt theirs = attempted([&] {
-      const IndexBackend& backend = index_backends().named(rival.index);
-      return timed_whole(name, 1, [&] { backend.make(on.mesh); });
-    });
+    const MeasuredSide theirs =
+        attempted(name, [&] { return index_backends().named(rival.index).make(on.mesh); });
     SpeedRow row =
-        ratio("build of the index", name + " / wide_bvh", at_least(rival.build), theirs, {ours});
+        ratio("build of the index", name + " / wide_bvh", at_least(rival.build), theirs, ours);
     row.sides.push_back(on_two_cores);
     run.add(std::move(row));
   }
@@ -73,8 +70,8 @@ void measure_refit(SpeedRun& run, const IndexedMesh& on) {
     is_moved = !is_moved;
   });
   hold_to_brute_force({moved, index}, run.random());
-  run.add(ratio("refit after all vertices moved, one core", "refit / build", at_most(0.1), {refit},
-                {time_build(run, on, "build", 1)}));
+  run.add(ratio("refit after all vertices moved, one core", "refit / build", at_most(0.1), refit,
+                time_build(run, on, "build", 1)));
 }
 
 void measure_memory(SpeedRun& run, const IndexedMesh& on) {
@@ -122,31 +119,31 @@ std::string millions(std::size_t triangles) {
 
 /// The usual contact, beside that on the mesh of all other rows.
 void add_contact(SpeedRun& run, const IndexedMesh& on, std::size_t triangles, double most) {
-  Attempt contact = in_contact(run, on);
-  if (contact.side) contact.side->name = millions(triangles) + " triangles";
+  MeasuredSide contact = in_contact(run, on);
+  contact.name = millions(triangles) + " triangles";
   run.add(ratio("certified in contact, margin .2 mm",
                 millions(triangles) + " / " + millions(run.triangles) + " triangles", at_most(most),
-                contact, run.baselines.contact));
+                contact, run.contact_side));
 }
 
 /// Large steps over a fine mesh, in microseconds.
 void add_large_steps(SpeedRun& run, const IndexedMesh& on, std::size_t triangles) {
-  const auto [side, refusal] =
+  const MeasuredSide side =
       in_contact(run, on, {.clearance = 1.1, .shortest = 1.0, .longest = 5.0});
   SpeedRow row{
       .work = "certified, motion 1-5 mm, margin 1.1 mm, " + millions(triangles) + " triangles",
       .compared = "median",
       .demand = at_most(20.0),
       .unit = "us",
-      .remark = refusal};
-  if (side) {
-    row.figure = side->us.p50;
-    row.sides = {*side};
+      .remark = side.refusal};
+  if (side.refusal.empty()) {
+    row.figure = side.us.p50;
+    row.sides = {side};
   }
   run.add(row);
   row.compared = "p99.9";
   row.demand = at_most(40.0);
-  if (side) row.figure = side->us.p999;
+  if (side.refusal.empty()) row.figure = side.us.p999;
   run.add(std::move(row));
 }
 
@@ -195,7 +192,8 @@ void first_step(const std::filesystem::path& file, const std::filesystem::path& 
 
 }  // namespace
 
-void measure_index_costs(SpeedRun& run, const IndexedMesh& on) {
+void measure_index_costs(SpeedRun& run) {
+  const IndexedMesh& on = run.bunny;
   run.show("index builds");
   measure_builds(run, on);
   measure_refit(run, on);
@@ -211,11 +209,11 @@ void measure_large_meshes(SpeedRun& run) {
     add_contact(run, large.mesh, triangles, 3.0);
     add_large_steps(run, large.mesh, triangles);
   }
-  if (!run.options.largest) return;
-  const std::size_t most = *run.options.largest;
+  if (!run.options.speed.largest) return;
+  const std::size_t most = *run.options.speed.largest;
   const Loaded largest = load(run, most);
   run.add(ratio("file to index, 2 cores", millions(most) + " / " + time.name, at_most(7.0),
-                {largest.time}, {time}));
+                largest.time, time));
   run.add({.work = "file to index, " + millions(most) + " triangles",
            .compared = "peak of memory",
            .demand = at_most(14.0),
@@ -230,14 +228,12 @@ void measure_first_step(SpeedRun& run) {
   const OnCores two(cores);
   const std::size_t count = load_mesh(file).mesh->triangle_count();  // and the file is in memory
   const std::string work = "binary STL, " + counted(count, "triangle") + ", to first step, 2 cores";
-  const Attempt theirs = attempted([&] {
-    return timed_whole("assimp + FCL OBBRSS", 1, [&] {
-      const auto mesh = std::make_shared<const Mesh>(assimp_surface(file));
-      const auto fcl = index_backends().named("fcl_obbrss").make(mesh);
-    });
+  const MeasuredSide theirs = attempted("assimp + FCL OBBRSS", [&] {
+    const auto mesh = std::make_shared<const Mesh>(assimp_surface(file));
+    const auto fcl = index_backends().named("fcl_obbrss").make(mesh);
   });
   const MeasuredSide mine = timed_whole("ours", run.effort.builds, [&] { first_step(file); });
-  run.add(ratio(work, "(assimp + FCL's tree) / ours", at_least(8.0), theirs, {mine}));
+  run.add(ratio(work, "(assimp + FCL's tree) / ours", at_least(8.0), theirs, mine));
 
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("keepout-speed-" + std::to_string(getpid()));
@@ -249,7 +245,7 @@ void measure_first_step(SpeedRun& run) {
   const MeasuredSide with_cache = timed_whole("ours, index from the cache", run.effort.builds,
                                               [&] { first_step(file, folder); });
   run.add(ratio(work, "(assimp + FCL's tree) / ours, with the index cache", at_least(50.0), theirs,
-                {with_cache}));
+                with_cache));
 }
 
 }  // namespace keepout::app

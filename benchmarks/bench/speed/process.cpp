@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bench/speed/process.h"
-
 #include <dlfcn.h>
 #include <pthread.h>
 #include <sys/resource.h>
@@ -8,6 +6,8 @@
 #include <atomic>
 #include <cerrno>
 #include <fstream>
+
+#include "bench/speed/speed.h"
 
 namespace keepout::app {
 namespace {
@@ -65,30 +65,22 @@ namespace {
 // Of the thread, and so without a cost worth speaking of to those who are timed.
 constinit thread_local keepout::app::CallCounts counts;
 
-/// A function of the C library that is stood in for here, found when it is first called.
+/// A function of the C library that is stood in for here, found when it is first called: the same,
+/// whoever finds it.
 template <class Argument>
-class Original {
- public:
-  explicit constexpr Original(const char* name) : name_(name) {}
+using Original = std::atomic<int (*)(Argument*)>;
+constinit Original<pthread_mutex_t> lock_mutex = nullptr;
+constinit Original<pthread_rwlock_t> lock_to_read = nullptr, lock_to_write = nullptr;
 
-  int operator()(Argument* argument) {
-    Function* found = found_.load(std::memory_order_relaxed);
-    if (found == nullptr) {
-      found = reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name_));
-      found_.store(found, std::memory_order_relaxed);  // the same, whoever finds it
-    }
-    return found(argument);
+template <class Argument>
+int call(Original<Argument>& original, const char* name, Argument* argument) {
+  auto* function = original.load(std::memory_order_relaxed);
+  if (function == nullptr) {
+    function = reinterpret_cast<int (*)(Argument*)>(dlsym(RTLD_NEXT, name));
+    original.store(function, std::memory_order_relaxed);
   }
-
- private:
-  using Function = int(Argument*);
-  const char* name_;
-  std::atomic<Function*> found_ = nullptr;
-};
-
-constinit Original<pthread_mutex_t> lock_mutex("pthread_mutex_lock");
-constinit Original<pthread_rwlock_t> lock_to_read("pthread_rwlock_rdlock");
-constinit Original<pthread_rwlock_t> lock_to_write("pthread_rwlock_wrlock");
+  return function(argument);
+}
 
 }  // namespace
 
@@ -129,15 +121,15 @@ void free(void* memory) { __libc_free(memory); }  // of one kind with the others
 
 int pthread_mutex_lock(pthread_mutex_t* mutex) {
   ++counts.locks;
-  return lock_mutex(mutex);
+  return call(lock_mutex, "pthread_mutex_lock", mutex);
 }
 int pthread_rwlock_rdlock(pthread_rwlock_t* lock) {
   ++counts.locks;
-  return lock_to_read(lock);
+  return call(lock_to_read, "pthread_rwlock_rdlock", lock);
 }
 int pthread_rwlock_wrlock(pthread_rwlock_t* lock) {
   ++counts.locks;
-  return lock_to_write(lock);
+  return call(lock_to_write, "pthread_rwlock_wrlock", lock);
 }
 }
 

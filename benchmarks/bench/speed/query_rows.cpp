@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "bench/speed/speed_run.h"
+#include "bench/speed/speed.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/geometry/closest_point.h"
@@ -136,41 +136,32 @@ std::vector<Vec3> places_near(const Mesh& mesh, std::size_t count, Random random
   return places;
 }
 
-/// What one index takes.
-struct Queried {
-  Attempt answer = {};       // candidates by the engine's kernel
-  Attempt lean_answer = {};  // by the least code; the same for exact indices
-};
-
-/// Also for the table of all of them.
-Queried measure(SpeedRun& run, const std::string& name, const IndexedMesh& on,
-                const Question& question, int passes) {
+/// What one index takes, also for the table of all of them. Exact indices answer by candidates.
+QueryFigures measure(SpeedRun& run, const std::string& name, const IndexedMesh& on,
+                     const Question& question, int passes) {
+  QueryFigures figures{.index = name, .radius = question.radius, .found_mean = question.found_mean};
   Searcher searcher(*on.mesh, *on.index);
   for (std::size_t i = 0; i < question.balls.size(); ++i) {
     for (const auto test : {kernel, lean_test}) {
       if (searcher.sorted_answer(question.balls[i], test) == question.answers[i]) continue;
-      return {.lean_answer = {.refusal = "not timed: its triangles are not those of wide_bvh"}};
+      figures.answer.refusal = figures.lean_answer.refusal =
+          "not timed: its triangles are not those of wide_bvh";
+      return figures;
     }
   }
   const auto time_each = [&](std::string side, auto&& ask) {
     return timed(std::move(side), question.balls.size(), passes,
                  [&](std::size_t i) { ask(question.balls[i]); });
   };
-  const MeasuredSide candidates =
-      time_each(name, [&](const Ball& ball) { searcher.collect(ball); });
-  MeasuredSide answer = candidates, lean_answer = candidates;
+  figures.candidates = time_each(name, [&](const Ball& ball) { searcher.collect(ball); });
+  figures.answer = figures.lean_answer = figures.candidates;
   if (!on.index->is_exact()) {
-    answer = time_each(name, [&](const Ball& ball) { searcher.answer(ball, kernel); });
-    lean_answer = time_each(name + ", lean exact test",
-                            [&](const Ball& ball) { searcher.answer(ball, lean_test); });
+    figures.answer = time_each(name, [&](const Ball& ball) { searcher.answer(ball, kernel); });
+    figures.lean_answer = time_each(name + ", lean exact test",
+                                    [&](const Ball& ball) { searcher.answer(ball, lean_test); });
   }
-  run.record.queries.push_back({.index = name,
-                                .radius = question.radius,
-                                .found_mean = question.found_mean,
-                                .candidates = candidates.us,
-                                .answer = answer.us,
-                                .lean_answer = lean_answer.us});
-  return {{answer}, {lean_answer}};
+  run.queries.push_back(figures);
+  return figures;
 }
 
 }  // namespace
@@ -179,12 +170,13 @@ void hold_to_brute_force(const IndexedMesh& on, Random random) {
   question_of(on, 2.0, surface_points(*on.mesh, 8, 1.0, random));
 }
 
-void measure_sphere_queries(SpeedRun& run, const IndexedMesh& on) {
+void measure_sphere_queries(SpeedRun& run) {
+  const IndexedMesh& on = run.bunny;
   constexpr std::array radii{5.0, 1.0};
   const int passes = run.effort.passes;
   const std::vector<Vec3> places = places_near(*on.mesh, run.effort.queries, run.random());
   std::vector<Question> questions;
-  std::vector<Queried> ours;
+  std::vector<QueryFigures> ours;
   for (const double radius : radii) {
     run.show("sphere queries, r = " + trimmed(radius) + " mm");
     questions.push_back(question_of(on, radius, places));
@@ -203,13 +195,13 @@ void measure_sphere_queries(SpeedRun& run, const IndexedMesh& on) {
     const auto rival = std::ranges::find(rivals, backend.name, &Rival::index);
     const bool is_rival = rival != rivals.end();
     for (std::size_t r = 0; r < radii.size(); ++r) {
-      const Queried theirs = measure(run, name, other, questions[r], is_rival ? passes : 1);
+      const QueryFigures theirs = measure(run, name, other, questions[r], is_rival ? passes : 1);
       if (!is_rival) continue;
       SpeedRow row = ratio("sphere query r = " + trimmed(radii[r]) + " mm, random",
                            std::string(rival->name) + " / wide_bvh",
                            at_least(radii[r] == 5.0 ? rival->query_at_5_mm : rival->query_at_1_mm),
                            theirs.lean_answer, ours[r].answer);
-      if (theirs.answer.side) row.sides.push_back(*theirs.answer.side);
+      if (theirs.answer.refusal.empty()) row.sides.push_back(theirs.answer);
       run.add(std::move(row));
     }
   }

@@ -1,94 +1,106 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "bench/speed/speed.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
-#include <memory>
 #include <ostream>
 #include <utility>
 #include <vector>
 
-#include "bench/bench.h"
-#include "bench/speed/process.h"
-#include "bench/speed/speed_record.h"
-#include "bench/speed/speed_run.h"
 #include "keepout/fixtures/real_mesh.h"
-#include "record/record.h"
-#include "shared/machine.h"
 #include "shared/number_text.h"
-#include "shared/output_file.h"
 #include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {
 
+constexpr unsigned bits_of_a_bin = std::bit_width(TimeHistogram::bins_of_a_doubling) - 1;
+
 constexpr Effort thorough{2000, 20'000, 1500, 500, 3, 3, "skull_1m"};
 constexpr Effort quick{200, 1000, 100, 100, 1, 1, "bunny"};
 
-constexpr void (*on_the_bunny[])(SpeedRun&, const IndexedMesh&) = {
+constexpr void (*families[])(SpeedRun&) = {
     measure_sphere_queries, measure_paper_steps, measure_certified_steps, measure_unrelated_states,
-    measure_cold_caches,    measure_index_costs, measure_steadiness};
-
-constexpr void (*on_their_own[])(SpeedRun&) = {measure_concave_sphere, measure_first_step,
-                                               measure_large_meshes};
-
-/// As far as nobody wishes to stop. Whether it came to the end.
-bool measure_all(SpeedRun& run, const StopSignal& stop) {
-  {
-    const IndexedMesh bunny = with_index(bunny_of(run.triangles));
-    for (const auto family : on_the_bunny) {
-      if (stop.has_come()) return false;
-      family(run, bunny);
-      run.progress.advance();
-    }
-  }
-  for (const auto family : on_their_own) {
-    if (stop.has_come()) return false;
-    family(run);
-    run.progress.advance();
-  }
-  return true;
-}
+    measure_cold_caches,    measure_index_costs, measure_steadiness,      measure_concave_sphere,
+    measure_first_step,     measure_large_meshes};
 
 }  // namespace
 
-std::vector<Motion> SpeedRun::contact(const IndexedMesh& on, const MotionKind& kind) const {
-  return pressed_motions(on, effort.steps, kind, random());
+std::size_t TimeHistogram::bin_of(std::uint64_t ns) noexcept {
+  if (ns < 1) return 0;
+  const unsigned doubling = static_cast<unsigned>(std::bit_width(ns)) - 1;
+  // The three bits after the first: bins of equal width within a doubling.
+  const std::uint64_t place = doubling >= bits_of_a_bin ? ns >> (doubling - bits_of_a_bin)
+                                                        : ns << (bits_of_a_bin - doubling);
+  return std::min<std::size_t>(doubling * bins_of_a_doubling + (place - bins_of_a_doubling),
+                               bins - 1);
 }
 
-void SpeedRun::add(SpeedRow row) {
-  progress.interrupt();
-  print_row(out, row);
-  out.flush();
-  record.rows.push_back(std::move(row));
+double TimeHistogram::beginning_of(std::size_t bin) noexcept {
+  const auto doubling = static_cast<int>(bin / bins_of_a_doubling);
+  const auto place = static_cast<double>(bin % bins_of_a_doubling);
+  return std::ldexp(1.0 + place / bins_of_a_doubling, doubling);
 }
 
-SpeedRow ratio(std::string work, std::string compared, const Demand& demand,
-               const Attempt& numerator, const Attempt& denominator) {
+void TimeHistogram::add(std::uint64_t ns) noexcept {
+  ++counts_[bin_of(ns)];
+  ++total_;
+  longest_ = std::max(longest_, ns);
+}
+
+std::optional<double> TimeHistogram::percentile(double share) const noexcept {
+  if (total_ == 0) return std::nullopt;
+  const auto rank = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total_)));
+  std::uint64_t passed = 0;
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    passed += counts_[bin];
+    if (passed >= rank && passed > 0) return beginning_of(bin + 1);
+  }
+  return beginning_of(bins);
+}
+
+Timing least_of(const Timing& one, const Timing& other) {
+  const auto lesser = [](const std::optional<double>& a, const std::optional<double>& b) {
+    return a && b ? std::min(a, b) : std::nullopt;
+  };
+  return {.p50 = std::min(one.p50, other.p50),
+          .p99 = lesser(one.p99, other.p99),
+          .p999 = lesser(one.p999, other.p999),
+          .max = std::min(one.max, other.max),
+          .samples = one.samples};
+}
+
+SpeedRow ratio(std::string work, std::string compared, const Json& demand,
+               const MeasuredSide& numerator, const MeasuredSide& denominator) {
   SpeedRow row{.work = std::move(work), .compared = std::move(compared), .demand = demand};
-  for (const Attempt* attempt : {&numerator, &denominator}) {
-    if (attempt->side) row.sides.push_back(*attempt->side);
-    if (row.remark.empty()) row.remark = attempt->refusal;
+  for (const MeasuredSide* side : {&numerator, &denominator}) {
+    if (side->refusal.empty()) row.sides.push_back(*side);
+    if (row.remark.empty()) row.remark = side->refusal;
   }
   if (row.sides.size() == 2) row.figure = row.sides[0].us.p50 / row.sides[1].us.p50;
   return row;
 }
 
-Attempt time_steps(std::string name, MotionConstraint& one, MotionConstraint& other,
-                   std::span<const Motion> motions, int passes, double accuracy) {
+MeasuredSide time_steps(std::string name, MotionConstraint& one, MotionConstraint& other,
+                        std::span<const Motion> motions, int passes, double accuracy) {
   if (std::string refusal = disagreement(one, other, motions, accuracy); !refusal.empty()) {
     return {.refusal = std::move(refusal)};
   }
-  return {
-      timed(std::move(name), motions.size(), passes, [&](std::size_t i) { one.step(motions[i]); })};
+  return timed(std::move(name), motions.size(), passes,
+               [&](std::size_t i) { one.step(motions[i]); });
 }
 
-Attempt time_certified(const SpeedRun& run, const IndexedMesh& on, const std::string& name,
-                       double margin, std::span<const Motion> motions) {
+MeasuredSide time_certified(const SpeedRun& run, const IndexedMesh& on, const std::string& name,
+                            double margin, std::span<const Motion> motions) {
   MotionConstraint ours = certified(on, margin);
   MotionConstraint plain = certified(queried(on), margin);
   return time_steps(name, ours, plain, motions, run.effort.passes);
 }
 
-Attempt in_contact(SpeedRun& run, const IndexedMesh& on, const MotionKind& kind) {
+MeasuredSide in_contact(SpeedRun& run, const IndexedMesh& on, const MotionKind& kind) {
   const std::string name = "margin " + trimmed(kind.clearance) + " mm, motion " +
                            trimmed(kind.shortest) + "-" + trimmed(kind.longest) + " mm";
   run.show("certified, contact, " + name);
@@ -102,30 +114,31 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   OutputFiles outputs = options.files.open({});
   for (const char* fixture : {"bunny", effort.file}) fixture_path(fixture);  // throws if missing
 
-  Progress progress("bench --speed", std::size(on_the_bunny) + std::size(on_their_own));
-  SpeedRun run{.options = options.speed,
+  Progress progress("bench --speed", std::size(families));
+  SpeedRun run{.options = options,
                .effort = effort,
                .triangles = triangles,
                .progress = progress,
                .out = out,
-               .record = {.date = date_now(),
-                          .command = options.command,
-                          .seed = options.seed,
-                          .machine = this_machine(),
-                          .mesh = "bunny, " + counted(triangles, "triangle")}};
+               .mesh = "bunny, " + counted(triangles, "triangle")};
   const OnCores one(1);
   progress.interrupt();
-  print_head(out, run.record);
+  print_head(run);
   out.flush();
   if (!one.holds()) out << "The system does not let this process stay on one core.\n";
   const StopSignal stop;
-  run.record.complete = measure_all(run, stop);
+  run.bunny = with_index(bunny_of(triangles));
+  for (const auto measure : families) {
+    run.complete = !stop.has_come();
+    if (!run.complete) break;
+    measure(run);
+    progress.advance();
+  }
   progress.interrupt();
-  print_queries(out, run.record);
-  print_summary(out, run.record);
-  write_record(outputs, record_of(run.record), options.files, std::cerr);
+  print_summary(run);
+  write_record(outputs, record_of(run), options.files, std::cerr);
   out << "report: " << options.files.page->string() << '\n';
-  return run.record.complete ? EXIT_SUCCESS : exit_interrupted;
+  return run.complete ? EXIT_SUCCESS : exit_interrupted;
 }
 
 }  // namespace keepout::app

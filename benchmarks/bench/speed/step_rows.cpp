@@ -7,8 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "bench/speed/process.h"
-#include "bench/speed/speed_run.h"
+#include "bench/speed/speed.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/solvers/registry.h"
@@ -41,12 +40,13 @@ void fill(TimeHistogram& histogram, std::size_t times, Work&& work) {
 
 }  // namespace
 
-void measure_paper_steps(SpeedRun& run, const IndexedMesh& on) {
+void measure_paper_steps(SpeedRun& run) {
+  const IndexedMesh& on = run.bunny;
   const std::vector<Motion> motions = run.contact(on);
   const auto few = std::span(motions).first(std::min(run.effort.slow_steps, motions.size()));
   run.show("building FCL's tree");
   IndexedMesh fcl{on.mesh, nullptr};
-  Attempt theirs;
+  MeasuredSide theirs;
   if (!index_backends().has(their_index)) theirs.refusal = "this build has no FCL";
   if (!solver_backends().has(their_solver)) theirs.refusal = "this build has no NLopt";
   if (theirs.refusal.empty()) fcl.index = make_index(their_index, on.mesh);
@@ -56,30 +56,31 @@ void measure_paper_steps(SpeedRun& run, const IndexedMesh& on) {
     run.show("the paper's rule, r = " + trimmed(radius) + " mm");
     MotionConstraint ours = paper(on, radius, "active_set");
     MotionConstraint plain = paper(queried(on), radius, "active_set");
-    const Attempt mine =
+    const MeasuredSide mine =
         time_steps("wide_bvh + active_set", ours, plain, motions, run.effort.passes);
     if (fcl.index) {
       MotionConstraint libraries = paper(fcl, radius, std::string(their_solver));
       const double accuracy = solver_backends().named(their_solver).accuracy;
       theirs = time_steps("FCL's tree + SLSQP", libraries, plain, few, 1, accuracy);
     }
-    if (radius == 5.0) run.baselines.libraries = theirs;
+    if (radius == 5.0) run.libraries = theirs;
     run.add(ratio("whole step, paper's rule, r = " + trimmed(radius) + " mm, contact",
                   "(FCL's tree + SLSQP) / ours", at_least(least), theirs, mine));
   }
 }
 
-void measure_certified_steps(SpeedRun& run, const IndexedMesh& on) {
+void measure_certified_steps(SpeedRun& run) {
+  const IndexedMesh& on = run.bunny;
   constexpr const char* to_the_libraries = "(FCL's tree + SLSQP, paper's rule, r = 5 mm) / ours";
-  const Attempt contact = run.baselines.contact = in_contact(run, on);
+  const MeasuredSide contact = run.contact_side = in_contact(run, on);
   run.add(ratio("certified step in contact, motion .05-.2 mm, margin .2 mm", to_the_libraries,
-                at_least(500.0), run.baselines.libraries, contact));
+                at_least(500.0), run.libraries, contact));
 
   run.show("certified, free space");
   const std::vector<Motion> path = free_motions(on, run.effort.steps, {}, {}, run.random());
-  run.baselines.free = time_certified(run, on, "free space", MotionKind{}.clearance, path);
+  run.free_side = time_certified(run, on, "free space", MotionKind{}.clearance, path);
   run.add(ratio("certified step in free space, 2-20 mm off the surface", to_the_libraries,
-                at_least(5000.0), run.baselines.libraries, run.baselines.free));
+                at_least(5000.0), run.libraries, run.free_side));
 
   run.add(ratio("certified in contact", "margin 5 mm / margin .2 mm", at_most(3.0),
                 in_contact(run, on, {.clearance = 5.0}), contact));
@@ -87,7 +88,8 @@ void measure_certified_steps(SpeedRun& run, const IndexedMesh& on) {
                 at_most(3.0), in_contact(run, on, {.shortest = 1.0, .longest = 5.0}), contact));
 }
 
-void measure_unrelated_states(SpeedRun& run, const IndexedMesh& on) {
+void measure_unrelated_states(SpeedRun& run) {
+  const IndexedMesh& on = run.bunny;
   run.show("certified, unrelated states");
   const MotionKind kind;
   const std::vector<Motion> motions = held_back_motions(on, run.effort.steps, kind, run.random());
@@ -96,10 +98,10 @@ void measure_unrelated_states(SpeedRun& run, const IndexedMesh& on) {
     return timed("plain form on " + name, motions.size(), run.effort.passes,
                  [&](std::size_t i) { guard.step(motions[i]); });
   };
-  const Attempt ours = time_certified(run, on, "ours", kind.clearance, motions);
-  Attempt theirs{.refusal = "this build has no FCL"};
+  const MeasuredSide ours = time_certified(run, on, "ours", kind.clearance, motions);
+  MeasuredSide theirs{.refusal = "this build has no FCL"};
   if (index_backends().has(their_index)) {  // which has no wide instructions anywhere
-    theirs = {time_plain(std::string(their_index), {on.mesh, make_index(their_index, on.mesh)})};
+    theirs = time_plain(std::string(their_index), {on.mesh, make_index(their_index, on.mesh)});
   }
   SpeedRow row = ratio("certified, unrelated states that are held back, margin .2 mm",
                        "scalar / ours", at_least(8.0), theirs, ours);
@@ -108,23 +110,25 @@ void measure_unrelated_states(SpeedRun& run, const IndexedMesh& on) {
 }
 
 void measure_concave_sphere(SpeedRun& run) {
+  run.bunny = {};  // large meshes need its memory
   run.show("concave sphere");
   constexpr double icosahedron = 52.57;  // its edge, in a sphere of radius 50 [mm]
   const double edge = icosahedron / std::sqrt(static_cast<double>(run.triangles) / 20.0);
   const IndexedMesh sphere =
       with_index(std::make_shared<const Mesh>(in_single_precision(make_concave_sphere(edge))));
   const MotionKind kind;
-  const Attempt centre = time_certified(run, sphere, "centre", kind.clearance,
-                                        central_motions(run.effort.steps, kind, run.random()));
+  const MeasuredSide centre = time_certified(run, sphere, "centre", kind.clearance,
+                                             central_motions(run.effort.steps, kind, run.random()));
   run.add(ratio("certified in a concave sphere", "tip at the centre / free space", at_most(3.0),
-                centre, run.baselines.free));
-  Attempt wall = in_contact(run, sphere);
-  if (wall.side) wall.side->name = "wall";
+                centre, run.free_side));
+  MeasuredSide wall = in_contact(run, sphere);
+  wall.name = "wall";
   run.add(ratio("certified in a concave sphere", "tip at the wall / contact", at_most(6.0), wall,
-                run.baselines.contact));
+                run.contact_side));
 }
 
-void measure_cold_caches(SpeedRun& run, const IndexedMesh& on) {
+void measure_cold_caches(SpeedRun& run) {
+  const IndexedMesh& on = run.bunny;
   run.show("certified, cold caches");
   std::vector<Motion> motions = run.contact(on);
   motions.resize(std::min(motions.size(), run.effort.cold_steps));
@@ -140,25 +144,26 @@ void measure_cold_caches(SpeedRun& run, const IndexedMesh& on) {
     times.push_back(microseconds_since(start));
   }
   const MeasuredSide cold{.name = "cold", .us = timing_of(times)};
-  const Attempt& warm = run.baselines.contact;
+  const MeasuredSide& warm = run.contact_side;
   SpeedRow row = ratio("certified in contact, caches emptied before each step", "p99 / warm median",
-                       at_most(40.0), {cold}, warm);
+                       at_most(40.0), cold, warm);
   row.figure = std::nullopt;
-  if (warm.side && cold.us.p99) row.figure = *cold.us.p99 / warm.side->us.p50;
+  if (warm.refusal.empty() && cold.us.p99) row.figure = *cold.us.p99 / warm.us.p50;
   run.add(std::move(row));
 }
 
-void measure_steadiness(SpeedRun& run, const IndexedMesh& on) {
+void measure_steadiness(SpeedRun& run) {
+  const IndexedMesh& on = run.bunny;
   run.show("histogram");
   const std::vector<Motion> motions = run.contact(on);
-  const std::size_t steps = run.options.histogram_steps;
+  const std::size_t steps = run.options.speed.histogram_steps;
   MotionConstraint ours = certified(on, MotionKind{}.clearance);
   for (const Motion& motion : motions) ours.step(motion);
 
-  StepHistogram histogram;
+  TimeHistogram times, nothing;
   const std::uint64_t faults = page_faults();
   const CallCounts calls = calls_of_this_thread();
-  fill(histogram.steps, steps,
+  fill(times, steps,
        [&](std::size_t i, BenchClock::time_point) { ours.step(motions[i % motions.size()]); });
   const CallCounts calls_after = calls_of_this_thread();
   const auto add_count = [&](const std::string& what, std::uint64_t count) {
@@ -176,13 +181,13 @@ void measure_steadiness(SpeedRun& run, const IndexedMesh& on) {
 
   // Nothing but waiting, as often and as long as the median step: what it shows beyond that is the
   // machine's doing.
-  const auto median = std::chrono::nanoseconds(
-      static_cast<std::int64_t>(histogram.steps.percentile(0.5).value_or(0.0)));
-  fill(histogram.nothing, steps, [&](std::size_t, BenchClock::time_point last) {
+  const auto median =
+      std::chrono::nanoseconds(static_cast<std::int64_t>(times.percentile(0.5).value_or(0.0)));
+  fill(nothing, steps, [&](std::size_t, BenchClock::time_point last) {
     while (BenchClock::now() - last < median) {
     }
   });
-  run.record.histogram = histogram;
+  run.set_histogram(times, nothing);
 }
 
 }  // namespace keepout::app

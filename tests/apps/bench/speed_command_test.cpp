@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "apps/command_process.h"
-#include "bench/speed/process.h"
+#include "bench/speed/speed.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/real_mesh.h"
 
@@ -22,10 +23,11 @@ class SpeedCommand : public testing::Test {
   void SetUp() override {
     std::filesystem::create_directory_symlink(fixture_cache() / "fixtures",
                                               folder.file("fixtures"));
+    if (const char* cache = std::getenv("KEEPOUT_CACHE")) before = cache;
+    ::setenv("KEEPOUT_CACHE", folder.path().c_str(), 1);
   }
-
-  ProcessOutcome run(const std::string& arguments) const {
-    return folder.run(arguments, "KEEPOUT_CACHE='" + folder.path().string() + "'");
+  void TearDown() override {
+    before ? ::setenv("KEEPOUT_CACHE", before->c_str(), 1) : ::unsetenv("KEEPOUT_CACHE");
   }
 
   json read(const std::string& name) const { return json::parse(folder.contents(name)); }
@@ -38,20 +40,15 @@ class SpeedCommand : public testing::Test {
     return folder.contents("figures.md");
   }
 
-  void expect_refused(const std::string& arguments, const std::string& why) const {
-    const ProcessOutcome outcome = run(arguments);
-    EXPECT_NE(outcome.status, 0) << arguments;
-    EXPECT_CONTAINS(outcome.output, why) << arguments;
-  }
-
   CommandFolder folder;
+  std::optional<std::string> before;
 };
 
 TEST_F(SpeedCommand, KeepsWhatItHasMeasuredWhenItIsInterrupted) {
-  const ProcessOutcome outcome = folder.interrupted(
-      {"env", "KEEPOUT_CACHE=" + folder.path().string(), KEEPOUT_COMMAND, "bench", "--speed",
-       "--quick", "--triangles", "4000", "--json", "s.json", "--out", "s.html"},
-      "sphere query");
+  const ProcessOutcome outcome =
+      folder.interrupted({KEEPOUT_COMMAND, "bench", "--speed", "--quick", "--triangles", "4000",
+                          "--json", "s.json", "--out", "s.html"},
+                         "sphere query");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
   EXPECT_CONTAINS(outcome.output, "interrupted, so only a part of the table");
   const json record = read("s.json");
@@ -61,10 +58,9 @@ TEST_F(SpeedCommand, KeepsWhatItHasMeasuredWhenItIsInterrupted) {
 }
 
 TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
-  const ProcessOutcome outcome =
-      run("bench --speed --quick --triangles 4000 --steps 3000 --largest 80000 --json s.json "
-          "--out s.html");
-  ASSERT_EQ(outcome.status, 0) << "falling short is no failure: " << outcome.output;
+  const ProcessOutcome outcome = succeeded(folder.run(
+      "bench --speed --quick --triangles 4000 --steps 3000 --largest 80000 --json s.json "
+      "--out s.html"));  // falling short is no failure
   const json record = read("s.json");
   EXPECT_EQ(record["mesh"], "bunny, 4,000 triangles");
   const std::string figures = figures_of("s.json");
@@ -74,6 +70,7 @@ TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
   EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(table, '\n')), 1 + record["rows"].size())
       << table;
 
+  std::set<std::string> counted;
   for (const json& row : record["rows"]) {
     const std::string name = row["work"].get<std::string>() + ": " + row["compared"].dump();
     if (row["figure"].is_null()) {
@@ -88,29 +85,19 @@ TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
     const double demanded = row["demanded"][at_least ? "at_least" : "at_most"];
     EXPECT_EQ(row["met"], at_least ? figure >= demanded : figure <= demanded) << name;
     for (const json& side : row["sides"]) EXPECT_GT(side["us"]["p50"], 0.0) << name;
-  }
-  std::size_t at_5_mm = 0;
-  for (const json& query : record["queries"]) at_5_mm += query["radius"] == 5.0 ? 1 : 0;
-  EXPECT_EQ(at_5_mm, index_backends().size() - 1) << "all but brute force";
-
-  for (const char* words : {"at least 500x", "demanded", "Short of what is demanded:"}) {
-    EXPECT_CONTAINS(outcome.output, words) << words;
-  }
-}
-
-TEST_F(SpeedCommand, CountsWhatEveryStepTakesFromTheSystem) {
-  const ProcessOutcome outcome = succeeded(
-      run("bench --speed --quick --triangles 4000 --steps 3000 --json s.json --out s.html"));
-  const json record = read("s.json");
-  std::set<std::string> counted;
-  for (const json& row : record["rows"]) {
     for (const char* what : {"page faults", "allocations", "locks"}) {
       if (row["compared"] != what) continue;
       counted.insert(what);
-      EXPECT_EQ(row["figure"], 0.0) << what;
+      EXPECT_EQ(figure, 0.0) << "of every step: " << what;
     }
   }
   EXPECT_EQ(counted.size(), app::counts_calls() ? 3u : 1u);
+  std::size_t at_5_mm = 0;
+  for (const json& query : record["queries"]) at_5_mm += query["radius"] == 5.0 ? 1 : 0;
+  EXPECT_EQ(at_5_mm, index_backends().size() - 1) << "all but brute force";
+  for (const char* words : {"at least 500x", "demanded", "Short of what is demanded:"}) {
+    EXPECT_CONTAINS(outcome.output, words) << words;
+  }
 
   for (const char* which : {"steps", "nothing"}) {
     const json& times = record["histogram"][which];
@@ -127,21 +114,21 @@ TEST_F(SpeedCommand, CountsWhatEveryStepTakesFromTheSystem) {
 }
 
 TEST_F(SpeedCommand, RefusesWhatItHasNoUseFor) {
-  expect_refused("bench --speed --index pd_tree", "--index");
-  expect_refused("bench --speed --mesh cube.stl", "--mesh");
-  expect_refused("bench --speed --csv s.csv", "--csv");
-  expect_refused("bench --speed --fast", "--fast");
-  expect_refused("bench --speed --steps 0", "--steps");
-  expect_refused("bench --speed --triangles 4000,5000", "--triangles");
-  expect_refused("bench --speed --json no/such/folder.json", "no/such");
-  expect_refused("bench --speed --json s.html --out s.html", "--json");
-  expect_refused("bench --quick", "--speed");
-  expect_refused("bench --largest 20000", "--speed");
+  folder.expect_refused("bench --speed --index pd_tree", "--index");
+  folder.expect_refused("bench --speed --mesh cube.stl", "--mesh");
+  folder.expect_refused("bench --speed --csv s.csv", "--csv");
+  folder.expect_refused("bench --speed --fast", "--fast");
+  folder.expect_refused("bench --speed --steps 0", "--steps");
+  folder.expect_refused("bench --speed --triangles 4000,5000", "--triangles");
+  folder.expect_refused("bench --speed --json no/such/folder.json", "no/such");
+  folder.expect_refused("bench --speed --json s.html --out s.html", "--json");
+  folder.expect_refused("bench --quick", "--speed");
+  folder.expect_refused("bench --largest 20000", "--speed");
 }
 
 TEST_F(SpeedCommand, SaysWhichFixtureIsMissing) {
   std::filesystem::remove(folder.file("fixtures"));
-  expect_refused("bench --speed --quick", "bunny");
+  folder.expect_refused("bench --speed --quick", "bunny");
   EXPECT_FALSE(std::filesystem::exists(folder.file("keepout-bench.html")));
 }
 

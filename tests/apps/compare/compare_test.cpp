@@ -1,21 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "compare/comparison.h"
+#include "compare/compare.h"
 
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
 
-#include "compare/agreement.h"
-#include "compare/compare.h"
+#include "apps/command_process.h"
+#include "keepout/adapters/index_registry.h"
 #include "keepout/adapters/narrow_phase_registry.h"
+#include "keepout/mesh/binary_stl.h"
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/registry.h"
+#include "keepout/version.h"
 #include "meshes.h"
 #include "messages.h"
 #include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {
+
+using nlohmann::json;
+using test::CommandFolder;
+using test::ProcessOutcome;
+using test::succeeded;
 
 IndexComparison on_a_cube() {
   return {.mesh_name = "cube",
@@ -76,8 +84,8 @@ TEST(NarrowPhaseAgreement, EveryNarrowPhaseIsHeldToTheSamePairs) {
     EXPECT_EQ(row.pairs, 40u);
     EXPECT_LE(row.failed + row.contradicted, row.pairs);
     EXPECT_LE(row.median_error, row.worst_error);
-    EXPECT_GT(row.median_us, 0.0);
-    EXPECT_LE(row.median_us, row.p99_us);
+    EXPECT_GT(row.us.p50, 0.0);
+    EXPECT_LE(row.us.p50, row.us.p99.value_or(row.us.max));
     if (row.backend != "exact") continue;
     EXPECT_EQ(row.failed + row.contradicted, 0u);
     EXPECT_EQ(row.worst_error, 0.0);
@@ -132,7 +140,7 @@ TEST(SolverAgreement, CountsEveryProblemOnceAndNoSolverIsWrong) {
     EXPECT_EQ(row.optimal + row.infeasible + row.gave_up, row.problems) << row.solver;
     EXPECT_EQ(row.wrong, 0u) << row.solver << ", " << row.activation;
     EXPECT_GT(row.optimal, row.problems / 2) << row.solver << ", " << row.activation;
-    EXPECT_LE(row.median_us, row.p99_us);
+    EXPECT_LE(row.us.p50, row.us.p99.value_or(row.us.max));
     const std::size_t outcomes =
         std::accumulate(row.outcomes.begin(), row.outcomes.end(), std::size_t{0},
                         [](std::size_t sum, const auto& entry) { return sum + entry.second; });
@@ -176,6 +184,59 @@ TEST(ComparisonFindings, PartsAgreeUnlessAnIndexDiffersOrASolverIsWrong) {
   all.complete = false;
   EXPECT_TRUE(headline(all).starts_with("Interrupted"));
   EXPECT_LACKS(headline(Comparison{}), "All indices") << "nothing was compared";
+}
+
+/// keepout compare as a user meets it.
+class CompareCommand : public testing::Test {
+ protected:
+  void SetUp() override { write_binary_stl(folder.file("cube.stl"), make_cube(5.0)); }
+
+  json read(const std::string& name) const { return json::parse(folder.contents(name)); }
+
+  CommandFolder folder;
+};
+
+TEST_F(CompareCommand, HoldsEveryIndexToBruteForceAndWritesHowToDoItAgain) {
+  const std::string arguments =
+      "compare cube.stl --poses 30 --problems 60 --pairs 20 --seed 3 --json c.json";
+  const ProcessOutcome outcome = succeeded(folder.run(arguments));
+  const json record = read("c.json");
+  const json& comparison = record["comparison"];
+  std::set<std::string> names, searched;
+  for (const json& row : comparison["indices"]["rows"]) {
+    names.insert(row["index"]);
+    if (row["searched_by_the_rule"]) searched.insert(row["index"]);
+    EXPECT_EQ(row["poses"], 30);
+    EXPECT_EQ(row["missed"], 0);
+    EXPECT_EQ(row["invented"], 0);
+    EXPECT_EQ(row["steps_that_differ"], 0);
+    EXPECT_LT(row["closest_point_error_mm"], 1e-12);
+  }
+  EXPECT_EQ(names.size(), index_backends().size() - 1);
+  EXPECT_EQ(searched, (std::set<std::string>{"pd_tree", "wide_bvh"}))
+      << "that is the form that users run";
+  EXPECT_EQ(comparison["agree"], true);
+  EXPECT_CONTAINS(outcome.output, record["headline"].get<std::string>());
+  EXPECT_EQ(record["command"], "keepout " + arguments);
+  EXPECT_EQ(record["seed"], 3);
+  EXPECT_EQ(record["mesh"], "cube.stl");
+  EXPECT_EQ(record["complete"], true);
+  EXPECT_EQ(record["machine"]["keepout"], KEEPOUT_VERSION);
+  EXPECT_FALSE(record["machine"]["processor"].get<std::string>().empty());
+  EXPECT_EQ(record["date"].get<std::string>().size(), std::string("2026-01-01T00:00:00Z").size());
+}
+
+TEST_F(CompareCommand, KeepsWhatIsFinishedWhenItIsInterrupted) {
+  const ProcessOutcome outcome =
+      folder.run("compare cube.stl --poses 6 --problems 200000 --pairs 10 --json c.json",
+                 "timeout --foreground --preserve-status --signal=INT 6");
+  EXPECT_EQ(outcome.status, 130) << outcome.output;
+  EXPECT_CONTAINS(outcome.output, "Interrupted");
+  const json comparison = read("c.json")["comparison"];
+  EXPECT_EQ(comparison["complete"], false);
+  EXPECT_EQ(comparison["agree"], true);
+  EXPECT_FALSE(comparison["indices"].empty()) << "they were finished";
+  EXPECT_TRUE(comparison["narrow_phases"].empty());
 }
 
 }  // namespace
