@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long a client of `keepout serve` waits for an answer, and whether its memory stays flat: a
-// hand that presses a tool over the mesh, one request at a time, in closed loop.
+// How long a client of `keepout serve` waits for an answer, and whether its memory stays flat: an
+// operator who presses a tool over the mesh, one request at a time, in closed loop.
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -24,6 +24,7 @@
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/mesh/load_mesh.h"
+#include "shared/clip.h"
 #include "shared/machine.h"
 #include "shared/timing.h"
 
@@ -117,15 +118,10 @@ class Server {
   std::vector<char> answer_ = std::vector<char>(1 << 20);
 };
 
-/// A hand that goes for one place of the surface after the other, as deep as it can.
-class Hand {
+/// An operator who goes for one place of the surface after the other, as deep as possible.
+class Operator {
  public:
-  explicit Hand(const Mesh& mesh) {
-    Random random(1);
-    starts_ = surface_points(mesh, 5000, 3.0, random);
-    Random again(1);
-    goals_ = surface_points(mesh, 5000, -3.0, again);
-  }
+  explicit Operator(const Mesh& mesh) : starts_(places(mesh, 3.0)), goals_(places(mesh, -3.0)) {}
 
   std::string_view request(std::size_t number) {
     if (number % 200 == 0) {
@@ -137,7 +133,7 @@ class Hand {
     // Slide about, once it has arrived.
     const double angle = 0.1 * static_cast<double>(number % 200);
     desired += Vec3(2.0 * std::cos(angle), 2.0 * std::sin(angle), std::cos(1.7 * angle));
-    if (desired.norm() > 0.2) desired *= 0.2 / desired.norm();
+    desired = app::clipped(desired, 0.2);
     const int size =
         std::snprintf(line_, sizeof line_,
                       "{\"id\":%zu,\"do\":\"step\",\"tip\":[%.17g,%.17g,%.17g],"
@@ -156,17 +152,21 @@ class Hand {
   }
 
  private:
-  std::vector<Vec3> starts_;
-  std::vector<Vec3> goals_;
-  Vec3 tip_ = Vec3::Zero();
-  Vec3 goal_ = Vec3::Zero();
+  /// The same places at any height above the surface. [mm]
+  static std::vector<Vec3> places(const Mesh& mesh, double height) {
+    Random random(1);
+    return surface_points(mesh, 5000, height, random);
+  }
+
+  std::vector<Vec3> starts_, goals_;
+  Vec3 tip_ = Vec3::Zero(), goal_ = Vec3::Zero();
   char line_[512];
 };
 
 void run(const Load& load) {
   const LoadedMesh loaded = load_mesh(load.mesh);
   Server server(load);
-  Hand hand(*loaded.mesh);
+  Operator operates(*loaded.mesh);
   server.ask("{\"do\":\"ping\"}\n");
   const auto count = static_cast<std::size_t>(load.requests);
   const auto every = load.malformed > 0.0 ? static_cast<std::size_t>(1.0 / load.malformed) : count;
@@ -176,7 +176,7 @@ void run(const Load& load) {
   std::string resident_early;
   for (std::size_t number = 0; number < count; ++number) {
     if (number == 10'000) resident_early = server.resident();
-    std::string_view line = hand.request(number);
+    std::string_view line = operates.request(number);
     const bool is_bad = load.malformed > 0.0 && number % every == every - 1;
     std::string cut;
     if (is_bad) line = cut = std::string(line.substr(0, 20 + number % 60)) + "\n";
@@ -189,7 +189,7 @@ void run(const Load& load) {
     if (is_bad) continue;
     steps.push_back(waited);
     limited += answer.find("\"limited\"") != std::string_view::npos;
-    hand.follow(answer);
+    operates.follow(answer);
   }
   const app::Machine machine = app::this_machine();
   std::printf("machine: %s, %u cores, %s, %s\n", machine.processor.c_str(), machine.cores,

@@ -107,14 +107,15 @@ forbid(engine/src/index/wide_bvh "${include}(\\.\\./)+pd_tree/|${include}keepout
 
 # Within the command: main and its smaller commands know every folder; a folder knows those that are
 # named here.
-set(folders live page record serve shared simulate verify)
+set(folders live operators page record serve shared simulate verify)
 set(known_to_shared)
 set(known_to_page shared)
 set(known_to_record shared page)
 set(known_to_serve shared)
-set(known_to_verify shared record)
+set(known_to_operators shared simulate verify)  # what operators look at: an audit, and scenes
+set(known_to_verify operators shared record)
 set(known_to_live shared page verify)
-set(known_to_simulate shared record verify)
+set(known_to_simulate operators shared record verify)
 foreach(folder IN LISTS folders)
   set(others ${folders})
   list(REMOVE_ITEM others ${folder} ${known_to_${folder}})
@@ -125,16 +126,16 @@ endforeach()
 # Comparisons include the command, and the command includes no comparison.
 set(known_to_bench compare simulate)
 set(known_to_compare)
-set(known_to_plan verify)
+set(known_to_plan operators verify)
 foreach(folder bench compare plan)
-  set(others bench compare plan live serve simulate verify)
+  set(others bench compare plan live operators serve simulate verify)
   list(REMOVE_ITEM others ${folder} ${known_to_${folder}})
   list(JOIN others "|" others)
   forbid(benchmarks/${folder} "${include}\"(commands\\.h|\\.\\./|(${others})/)" "of what compares, ${folder} knows only: ${known_to_${folder}}")
 endforeach()
 
 # What a page calls is the library, what is found wrong with a mesh, and no study.
-forbid(apps/web "${include}\"(bench|compare|live|plan|record|serve|simulate|verify)/" "a page knows no study")
+forbid(apps/web "${include}\"(bench|compare|live|operators|plan|record|serve|simulate|verify)/" "a page knows no study")
 forbid(apps/web "${include}keepout/(judges|oracle)/" "the oracle is for tests and the command")
 
 # What tests, shows and compares is above everything, and nothing may need it.

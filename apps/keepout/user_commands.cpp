@@ -115,7 +115,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
 void add_simulate(CLI::App& app, SimulateOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "simulate",
-      "Push a tool over and into the anatomy with a simulated hand, without a fixture "
+      "Push a tool over and into the anatomy with a simulated operator, without a fixture "
       "and with each rule, and write an HTML report with pictures");
   command.add_option("MESH", options.meshes, std::string(mesh_help) + "; with --robot several")
       ->type_name("");
@@ -131,16 +131,15 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
         "Then time indices, rules and solvers side by side on this mesh, into the same report: a "
         "quick 'keepout bench'");
   }
-  command.add_flag_callback(
-      "--verbose", [&options] { options.tables = Tables::printed; },
-      "Print the tables of the report as well");
+  command.add_flag("--verbose", options.is_verbose, "Print the tables of --bench as well");
   add_constraint_options(command, options.constraint);
   add_length(command, "--max-step", options.max_step, Zero::refused,
              "Longest increment to desire in a cycle");
-  add_number(command, "--seed", options.hand.seed, 0, largest_seed,
-             "Seed of the hand: same seed, same motion");
-  add_number(command, "--strokes", options.hand.strokes, 1, 100'000, "How often the hand goes in");
-  add_number(command, "--cycles", options.hand.cycles, 10, 1'000'000,
+  add_number(command, "--seed", options.strokes.seed, 0, largest_seed,
+             "Seed of the operator: same seed, same motion");
+  add_number(command, "--strokes", options.strokes.count, 1, 100'000,
+             "How often the operator goes in");
+  add_number(command, "--cycles", options.strokes.cycles, 10, 1'000'000,
              "Control cycles of each stroke, at 1 kHz");
   CLI::Option* const robot =
       command
@@ -171,7 +170,6 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
     if (options.meshes.size() > 1) {
       throw CLI::ValidationError("MESH", "is one, not several, but with --robot");
     }
-    options.mesh = options.meshes.front();
   });
 }
 

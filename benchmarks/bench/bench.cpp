@@ -268,7 +268,7 @@ PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<con
   const StopSignal stop;
   Benchmark benchmark;
   run_benchmark({.command = options.command,
-                 .subjects = {{.mesh = options.mesh.string()}},
+                 .subjects = {{.mesh = options.meshes.front().string()}},
                  .combinations = combinations_of({.radii = {5.0, 1.0}}),
                  .queries = 1500,
                  .seconds = 0.3},
@@ -276,7 +276,7 @@ PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<con
   Comparison comparison;
   const std::size_t rows = benchmark.rows.size();
   if (!stop.has_come()) {
-    comparison = compare_parts(options.mesh.stem().string(), mesh,
+    comparison = compare_parts(options.meshes.front().stem().string(), mesh,
                                {.poses = 12, .problems = 400, .pairs = 100},
                                [&stop] { return stop.has_come(); });
     print(out, comparison);

@@ -7,9 +7,9 @@
 #include "keepout/error.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/ompl/joint_planning.h"
+#include "operators/attacker.h"
 #include "plan/judge_joint_path.h"
 #include "plan/planning.h"
-#include "verify/robot/hand.h"
 #include "verify/robot/start.h"
 
 namespace keepout::app {
@@ -19,7 +19,7 @@ namespace base = ompl::base;
 
 constexpr int cycles_of_the_hand = 3000;
 constexpr int looked_at_each = 20;         // [cycles]
-constexpr double speed_of_the_hand = 4.0;  // see RobotHand
+constexpr double speed_of_the_hand = 4.0;  // see Attacker
 constexpr double least_advance = 30;       // [mm]
 constexpr double finer_than = 2.0;         // the farthest place is not looked for [mm]
 constexpr std::size_t most_starts = 100;   // to each problem that is asked for
@@ -36,7 +36,7 @@ std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& sta
   InstrumentConstraint straight = make_instrument_constraint(
       on.scene.mesh(), on.scene.shared_index(), instrument, {.options = {.margin = on.margin}});
   oracle::InstrumentOracle judge(on.scene.tree(), on.robot.judged(), start.base);
-  RobotHand hand(on.scene, random, speed_of_the_hand);
+  Attacker hand(on.scene, random, speed_of_the_hand);
   ChainState state;
   instrument.chain().forward_kinematics(start.positions, state);
   const Pose first = state.flange();
@@ -78,7 +78,7 @@ class InstrumentPlanning final : public Planning {
   /// Draws problems, each with a solution that keeps twice the margin:
   ///
   /// 1. The instrument begins before a random place of the surface, 5 to 20 mm off it (find_start).
-  /// 2. From there a hand pushes, slides and turns it about (RobotHand), for 3000 certified steps.
+  /// 2. From there a hand pushes, slides and turns it about (Attacker), for 3000 certified steps.
   /// 3. The goal is the place on its way that is farthest ahead, along the tool as it is at the
   ///    start, among those to which the straight motion of the joints leads through the mesh; to
   ///    within some 2 mm. Unless it is 30 mm ahead, another beginning is tried.

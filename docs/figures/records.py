@@ -28,15 +28,15 @@ TIP = ["engine", "solvers", "factory"]
 INSTRUMENT = TIP + ["robot"]
 # `apps/keepout/NAME` is where `benchmarks/NAME` lay before.
 SOURCES = {
-    "simulate": TIP + ["apps/keepout/simulate"],
-    "simulate_robot": INSTRUMENT + ["apps/keepout/simulate", "oracle"],
+    "simulate": TIP + ["apps/keepout/operators", "apps/keepout/simulate"],
+    "simulate_robot": INSTRUMENT + ["apps/keepout/operators", "apps/keepout/simulate", "oracle"],
     "bench": TIP + ["adapters", "benchmarks/bench", "apps/keepout/bench"],
     "speed": TIP + ["adapters", "benchmarks/bench", "apps/keepout/bench"],
     "compare": TIP + ["adapters", "benchmarks/compare", "apps/keepout/compare"],
     "plan": TIP + ["adapters/ompl", "benchmarks/plan", "apps/keepout/plan"],
     "plan_robot": INSTRUMENT + ["adapters/ompl", "benchmarks/plan", "apps/keepout/plan"],
-    "verify": TIP + ["apps/keepout/verify", "oracle"],
-    "verify_robot": INSTRUMENT + ["apps/keepout/verify", "oracle"],
+    "verify": TIP + ["apps/keepout/operators", "apps/keepout/verify", "oracle"],
+    "verify_robot": INSTRUMENT + ["apps/keepout/operators", "apps/keepout/verify", "oracle"],
     "output": INSTRUMENT + ["adapters"],
 }
 

@@ -9,10 +9,10 @@
 #include "keepout/index/query.h"
 #include "keepout/oracle/inside_test.h"
 #include "keepout/oracle/triangle_tree.h"
-#include "simulate/simulation.h"
 
 namespace keepout::app {
 
+enum class SurfaceKind : std::uint8_t { closed, open };
 enum class Side : std::uint8_t { front, behind, touching };
 
 /// Says where a tip really is, whatever the fixture believed: the check of a simulation.

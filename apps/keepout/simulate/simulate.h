@@ -10,8 +10,8 @@
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/mesh/load_mesh.h"
+#include "operators/strokes.h"
 #include "record/record.h"
-#include "simulate/hand.h"
 
 namespace keepout::app {
 
@@ -28,39 +28,32 @@ struct PartTimings {
 using TimeParts = std::function<PartTimings(
     const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh, std::ostream& out)>;
 
-/// Whether the tables of the report are printed too.
-enum class Tables { in_the_report, printed };
-
 struct SimulateOptions {
-  std::filesystem::path mesh;
+  std::vector<std::filesystem::path> meshes;  // one; with a robot any number, by default real ones
   LoadOptions load = {};
   RecordFiles files = {.json = {}, .page = "keepout-report.html"};
   std::vector<std::string> rules;       // run beside the tool without a fixture
   MotionConstraintSettings constraint;  // its activation is each of the rules in turn
-  HandSettings hand;
-  double max_step = 0.5;         // longest increment asked for in a cycle [mm]
-  TimeParts time_parts = {};     // unset in programs that cannot
-  bool is_timing_parts = false;  // whether to do so after the simulation
-  Tables tables = Tables::in_the_report;
-  std::string robot;                          // whose instrument is driven instead; empty: none
-  std::vector<std::filesystem::path> meshes;  // for it; without one, the largest real ones
-  std::vector<double> speeds{1.0, 5.0};       // of it, in multiples of 0.5 mm and 0.02 rad a cycle
-  std::string called_as = "keepout";          // what the user is told to type next
-  std::string command;                        // that does it again
+  StrokeSettings strokes;
+  double max_step = 0.5;                 // longest increment commanded in a cycle [mm]
+  TimeParts time_parts = {};             // unset in programs that cannot
+  bool is_timing_parts = false;          // whether to do so after the simulation
+  bool is_verbose = false;               // prints the tables of these timings
+  std::string robot;                     // whose instrument is driven instead; empty: none
+  std::vector<double> speeds{1.0, 5.0};  // of it, in multiples of 0.5 mm and 0.02 rad a cycle
+  std::string called_as = "keepout";     // what the user is told to type next
+  std::string command;                   // that does it again
 };
 
-/// Pushes the tool over and into the anatomy in closed loop, without a fixture and with each rule;
-/// writes a record and its report, and prints to `out` in a dozen lines what came out and what to
-/// try next. A rule that is named twice runs once. Throws Error, also when the report would
-/// overwrite the mesh; then there is no report. Gives the exit status: exit_interrupted where a
-/// signal stopped the benchmark, of which the report has what was finished.
+/// Moves a tip, or the instrument of a robot, over and into the anatomy in closed loop, without a
+/// guard and with each one, and judges each cycle. Writes a record of the kind simulate or
+/// simulate_robot (docs/records.md) and its report, and prints the outcome and what to try next. A
+/// rule that is named twice runs once.
+///
+/// A StopSignal ends it early, after one stroke at least; what is finished is kept. Returns the
+/// exit status: failure if a certified cycle of an instrument broke what docs/joint-space-step.md
+/// promises, exit_interrupted if a signal stopped it. Throws Error, also if the report would
+/// overwrite the mesh; then there is no report.
 int simulate(const SimulateOptions& options, std::ostream& out);
-
-/// What `simulate` does where a robot is named: drives its instrument over the meshes in each mode,
-/// and judges each cycle; writes a record of the kind simulate_robot (docs/records.md) and its
-/// report, and prints a table. A StopSignal ends it early, and what is done is kept. The exit
-/// status: failure when a certified cycle broke what docs/joint-space-step.md promises. Throws
-/// Error.
-int simulate_robot(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -1,26 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
 #include "keepout/fixtures/random.h"
 #include "keepout/step/motion_constraint.h"
+#include "operators/attacker.h"
 #include "scene.h"
 
 namespace keepout::app {
 
-/// The kind of motion that an operator commands.
-enum class Route : std::uint8_t {
-  push,       // straight into the surface
-  slide,      // into the surface and along it
-  walk,       // anywhere, in steps of all lengths
-  aim,        // at the corners and edges of the nearest triangle
-  ping_pong,  // from wall to wall
-  tremor,     // to a place behind the surface, trembling
-  come_back,  // away from the surface, and back into it
-  through     // to places far away, through the surface
-};
+/// Returns the name of a route of a tip.
 std::string_view name(Route route) noexcept;
 
 /// The options of a guarded tip, its start, and the commanded motion.

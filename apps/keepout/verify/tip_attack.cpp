@@ -6,7 +6,7 @@
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "verify/attack.h"
-#include "verify/path.h"
+#include "verify/tip_joints.h"
 
 namespace keepout::app {
 namespace {
@@ -80,7 +80,7 @@ Json incident(std::string_view what, const Scene& scene, std::uint64_t trajector
 struct Tip {
   Tip(Scene& scene, Guard& guard, Random& random)
       : setup(draw_setup(scene, random)),
-        path(scene, random, setup),
+        attacker(scene, random, setup.route, setup.longest_step, required_clearance(setup.options)),
         joints(setup, random),
         judge(scene.judged(), setup.options,
               setup.inside == Inside::led_out && scene.has_sides() && setup.joints == 0, setup.tip),
@@ -89,8 +89,8 @@ struct Tip {
   }
 
   Setup setup;
-  Path path;
-  Joints joints;
+  Attacker attacker;
+  TipJoints joints;
   oracle::TipJudge judge;
   Vec3 place;
   int failures = 0;  // since it last moved
@@ -127,7 +127,7 @@ class TipAttack final : public Attack {
       tip_.emplace(scene, guard, random_);
       ++row.tips;
     }
-    Motion motion{.tip = tip_->place, .desired = tip_->path.next(tip_->place)};
+    Motion motion{.tip = tip_->place, .desired = tip_->attacker.next(tip_->place).linear};
     tip_->joints.attach(motion);
     const Step step = guard.step(motion);
     const TipVerdict verdict = tip_->judge.judge(motion, step);

@@ -43,38 +43,6 @@ std::vector<Motion> sample_of(std::span<const Motion> motions) {
 
 constexpr int most_rounds = 50;  // about ten are enough where most tips find room
 
-/// Presses: half of what it asks for leads to the surface, half along it.
-class Hand {
- public:
-  Hand(const IndexedMesh& on, const MotionKind& kind, Random& random)
-      : nearest_(*on.mesh, *on.index), kind_(kind), random_(random) {}
-
-  /// From above a place to the clearance. Whether there is room.
-  bool set_down(Vec3& tip) {
-    const ClosestPoint closest = nearest_(tip, 2.0 * kind_.clearance).closest;
-    if (closest.distance < kind_.clearance) return false;
-    constexpr double not_quite = 0.999;  // or rounding would make it too close
-    tip += not_quite * (1.0 - kind_.clearance / closest.distance) * closest.offset;
-    heading_ = random_.direction();
-    return true;
-  }
-
-  Vec3 next(const Vec3& tip) {
-    const ClosestPoint closest = nearest_(tip, 1.01 * kind_.clearance).closest;
-    const Vec3 down = closest.offset / closest.distance;
-    Vec3 along = heading_ - heading_.dot(down) * down;
-    if (along.norm() > 0.0) along.normalize();
-    const Vec3 way = down + along + 0.3 * random_.direction();
-    return random_.uniform(kind_.shortest, kind_.longest) * way.normalized();
-  }
-
- private:
-  NearestTriangle nearest_;
-  const MotionKind& kind_;
-  Random& random_;
-  Vec3 heading_ = Vec3::UnitX();
-};
-
 Vec3 somewhere_free(const Mesh& mesh, NearestTriangle& nearest, const FreeSpace& space,
                     Random& random) {
   constexpr std::size_t most_tries = 1000;
@@ -153,15 +121,23 @@ std::vector<Motion> pressed_motions(const IndexedMesh& on, std::size_t count,
                                     const MotionKind& kind, Random random) {
   constexpr std::size_t cycles_of_a_stroke = 50;
   MotionConstraint guard = certified(on, kind.clearance);
-  Hand hand(on, kind, random);
+  NearestTriangle nearest(*on.mesh, *on.index);
   std::vector<Motion> motions;
   motions.reserve(count);
   const std::size_t strokes = count / cycles_of_a_stroke + 1;
   for (int round = 0; round < most_rounds && motions.size() < count; ++round) {
     for (Vec3 tip : surface_points(*on.mesh, strokes, 1.5 * kind.clearance, random)) {
-      if (!hand.set_down(tip)) continue;
+      const ClosestPoint closest = nearest(tip, 2.0 * kind.clearance).closest;
+      if (closest.distance < kind.clearance) continue;
+      constexpr double not_quite = 0.999;  // or rounding would make it too close
+      tip += not_quite * (1.0 - kind.clearance / closest.distance) * closest.offset;
+      const Vec3 heading = random.direction();
       for (std::size_t cycle = 0; cycle < cycles_of_a_stroke && motions.size() < count; ++cycle) {
-        const Motion motion{.tip = tip, .desired = hand.next(tip)};
+        const ClosestPoint below = nearest(tip, 1.01 * kind.clearance).closest;
+        const Vec3 down = below.offset / below.distance;
+        Vec3 along = heading - heading.dot(down) * down;
+        if (along.norm() > 0.0) along.normalize();
+        const Motion motion{.tip = tip, .desired = pressing_increment(down, along, kind, random)};
         const Step step = guard.step(motion);
         if (!step.ok()) break;
         if (step.status == Status::limited) motions.push_back(motion);

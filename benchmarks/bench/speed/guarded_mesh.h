@@ -48,11 +48,11 @@ MotionConstraint paper(const IndexedMesh& on, double radius, const std::string& 
 std::string disagreement(MotionConstraint& one, MotionConstraint& other,
                          std::span<const Motion> motions, double accuracy = 0.0);
 
-// What hands ask of a tool. Each throws Error where the mesh has hardly any room for such motions.
+// Commands of operators. Each throws Error where the mesh has hardly any room for such motions.
 
-/// A hand that presses a tool against the surface and drags it along in strokes of 50 cycles, and
-/// the certified rule that keeps it `kind.clearance` off: the tip goes where the step leads it, as
-/// in a control loop. Only cycles in which the tool is held back are handed on.
+/// Returns motions of an operator who presses a tool against the surface and drags it along
+/// (pressing_increment) in strokes of 50 cycles, while the certified rule keeps it `kind.clearance`
+/// off: the tip goes where the step leads it, as in a control loop. Only limited cycles count.
 std::vector<Motion> pressed_motions(const IndexedMesh& on, std::size_t count,
                                     const MotionKind& kind, Random random);
 
@@ -62,8 +62,8 @@ struct FreeSpace {
   double farthest = 20.0;
 };
 
-/// A hand that leads a tool through free space, on a smooth path, cycle after cycle: nothing holds
-/// it back. The lengths of the increments are those of `kind`.
+/// Returns motions of an operator who leads a tool through free space, on a smooth path, cycle
+/// after cycle: nothing limits it. The lengths of the increments are those of `kind`.
 std::vector<Motion> free_motions(const IndexedMesh& on, std::size_t count, const FreeSpace& space,
                                  const MotionKind& kind, Random random);
 

@@ -2,7 +2,6 @@
 // keepout simulate --robot: the same strokes in each mode, judged body by body.
 
 #include <algorithm>
-#include <cstdint>
 #include <initializer_list>
 #include <utility>
 
@@ -23,15 +22,6 @@ Json record_of_robot(const test::CommandFolder& folder, const std::string& argum
   return record;
 }
 
-/// Over shaft, wrist and jaw: cycles, or the largest depth.
-std::uint64_t cycles_of(const Json& row, const std::string& figure) {
-  std::uint64_t sum = 0;
-  for (const char* body : {"shaft_", "wrist_", "jaw_"}) {
-    sum += row.at(body + figure).get<std::uint64_t>();
-  }
-  return sum;
-}
-
 TEST(SimulateRobot, WhatIsCertifiedKeepsAllBodiesOutAndNothingElseDoes) {
   const test::CommandFolder folder;
   const Json record = record_of_robot(folder, "--strokes 6 --cycles 300 --speed 1,20");
@@ -45,20 +35,16 @@ TEST(SimulateRobot, WhatIsCertifiedKeepsAllBodiesOutAndNothingElseDoes) {
       EXPECT_LE(row[name + "_deepest_mm"].get<double>(), body["radius_mm"].get<double>() + 1e-9);
       EXPECT_EQ(row[name + "_deepest_mm"] > 0.0, row[name + "_in_mesh"] > 0u);
       EXPECT_GE(row[name + "_below"], row[name + "_in_mesh"]);
+      EXPECT_GE(row["below"], row[name + "_below"]);
+      EXPECT_GE(row["in_mesh"], row[name + "_in_mesh"]);
     }
-    if (row["mode"] == "certified") {
-      EXPECT_EQ(cycles_of(row, "below"), 0u) << row;
-    }
-    if (row["mode"] == "tip only") {
-      EXPECT_GT(row["shaft_deepest_mm"], 1.0) << row;
-    }
-    if (row["mode"] == "none") {
-      EXPECT_GT(cycles_of(row, "in_mesh"), 100u) << row;
-    }
+    EXPECT_TRUE(row["mode"] != "certified" || row["below"] == 0u) << row;
+    EXPECT_TRUE(row["mode"] != "tip only" || row["shaft_deepest_mm"] > 1.0) << row;
+    EXPECT_TRUE(row["mode"] != "none" || row["in_mesh"] > 100u) << row;
   }
   EXPECT_EQ(rows[5]["mode"], "linearised");
   EXPECT_EQ(rows[5]["speed"], 20.0);
-  EXPECT_GT(cycles_of(rows[5], "in_mesh"), 0u);
+  EXPECT_GT(rows[5]["in_mesh"], 0u);
 }
 
 TEST(SimulateRobot, TheSameSeedGivesTheSameAndAnotherDoesNot) {

@@ -10,7 +10,7 @@
 #include "keepout/fixtures/real_mesh.h"
 #include "small_campaign.h"
 #include "trials.h"
-#include "verify/path.h"
+#include "verify/tip_joints.h"
 
 namespace keepout::app {
 namespace {
@@ -75,14 +75,15 @@ TEST(Campaign, EachTipIsGuardedAsByAMotionConstraintOfItsOwn) {
   std::size_t recovering = 0;
   for (int i = 0; i < 120; ++i) {
     const app::Setup setup = draw_setup(scene, random);
-    Path path(scene, random, setup);
-    Joints joints(setup, random);
+    Attacker attacker(scene, random, setup.route, setup.longest_step,
+                      required_clearance(setup.options));
+    TipJoints joints(setup, random);
     guard.begin(setup.options, setup.inside);
     MotionConstraint constraint =
         make_motion_constraint(scene.mesh(), {.options = setup.options, .inside = setup.inside});
     Vec3 tip = setup.tip;
     for (int cycle = 0; cycle < 60; ++cycle) {
-      Motion motion{.tip = tip, .desired = path.next(tip)};
+      Motion motion{.tip = tip, .desired = attacker.next(tip).linear};
       joints.attach(motion);
       const Step own = guard.step(motion);
       const Step theirs = constraint.step(motion);

@@ -10,8 +10,8 @@
 #include "keepout/activation/certified.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
+#include "operators/attacker.h"
 #include "verify/robot/excess.h"
-#include "verify/robot/hand.h"
 
 namespace keepout::app {
 namespace {
@@ -84,7 +84,7 @@ class RobotAttempt {
         subject_(campaign.make_subject(setup_)),
         judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
                subject_->tolerance()),
-        hand_(*setup_.meshes[0].scene, random, setup_.speed),
+        attacker_(*setup_.meshes[0].scene, random, setup_.speed),
         positions_(setup_.start.positions) {
     if (setup_.is_drawn) return;
     const Scene& scene = *setup_.meshes[0].scene;
@@ -151,7 +151,7 @@ class RobotAttempt {
   /// Returns the commanded motion of the flange, of an operator who looks at the first mesh.
   Twist wanted(const Vec3& flange) {
     const Pose& mesh = judge_.pose(0);
-    Twist twist = hand_.next(mesh.rotation.transpose() * (flange - mesh.position));
+    Twist twist = attacker_.next(mesh.rotation.transpose() * (flange - mesh.position));
     twist.linear = mesh.rotation * twist.linear;
     twist.angular = mesh.rotation * twist.angular;
     return twist;
@@ -240,7 +240,7 @@ class RobotAttempt {
   std::unique_ptr<RobotSubject> subject_;
   std::optional<MotionConstraint> point_;  // of a ball at the tip alone: timed beside it
   oracle::RobotJudge judge_;
-  RobotHand hand_;
+  Attacker attacker_;
   std::vector<double> positions_;
   double margin_ = 0.0;                  // at present [mm]
   std::optional<std::uint64_t> waited_;  // for a margin that is not kept yet [cycles]

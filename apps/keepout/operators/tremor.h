@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -10,13 +9,8 @@
 
 namespace keepout::app {
 
-/// From 0 to 1, at rest at both ends: the speed is continuous, though the acceleration is not.
-inline double smooth(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
-/// A smooth shake: the sum of three waves, each along a direction and at a frequency of its own.
+/// A smooth shake of an operator's hand: the sum of three waves, each along a direction and at a
+/// frequency of its own.
 class Tremor {
  public:
   /// `amplitude`: root of the sum of the squared amplitudes of the waves. [mm]

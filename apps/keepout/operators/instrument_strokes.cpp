@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulate/robot/strokes.h"
-
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
-#include "simulate/hand.h"
-#include "simulate/tremor.h"
+#include "keepout/error.h"
+#include "operators/strokes.h"
+#include "operators/tremor.h"
 
 namespace keepout::app {
 namespace {
@@ -15,14 +15,15 @@ namespace {
 constexpr double pass_lasts = 400.0;  // at speed 1 [cycles]
 constexpr int starts_to_lean = 12;    // of which the best is taken
 
-/// A place on an instrument, and the nearest one of the surface.
+/// A place on an instrument, and the direction and distance to the surface.
 struct Facing {
   Vec3 at = Vec3::Zero();
   Vec3 inwards = Vec3::UnitZ();                               // unit, to the surface
   double distance = std::numeric_limits<double>::infinity();  // [mm]
 };
 
-/// Of the places on a part of a body's axis, from one share of it to another.
+/// Returns the one nearest to the surface, of places on a part of a body's axis, from one fraction
+/// of it to another.
 Facing facing(Scene& scene, const oracle::Segment& axis, double from, double to) {
   constexpr int places = 24;
   Facing best;
@@ -58,15 +59,12 @@ Pass draw_pass(Manner manner, const Vec3& inwards, Random& random) {
 
 }  // namespace
 
-std::string_view name(Manner manner) noexcept {
-  constexpr std::array<std::string_view, 3> names{"pushing with the jaw", "leaning with the shaft",
-                                                  "rotating the wrist"};
-  return names[static_cast<std::size_t>(manner)];
-}
-
-std::optional<RobotStroke> make_robot_stroke(RobotScene& on, Manner manner, double speed,
-                                             std::size_t cycles, Random& random) {
-  const bool is_leaning = manner == Manner::lean;
+Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::uint64_t number,
+                         double speed) {
+  Random of_seed(settings.seed);
+  Random random(of_seed.bits() ^ number);
+  Stroke stroke{.manner = manners[number % manners.size()], .speed = speed, .number = number};
+  const bool is_leaning = stroke.manner == Manner::lean;
   std::optional<RobotStart> start;
   Facing facing_most;
   for (int i = 0; i < (is_leaning ? starts_to_lean : 1); ++i) {
@@ -81,7 +79,12 @@ std::optional<RobotStroke> make_robot_stroke(RobotScene& on, Manner manner, doub
     start = drawn;
     facing_most = one;
   }
-  if (!start) return std::nullopt;
+  if (!start) {
+    throw Error(
+        "no place was found where an instrument can begin, 5 to 20 mm before the surface with its "
+        "shaft free; is the mesh in mm?");
+  }
+  stroke.start = *start;
 
   const Instrument instrument = on.robot.make(start->base);
   ChainState state;
@@ -93,23 +96,23 @@ std::optional<RobotStroke> make_robot_stroke(RobotScene& on, Manner manner, doub
   const double off = random.uniform(0.0, 2.0);
   const Vec3 bias = off * random.direction();
   const Tremor tremor(0.1, random);
-  RobotStroke stroke{manner, *start, {}};
   Pass pass;
   double last = -1.0;
-  for (std::size_t cycle = 0; cycle < cycles; ++cycle) {
+  for (std::size_t cycle = 0; cycle < settings.cycles; ++cycle) {
     const double time = speed * static_cast<double>(cycle) / pass_lasts;  // [passes]
-    if (std::floor(time) != last) pass = draw_pass(manner, facing_most.inwards, random);
+    if (std::floor(time) != last) pass = draw_pass(stroke.manner, facing_most.inwards, random);
     last = std::floor(time);
     const double t = time - last;
-    const double lowered = smooth(4.0 * t) * smooth(4.0 * (1.0 - t));
-    const double to_and_fro = lowered * std::sin(2.0 * std::numbers::pi * t);
-    const Vec3 way = lowered * lever * (facing_most.distance + pass.depth) * facing_most.inwards +
-                     to_and_fro * pass.slide * pass.heading;
+    const double to_and_fro = lowered(t) * std::sin(2.0 * std::numbers::pi * t);
+    const Vec3 way =
+        lowered(t) * lever * (facing_most.distance + pass.depth) * facing_most.inwards +
+        to_and_fro * pass.slide * pass.heading;
     const Mat3 turn = Eigen::AngleAxisd(to_and_fro * pass.turn, pass.axis).toRotationMatrix();
-    stroke.hand.push_back(
+    stroke.goals.push_back(
         {home.position + way + bias + tremor.at(static_cast<double>(cycle) * cycle_seconds),
          turn * home.rotation});
   }
+  stroke.random = random;
   return stroke;
 }
 

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "keepout/error.h"
+#include "keepout/fixtures/poses.h"
+#include "operators/strokes.h"
+#include "operators/tremor.h"
+#include "shared/number_text.h"
+
+namespace keepout::app {
+namespace {
+
+// On a mesh of 100 mm and more; on a smaller one they are scaled. [mm]
+constexpr double start_height = 8.0;   // above the surface at both ends of a stroke
+constexpr double deepest = 5.0;        // goal below the surface, at most
+constexpr double slide_length = 30.0;  // over the surface, at most
+constexpr double tremor_amplitude = 0.1;
+
+class TipStrokes {
+ public:
+  TipStrokes(Audit& audit, const StrokeSettings& settings)
+      : audit_(audit),
+        random_(settings.seed),
+        cycles_(settings.cycles),
+        scale_(std::min(1.0, audit.mesh().bounds().size().norm() / 100.0)) {}
+
+  Stroke next() {
+    const double height = start_height * scale_;
+    const std::optional<SurfacePoint> start = place_to_start(height);
+    if (!start) {
+      throw Error(
+          "no free place to start a stroke from: nowhere is there room for " + trimmed(height) +
+          " mm above the surface, on the side that its normals point to; if they point into "
+          "the solid, flip all triangles ('keepout inspect' tells whether they do)");
+    }
+    const double depth = random_.uniform(0.2, 1.0) * (deepest * scale_);
+    const auto way = slide_over(*start, random_.uniform(0.3, 1.0) * (slide_length * scale_));
+    const Tremor tremor(tremor_amplitude * scale_, random_);
+
+    Stroke stroke;
+    for (std::size_t cycle = 0; cycle < cycles_; ++cycle) {
+      const double t = static_cast<double>(cycle) / static_cast<double>(cycles_);
+      const double along = smooth((t - 0.25) / 0.5) * static_cast<double>(way.size() - 1);
+      const auto station = std::min(static_cast<std::size_t>(along), way.size() - 2);
+      const double blend = along - static_cast<double>(station);
+      const Vec3 point = (1.0 - blend) * way[station].point + blend * way[station + 1].point;
+      const Vec3 up = ((1.0 - blend) * way[station].normal + blend * way[station + 1].normal);
+      const double above = height - lowered(t) * (height + depth);
+      const double seconds = static_cast<double>(cycle) * cycle_seconds;
+      stroke.goals.push_back({.position = point + above * up + tremor.at(seconds)});
+    }
+    return stroke;
+  }
+
+ private:
+  SurfacePoint on_surface(const Vec3& near) {
+    const Hit hit = audit_.nearest(near);
+    return {near + hit.closest.offset, audit_.mesh().normal(hit.triangle)};
+  }
+
+  SurfacePoint draw_place() {
+    if (points_.empty()) points_ = surface_points(audit_.mesh(), 1000, 0.0, random_);
+    const Vec3 point = points_.back();
+    points_.pop_back();
+    return on_surface(point);
+  }
+
+  /// Returns a place on the surface with free space above it, and prefers one that faces outwards:
+  /// strokes deep in a cavity would be as good a test, but invisible in a picture.
+  std::optional<SurfacePoint> place_to_start(double height) {
+    const Vec3 middle = audit_.mesh().bounds().center();
+    const auto is_free = [&](const SurfacePoint& place) {
+      return audit_.clearance(place.point + height * place.normal) > 0.8 * height;
+    };
+    std::optional<SurfacePoint> facing_elsewhere;
+    for (int attempt = 0; attempt < 2000; ++attempt) {
+      const SurfacePoint place = draw_place();
+      const Vec3 outwards = place.point - middle;
+      const bool faces_outwards = place.normal.dot(outwards) >= 0.3 * outwards.norm();
+      if (faces_outwards && is_free(place)) return place;
+      if (!faces_outwards && !facing_elsewhere && is_free(place)) facing_elsewhere = place;
+    }
+    return facing_elsewhere;
+  }
+
+  /// Follows the surface from a place, in a straight direction as seen from above.
+  std::vector<SurfacePoint> slide_over(const SurfacePoint& start, double length) {
+    constexpr int stations = 16;
+    std::vector<SurfacePoint> way{start};
+    Vec3 heading = start.normal.cross(random_.direction()).normalized();
+    for (int i = 1; i < stations; ++i) {
+      const Vec3& up = way.back().normal;
+      heading = (heading - up * up.dot(heading)).normalized();
+      way.push_back(on_surface(way.back().point + heading * (length / (stations - 1))));
+    }
+    return way;
+  }
+
+  Audit& audit_;
+  Random random_;
+  std::size_t cycles_;
+  double scale_;  // of lengths
+  std::vector<Vec3>
+      points_;  // of the surface, drawn many at a time: each draw visits all triangles
+};
+
+}  // namespace
+
+std::function<Stroke()> tip_strokes(Audit& audit, const StrokeSettings& settings) {
+  return [strokes = TipStrokes(audit, settings)]() mutable { return strokes.next(); };
+}
+
+}  // namespace keepout::app

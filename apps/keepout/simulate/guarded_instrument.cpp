@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <Eigen/Geometry>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/judges/robot_judge.h"
+#include "keepout/solvers/active_set.h"
+#include "operators/attacker.h"
+#include "record/drawn_mesh.h"
+#include "record/json_parts.h"
+#include "shared/clip.h"
+#include "simulate/simulated_tool.h"
+#include "verify/campaign.h"
+
+namespace keepout::app {
+namespace {
+
+/// The guard of an instrument.
+enum class Mode : std::uint8_t { certified, linearised, tip_only, none };
+const std::vector<std::string> mode_names{"certified", "linearised", "tip only", "none"};
+
+/// The bodies of the PSM, in its order.
+constexpr std::array<const char*, 3> body_names{"shaft", "wrist", "jaw"};
+
+constexpr std::array<const char*, manners.size()> manner_names{
+    "pushing with the jaw", "leaning with the shaft", "rotating the wrist"};
+
+Columns<RunTally> mode_columns() {
+  Columns<RunTally> columns{
+      {"mesh", &RunTally::mesh, "mesh", -12},
+      {"speed", &RunTally::speed, "speed", 5},
+      {"mode", &RunTally::guard, "mode", -10},
+      {"cycles", &RunTally::cycles, "cycles", 7},
+      {"refused", [](const RunTally& t) { return Json(t.with(Outcome::stopped)); }, "refused", 7},
+      {"limits_broken", &RunTally::breaches, "limits", 6},
+      {"below", [](const RunTally& t) { return Json(t.any.below); }, "close", 7},
+      {"in_mesh", [](const RunTally& t) { return Json(t.any.in_mesh); }, "in mesh", 7}};
+  for (std::size_t b = 0; b < body_names.size(); ++b) {
+    const std::string body = body_names[b];
+    const auto of_body = [b](auto figure) {
+      return [=](const RunTally& t) { return Json(t.bodies[b].*figure); };
+    };
+    columns.push_back({body + "_below", of_body(&BodyTally::below), body + " close", 11});
+    columns.push_back({body + "_in_mesh", of_body(&BodyTally::in_mesh), "in mesh", 7});
+    columns.push_back(
+        {body + "_deepest_mm", of_body(&BodyTally::deepest), "deepest", 7, number_text<"%.2f">});
+  }
+  return columns;
+}
+
+constexpr const char* columns_meaning =
+    R"(close: cycles in which a body was closer than the certified distance, as an independent judge sees
+five poses of each; in mesh: of them, those in which the mesh reached into it; deepest: how far, in mm,
+at most its radius. refused: cycles without a proven motion; limits: cycles that broke a joint's.
+)";
+
+/// The cycles of a stroke in one mode, and which was the worst.
+Json run_json(const std::string& mode, const std::vector<Cycle>& cycles) {
+  Json places = Json::array(), clearances = Json::array();
+  for (const Cycle& cycle : cycles) {
+    Json& at = places.emplace_back();
+    for (const Vec3& place : cycle.places) {
+      at.push_back(json_of(Vec3((1e3 * place).array().round() / 1e3)));
+    }
+    Json& least = clearances.emplace_back();
+    for (const double mm : cycle.clearances) {
+      least.push_back(or_null(std::round(1e6 * mm) / 1e6));
+    }
+  }
+  const auto worst = std::ranges::min_element(cycles, {}, &Cycle::least);
+  return {{"mode", mode},
+          {"worst", worst - cycles.begin()},
+          {"places", std::move(places)},
+          {"clearance_mm", std::move(clearances)}};
+}
+
+class GuardedInstrument final : public SimulatedTool {
+ public:
+  explicit GuardedInstrument(const SimulateOptions& options)
+      : options_(options), margin_(options.constraint.options.margin) {}
+
+  std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
+    const std::string name = path.stem().string();
+    const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, options_.load).mesh;
+    on_.emplace(RobotScene{{name, mesh, options_.constraint.index}, margin_});
+    Json& drawn = meshes_.emplace_back(drawn_mesh(name, *mesh));
+    drawn["surface"] = on_->scene.has_sides() ? "closed" : "open";
+    drawn["strokes"] = Json::array();
+    told_.fill(-1.0);
+    return mesh;
+  }
+
+  std::vector<std::string> guards() const override { return mode_names; }
+
+  Stroke draw(std::uint64_t number, double speed) override {
+    return instrument_stroke(*on_, options_.strokes, number, speed);
+  }
+
+  /// The step of all modes is the same, and differs in its meshes: it has none where only the tip
+  /// is guarded, or nothing is. Then it is damped least squares within the limits of the joints.
+  double start(const Stroke& stroke, std::size_t guard) override {
+    const auto mode = static_cast<Mode>(guard);
+    const Scene& scene = on_->scene;
+    const Instrument instrument = on_->robot.make(stroke.start.base);
+    InstrumentOptions step = options_of({.margin = margin_}, instrument.chain(), stroke.speed);
+    if (mode == Mode::linearised) step.certified = CertifiedMotion::linearised;
+    joints_.emplace(instrument, std::make_unique<ActiveSet>(), step);
+    tip_.reset();
+    if (mode == Mode::tip_only) {  // a ball at the end of the jaw
+      tip_ = make_motion_constraint(scene.mesh(), scene.shared_index(),
+                                    {.options = {.radius = 10.0 * stroke.speed,
+                                                 .tool_radius = instrument.bodies().back().radius,
+                                                 .margin = margin_}});
+    } else if (mode != Mode::none) {
+      joints_->add_mesh(scene.mesh(), scene.shared_index());
+    }
+    speed_ = stroke.speed;
+    random_ = stroke.random;
+    q_ = stroke.start.positions;
+    judge_.emplace(oracle::JudgedScene{on_->robot.judged(), stroke.start.base, {{scene.tree()}}},
+                   joints_->instrument().chain(), random_, q_, step, joints_->tolerance());
+    return margin_ - step.band - 3.0 * joints_->tolerance();
+  }
+
+  Cycle follow(const Pose& goal) override {
+    ChainState state;
+    joints_->instrument().chain().forward_kinematics(q_, state);
+    const Pose at = state.flange();
+    const Eigen::AngleAxisd turn(Mat3(goal.rotation * at.rotation.transpose()));
+    Twist asked{.linear = clipped(goal.position - at.position, speed_ * fastest_way),
+                .angular = clipped(turn.angle() * turn.axis(), speed_ * fastest_turn)};
+    if (tip_) asked.linear = tip_->step({.tip = at.position, .desired = asked.linear}).motion;
+    const InstrumentStep step = joints_->step(q_, asked);
+    for (std::size_t k = 0; step.ok() && k < q_.size(); ++k) q_[k] += step.increment[k];
+    Cycle cycle;
+    cycle.outcome = !step.ok()                    ? Outcome::stopped
+                    : step.status != Status::free ? Outcome::limited
+                                                  : Outcome::moved_freely;
+    cycle.is_breach = judge_->judge(q_).limits_broken;
+    for (std::size_t b = 0; b < body_names.size(); ++b) {
+      cycle.clearances[b] = judge_->least()[b];
+      cycle.places[b] = judge_->oracle().axis(b).to;
+    }
+    return cycle;
+  }
+
+  /// Keeps the stroke of each manner in which guarded bodies missed the margin most, in all modes
+  /// together.
+  void keep(FollowedStroke followed) override {
+    const Stroke& stroke = followed.stroke;
+    const auto manner = static_cast<std::size_t>(stroke.manner);
+    Json json{{"manner", manner_names[manner]},
+              {"speed", stroke.speed},
+              {"number", stroke.number},
+              {"port", json_of(stroke.start.base.position)},
+              {"runs", Json::array()}};
+    double told = 0.0;  // [mm]
+    for (std::size_t mode = 0; mode < mode_names.size(); ++mode) {
+      const std::vector<Cycle>& cycles = followed.runs[mode];
+      const double least = std::ranges::min_element(cycles, {}, &Cycle::least)->least();
+      if (mode_names[mode] != "none") told += std::max(0.0, margin_ - least);
+      json["runs"].push_back(run_json(mode_names[mode], cycles));
+    }
+    if (told <= told_[manner]) return;
+    told_[manner] = told;
+    meshes_.back()["strokes"][manner] = std::move(json);
+  }
+
+  SimulationResult result(const std::vector<RunTally>& runs) override {
+    std::size_t cycles = 0, broken = 0;  // certified
+    for (const RunTally& run : runs) {
+      if (run.guard != mode_names.front()) continue;
+      cycles += run.cycles;
+      broken += run.any.below + run.breaches;
+    }
+    Json record =
+        new_record({.kind = "simulate_robot",
+                    .command = options_.command,
+                    .subject = "A simulated operator drove the instrument of a robot, " +
+                               options_.robot + ", against anatomy: the same strokes in each mode",
+                    .headline = std::string("The certified step ") +
+                                (broken == 0 ? "kept shaft, wrist and jaw off the anatomy in all "
+                                             : "broke its promise in some of ") +
+                                counted(cycles, "cycle") + ".",
+                    .machine = this_machine(),
+                    .settings = {{"robot", options_.robot},
+                                 {"strokes", grouped(options_.strokes.count)},
+                                 {"cycles per stroke", grouped(options_.strokes.cycles)},
+                                 {"margin", trimmed(margin_) + " mm"},
+                                 {"seed", std::to_string(options_.strokes.seed)},
+                                 {"index", options_.constraint.index}}});
+    record["certified_mm"] = margin_ - joints_->options().band;
+    for (std::size_t b = 0; b < body_names.size(); ++b) {
+      record["bodies"].push_back(
+          {{"name", body_names[b]}, {"radius_mm", joints_->instrument().bodies()[b].radius}});
+    }
+    record["rows"] = json_of(mode_columns(), runs);
+    record["meshes"] = std::move(meshes_);
+    return {.record = std::move(record),
+            .columns = mode_columns(),
+            .legend = columns_meaning,
+            .is_broken = broken > 0};
+  }
+
+ private:
+  const SimulateOptions& options_;
+  double margin_;  // [mm]
+  std::optional<RobotScene> on_;
+  Json meshes_ = Json::array();
+  std::array<double, manners.size()> told_ = {};  // of the strokes kept on the last mesh [mm]
+  std::optional<InstrumentConstraint> joints_;
+  std::optional<MotionConstraint> tip_;  // guards the tip alone
+  std::optional<oracle::RobotJudge> judge_;
+  Random random_{0};       // of the judge
+  std::vector<double> q_;  // positions of the joints
+  double speed_ = 1.0;
+};
+
+}  // namespace
+
+std::unique_ptr<SimulatedTool> make_guarded_instrument(const SimulateOptions& options) {
+  return std::make_unique<GuardedInstrument>(options);
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "shared/clip.h"
+#include "shared/progress.h"
+#include "simulate/tip_record.h"
+
+namespace keepout::app {
+namespace {
+
+class GuardedTip final : public SimulatedTool {
+ public:
+  explicit GuardedTip(const SimulateOptions& options) : options_(options) {
+    require_within_reach(options.max_step, options.constraint.options.radius);
+  }
+
+  std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
+    const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, options_.load).mesh;
+    constraints_.emplace_back();
+    for (const std::string& rule : options_.rules) {
+      if (std::ranges::count(rules_, rule) > 0) continue;
+      MotionConstraintSettings settings = options_.constraint;
+      settings.activation = rule;
+      settings.warn = warn_on_stderr;
+      constraints_.emplace_back(make_motion_constraint(mesh, settings));
+      rules_.push_back(rule);
+    }
+    audit_.emplace(mesh);
+    strokes_ = tip_strokes(*audit_, options_.strokes);
+    return mesh;
+  }
+
+  std::vector<std::string> guards() const override { return rules_; }
+
+  Stroke draw(std::uint64_t, double) override { return strokes_(); }
+
+  double start(const Stroke& stroke, std::size_t guard) override {
+    constraint_ = constraints_[guard] ? &*constraints_[guard] : nullptr;
+    tip_ = stroke.goals.front().position;
+    path_.emplace(*audit_, tip_);
+    return required_clearance(options_.constraint.options);
+  }
+
+  Cycle follow(const Pose& goal) override {
+    Cycle cycle;
+    Vec3 motion = clipped(goal.position - tip_, options_.max_step);
+    if (constraint_ != nullptr) {
+      StageTimes times;
+      const Step step = constraint_->step({.tip = tip_, .desired = motion}, times);
+      // Less than a nanometer when more was commanded is standing still.
+      const bool is_still = step.motion.norm() < 1e-6 && motion.norm() > 1e-3;
+      cycle.outcome = !step.ok() || is_still        ? Outcome::stopped
+                      : step.status != Status::free ? Outcome::limited
+                                                    : Outcome::moved_freely;
+      cycle.step_us = static_cast<float>(1e-3 * static_cast<double>(times.total()));
+      motion = step.motion;
+    }
+    tip_ += motion;
+    cycle.is_breach = path_->follow(tip_);
+    cycle.places.front() = tip_;
+    cycle.clearances.front() = path_->clearance();
+    return cycle;
+  }
+
+  void keep(FollowedStroke followed) override { kept_.push_back(std::move(followed)); }
+
+  SimulationResult result(const std::vector<RunTally>& runs) override {
+    return tip_result(options_, *audit_, kept_, runs);
+  }
+
+ private:
+  const SimulateOptions& options_;
+  std::vector<std::string> rules_{no_rule};
+  std::vector<std::optional<MotionConstraint>> constraints_;  // of each rule
+  std::optional<Audit> audit_;
+  std::function<Stroke()> strokes_;
+  std::vector<FollowedStroke> kept_;
+  MotionConstraint* constraint_ = nullptr;  // null: none
+  Vec3 tip_ = Vec3::Zero();
+  std::optional<PathAudit> path_;
+};
+
+}  // namespace
+
+std::unique_ptr<SimulatedTool> make_guarded_tip(const SimulateOptions& options) {
+  return std::make_unique<GuardedTip>(options);
+}
+
+}  // namespace keepout::app

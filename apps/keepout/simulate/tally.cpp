@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulate/tally.h"
+
+namespace keepout::app {
+
+void BodyTally::add(double clearance, double required) {
+  // A clearance that is NaN proves nothing, so it counts against the guard.
+  below += clearance >= required ? 0 : 1;
+  in_mesh += clearance >= 0.0 ? 0 : 1;
+  deepest = std::max(deepest, -clearance);
+}
+
+void RunTally::add(const std::vector<Cycle>& stroke, double required) {
+  const std::size_t inside_before = any.in_mesh, breaches_before = breaches;
+  for (const Cycle& cycle : stroke) {
+    ++outcomes[static_cast<std::size_t>(cycle.outcome)];
+    breaches += cycle.is_breach ? 1 : 0;
+    any.add(cycle.least(), required);
+    for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].add(cycle.clearances[b], required);
+    least = std::min(least, cycle.least());
+    times_us.push_back(static_cast<double>(cycle.step_us));
+  }
+  const bool is_inside = any.in_mesh > inside_before;
+  ++strokes;
+  cycles += stroke.size();
+  strokes_inside += is_inside ? 1 : 0;
+  strokes_breached += is_inside || breaches > breaches_before ? 1 : 0;
+}
+
+}  // namespace keepout::app

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "keepout/geometry/shapes.h"
+#include "shared/timing.h"
+
+namespace keepout::app {
+
+/// What became of the motion that the operator commanded in one cycle.
+enum class Outcome : std::uint8_t {
+  moved_freely,  // all of it was allowed
+  limited,       // a part of it was
+  stopped        // none of it was, or, of a tip, less than a nanometer
+};
+
+/// One control cycle of a simulated stroke, as it ended. A tip is one body; an instrument has
+/// shaft, wrist and jaw.
+struct Cycle {
+  static constexpr double far = std::numeric_limits<double>::infinity();
+
+  std::array<Vec3, 3> places;  // where the bodies end [mm]
+  /// The least distance of each body to the surface, by an independent check: negative inside,
+  /// never negative for a tip beside an open surface, infinite beyond the margin of an instrument.
+  /// [mm]
+  std::array<double, 3> clearances{far, far, far};
+  float step_us = 0.0F;  // time that the step of a tip took; 0 without a fixture [us]
+  Outcome outcome = Outcome::moved_freely;
+  bool is_breach = false;  // the tip passed through a triangle, or a joint left its limits
+
+  double least() const { return *std::ranges::min_element(clearances); }
+};
+
+/// The cycles in which a body was too close.
+struct BodyTally {
+  std::size_t below = 0;    // closer than is required
+  std::size_t in_mesh = 0;  // of them, those in which the mesh reached into it
+  double deepest = 0.0;     // of those: how far, up to the radius of a body [mm]
+
+  void add(double clearance, double required);
+};
+
+/// The figures of all strokes on a mesh, at one speed, under one guard.
+struct RunTally {
+  std::string mesh = {};
+  double speed = 1.0;
+  std::string guard = {};
+  std::size_t strokes = 0, cycles = 0;
+  std::array<std::size_t, 3> outcomes = {};  // cycles, by outcome
+  std::size_t breaches = 0;                  // cycles
+  std::size_t strokes_inside = 0;            // with at least one cycle inside
+  std::size_t strokes_breached = 0;          // with a cycle inside, or with a breach
+  BodyTally any = {};                        // of the bodies together
+  std::array<BodyTally, 3> bodies = {};
+  double least = Cycle::far;  // clearance [mm]
+  std::vector<double> times_us = {};
+
+  /// Adds a stroke, whose bodies are required to keep a clearance. [mm]
+  void add(const std::vector<Cycle>& stroke, double required);
+
+  std::size_t with(Outcome outcome) const { return outcomes[static_cast<std::size_t>(outcome)]; }
+  bool kept_out() const noexcept { return strokes_breached == 0; }
+};
+
+}  // namespace keepout::app

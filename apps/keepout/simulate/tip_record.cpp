@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "simulate/tip_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "keepout/activation/registry.h"
+#include "record/drawn_mesh.h"
+#include "record/json_parts.h"
+#include "shared/names.h"
+
+namespace keepout::app {
+namespace {
+
+using Strokes = std::vector<FollowedStroke>;
+
+/// Returns 0 if the tip has been inside, or has crossed, or touched as far as the check can tell.
+/// [mm]
+double closest(const RunTally& run) {
+  return run.kept_out() && run.least > Audit::touching ? run.least : 0.0;
+}
+
+Columns<RunTally> columns_of(SurfaceKind surface) {
+  // Without a fixture there is no step to be timed.
+  const auto timed = [](auto figure) {
+    return [=](const RunTally& run) {
+      std::vector<double> times = run.times_us;
+      const Timing timing = timing_of(times);
+      return timing.max > 0.0 ? Json(figure(timing)) : Json();
+    };
+  };
+  // An open surface has no inside.
+  const auto inside = [surface](auto figure) {
+    return [=](const RunTally& run) {
+      return surface == SurfaceKind::closed ? Json(figure(run)) : Json();
+    };
+  };
+  const auto with = [](Outcome outcome) {
+    return [=](const RunTally& run) { return Json(run.with(outcome)); };
+  };
+  return {
+      {"", &RunTally::guard, "rule", -10},
+      {"strokes", &RunTally::strokes},
+      {"cycles", &RunTally::cycles, "cycles", 8},
+      {"rate_khz", timed([](const Timing& t) { return 1000.0 / t.p50; }), "kHz", 9,
+       number_text<"%.1f">},
+      {"p50_us", timed([](const Timing& t) { return t.p50; }), "p50 us", 9, number_text<"%.2f">},
+      // The rank of a percentile that so few steps do not have is that of the last.
+      {"p99_us", timed([](const Timing& t) { return t.p99.value_or(t.max); }), "p99 us", 9,
+       number_text<"%.2f">},
+      {"p999_us", timed([](const Timing& t) { return t.p999.value_or(t.max); })},
+      {"max_us", timed([](const Timing& t) { return t.max; })},
+      {"closest_approach_mm", closest, "closest mm", 12, number_text<"%.4f">},
+      {"deepest_mm", inside([](const RunTally& run) { return run.any.deepest; }), "deepest mm", 12,
+       number_text<"%.4f">},
+      {"cycles_inside", inside([](const RunTally& run) { return run.any.in_mesh; }), "inside", 8,
+       number_text<"%.0f">},
+      {"strokes_inside", inside([](const RunTally& run) { return run.strokes_inside; })},
+      {"crossings", &RunTally::breaches, "crossings", 10},
+      {"strokes_breached", &RunTally::strokes_breached, "breached", 9},
+      {"moved_freely", with(Outcome::moved_freely)},
+      {"limited", with(Outcome::limited)},
+      {"stopped", with(Outcome::stopped), "stopped", 9}};
+}
+
+/// Returns the outcome of a run in a few words: "went up to 1.2 mm deep, in 3 of 24 strokes".
+std::string words(const RunTally& run, SurfaceKind surface) {
+  if (run.kept_out()) {
+    const std::string near = closest(run) == 0.0
+                                 ? " but touched the surface"
+                                 : ", never nearer than " + length_text(closest(run));
+    const std::size_t stopped = run.with(Outcome::stopped);
+    return "stayed outside" + near +
+           (stopped > 0 ? "; stood still in " + counted(stopped, "cycle") : "");
+  }
+  const std::string how =
+      surface == SurfaceKind::open ? "through the surface " + how_often(run.breaches)
+      : run.any.in_mesh == 0       ? "right through the anatomy within a single cycle"
+                                   : "up to " + length_text(run.any.deepest) + " deep";
+  return "went " + how + ", in " + grouped(run.strokes_breached) + " of " +
+         counted(run.strokes, "stroke");
+}
+
+/// Returns which rules kept the tool out, and which did not.
+std::string headline(const std::vector<RunTally>& runs, SurfaceKind surface) {
+  if (runs.size() == 1) return "The tool moved without any fixture.";
+  std::vector<std::string> kept_out, let_in;
+  for (std::size_t r = 1; r < runs.size(); ++r) {
+    // Names of rules are odd words in a sentence: they get quotation marks.
+    (runs[r].kept_out() ? kept_out : let_in).push_back("“" + runs[r].guard + "”");
+  }
+  const bool is_closed = surface == SurfaceKind::closed;
+  const std::vector<std::string>& named = let_in.empty() ? kept_out : let_in;
+  std::string text = (named.size() == 1 ? "Rule " : "Rules ") + listed(named);
+  if (let_in.empty()) {
+    text += is_closed ? " kept the tool out of the anatomy"
+                      : " kept the tool from passing through the surface";
+  } else {
+    text += is_closed ? " let the tool into the anatomy" : " let the tool through the surface";
+    if (!kept_out.empty()) {
+      text += "; " + listed(kept_out) + (is_closed ? " kept it out" : " did not");
+    }
+  }
+  const bool is_test = !runs.front().kept_out();
+  return text +
+         (is_test ? "." : ". Without a fixture it stayed out too: these strokes test no rule.");
+}
+
+/// One cycle of a run.
+struct Moment {
+  std::size_t stroke = 0;
+  std::size_t cycle = 0;
+};
+
+Json moment_json(const Moment& moment) {
+  return {{"stroke", moment.stroke}, {"cycle", moment.cycle}};
+}
+
+/// The moments of a run that a page shows.
+struct Moments {
+  /// The deepest penetration, or else the first crossing, or else the nearest approach.
+  Moment worst = {};
+  double least = Cycle::far;  // clearance [mm]
+  std::vector<Moment> crossings = {};
+};
+
+Moments moments_of(const Strokes& strokes, std::size_t run) {
+  Moments moments;
+  for (std::size_t s = 0; s < strokes.size(); ++s) {
+    const std::vector<Cycle>& cycles = strokes[s].runs[run];
+    for (std::size_t c = 0; c < cycles.size(); ++c) {
+      if (cycles[c].least() < moments.least) moments.worst = {s, c};
+      moments.least = std::min(moments.least, cycles[c].least());
+      if (cycles[c].is_breach) moments.crossings.push_back({s, c});
+    }
+  }
+  if (moments.least >= 0.0 && !moments.crossings.empty()) moments.worst = moments.crossings[0];
+  return moments;
+}
+
+/// Returns the run that says most about the rules: the deepest penetration that a rule let happen,
+/// or else a crossing, or else, as no rule failed, the run without a fixture.
+std::size_t telling_run(const std::vector<Moments>& moments) {
+  const auto rank = [&](const Moments& of_run) {
+    const bool is_harmless = of_run.least >= 0.0 && of_run.crossings.empty();
+    const bool has_rule = &of_run != &moments.front();
+    return std::pair(is_harmless ? 0 : has_rule ? 2 : 1, -of_run.least);
+  };
+  return static_cast<std::size_t>(std::ranges::max_element(moments, {}, rank) - moments.begin());
+}
+
+/// Rounds a number of a cycle to the digits that records have.
+double to_digits(double value, double parts_of_one) {
+  return std::round(value * parts_of_one) / parts_of_one;
+}
+double length(double mm) { return to_digits(mm, 1e6); }
+
+Json place(const Vec3& point) { return {length(point.x()), length(point.y()), length(point.z())}; }
+
+Json stroke_json(const std::vector<Cycle>& cycles) {
+  Json tips = Json::array(), clearances = Json::array(), times = Json::array();
+  std::string outcomes;
+  for (const Cycle& cycle : cycles) {
+    tips.push_back(place(cycle.places.front()));
+    clearances.push_back(length(cycle.least()));
+    times.push_back(to_digits(static_cast<double>(cycle.step_us), 1e3));
+    outcomes += "fls"[static_cast<int>(cycle.outcome)];
+  }
+  return {{"tip", std::move(tips)},
+          {"clearance_mm", std::move(clearances)},
+          {"step_us", std::move(times)},
+          {"outcome", std::move(outcomes)}};
+}
+
+/// Returns the bounds of the tips of all runs in a stroke, enlarged by half on all sides.
+Box around(const FollowedStroke& followed) {
+  const Vec3 first = followed.runs.front().front().places.front();
+  Box box{first, first};
+  for (const std::vector<Cycle>& cycles : followed.runs) {
+    for (const Cycle& cycle : cycles) {
+      box = {box.low.cwiseMin(cycle.places.front()), box.high.cwiseMax(cycle.places.front())};
+    }
+  }
+  const Vec3 far = Vec3::Constant(0.5 * box.size().norm());
+  return {box.low - far, box.high + far};
+}
+
+Json settings_of(const SimulateOptions& options) {
+  const StepOptions& step = options.constraint.options;
+  return {{"mesh", options.meshes.front().string()},
+          {"index", options.constraint.index},
+          {"solver", options.constraint.solver},
+          {"motion sphere radius", keepout::text_of(step.radius) + " mm"},
+          {"tool radius", keepout::text_of(step.tool_radius) + " mm"},
+          {"margin", keepout::text_of(step.margin) + " mm"},
+          {"refinements", std::to_string(step.refinements)},
+          {"branches", std::to_string(step.nodes)},
+          {"longest step asked for", keepout::text_of(options.max_step) + " mm"},
+          {"seed", std::to_string(options.strokes.seed)},
+          {"strokes", std::to_string(options.strokes.count)},
+          {"cycles per stroke", std::to_string(options.strokes.cycles)}};
+}
+
+}  // namespace
+
+SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
+                            const Strokes& strokes, const std::vector<RunTally>& runs) {
+  const RunTally& free = runs.front();
+  const double margin = required_clearance(options.constraint.options);
+  Json record = new_record(
+      {.kind = "simulate",
+       .command = options.command,
+       .subject = "A simulated operator pushed a tool over and into " + free.mesh + " (" +
+                  counted(audit.mesh().triangle_count(), "triangle") +
+                  "): " + counted(free.strokes, "stroke") + ", " + counted(free.cycles, "cycle") +
+                  " of 1 ms, without a fixture and under " + counted(runs.size() - 1, "rule") +
+                  ", margin " + length_text(margin),
+       .headline = headline(runs, audit.surface()),
+       .machine = this_machine(),
+       .settings = settings_of(options)});
+  std::vector<Moments> moments;
+  for (std::size_t r = 0; r < runs.size(); ++r) moments.push_back(moments_of(strokes, r));
+  const std::size_t told = telling_run(moments);
+  const Moment& moment = moments[told].worst;
+  record["mesh"] = drawn_mesh(free.mesh, audit.mesh(), around(strokes[moment.stroke]));
+  record["mesh"]["surface"] = audit.surface() == SurfaceKind::closed ? "closed" : "open";
+  record["kept_mm"] = margin;
+  record["cycle_s"] = cycle_seconds;
+  record["up"] = {0.0, 0.0, 1.0};  // head-wards in CT data
+  record["moment"] = {{"run", told}, {"stroke", moment.stroke}, {"cycle", moment.cycle}};
+  for (const FollowedStroke& followed : strokes) {
+    Json& hand = record["hand"].emplace_back(Json::array());
+    for (const Pose& goal : followed.stroke.goals) hand.push_back(place(goal.position));
+  }
+  const Columns<RunTally> columns = columns_of(audit.surface());
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    const std::string& rule = runs[r].guard;
+    const bool is_free = rule == no_rule;
+    Json run{{"rule", rule},
+             {"name", is_free ? "no fixture" : rule},
+             {"description", is_free ? "the tool goes where the hand goes"
+                                     : activation_rules().named(rule).description},
+             {"kept_out", runs[r].kept_out()},
+             {"words", words(runs[r], audit.surface())},
+             {"summary", json_of(columns, runs[r])},
+             {"worst", moment_json(moments[r].worst)},
+             {"strokes", Json::array()},
+             {"crossings", Json::array()}};
+    for (const FollowedStroke& followed : strokes) {
+      run["strokes"].push_back(stroke_json(followed.runs[r]));
+    }
+    for (const Moment& crossing : moments[r].crossings) {
+      run["crossings"].push_back(moment_json(crossing));
+    }
+    record["runs"].push_back(std::move(run));
+  }
+  for (const char* part : {"comparison", "benchmark"}) record[part] = nullptr;
+  return {.record = std::move(record), .columns = columns};
+}
+
+}  // namespace keepout::app
