@@ -126,7 +126,7 @@ py::list all_counterexamples() {
 PYBIND11_MODULE(keepout_peers, module) {
   using namespace keepout::peers;
   module.doc() = "What the experiments hold keepout against, and what judges them.";
-  py::register_exception<keepout::Error>(module, "Error", PyExc_ValueError);
+  py::register_local_exception<keepout::Error>(module, "Error", PyExc_ValueError);
   bind_judge(module);
   bind_sweeps(module);
   module.def("named_meshes", &named_meshes,

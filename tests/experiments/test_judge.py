@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The judge of the experiments, against what is known of a box."""
+import keepout
 import numpy as np
 import pytest
 import surfaces
@@ -82,3 +83,8 @@ def test_what_makes_no_sense_is_refused(judge):
         judge.crossings(np.zeros((2, 3)), np.zeros((1, 3)))
     with pytest.raises(ValueError, match="on the mesh"):
         judge.best_step([0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 0.2)
+
+
+def test_errors_of_keepout_stay_its_own(tmp_path):
+    with pytest.raises(keepout.Error):
+        keepout.load_mesh(tmp_path / "missing.stl")
