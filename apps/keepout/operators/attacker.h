@@ -12,7 +12,7 @@ namespace keepout::app {
 
 /// The motion that an attacker commands.
 enum class Route : std::uint8_t {
-  // Of a tip, which stays on its route.
+  // A tip stays on its route:
   push,       // straight into the surface
   slide,      // into the surface and along it
   walk,       // anywhere, in steps of all lengths
@@ -20,8 +20,8 @@ enum class Route : std::uint8_t {
   ping_pong,  // from wall to wall
   tremor,     // to a place behind the surface, trembling
   come_back,  // away from the surface, and back into it
-  through,    // to places far away, through whatever is in between
-  // Of a flange, which changes its route.
+  through,    // to places far away, through the surface
+  // A flange changes its route:
   press,     // to where the surface is nearest now
   drag,      // the same, and along the surface
   turn,      // about an axis, and a little to the surface

@@ -29,7 +29,7 @@ inline constexpr std::array manners{Manner::push, Manner::lean, Manner::rotate};
 /// tool.
 struct Stroke {
   std::vector<Pose> goals = {};  // where the operator wants the tip or the flange, cycle by cycle
-  // Of an instrument:
+  // Only for an instrument:
   Manner manner = Manner::push;
   double speed = 1.0;
   std::uint64_t number = 0;
@@ -43,7 +43,8 @@ inline double smooth(double t) {
   return t * t * (3.0 - 2.0 * t);
 }
 
-/// How far in a stroke is, from 0 to 1: it goes in and comes back in a quarter of its time each.
+/// Returns how far the tool has gone in, from 0 to 1. It goes in during the first quarter of a
+/// stroke and comes back during the last. `time`: from 0 to 1.
 inline double lowered(double time) { return smooth(4.0 * time) * smooth(4.0 * (1.0 - time)); }
 
 /// Returns a source of strokes of a tip: from free space to below the surface, along underneath it,

@@ -15,7 +15,7 @@
 
 namespace keepout::app {
 
-// Answers are one line of JSON each. These functions append to the text that is to be sent.
+// Each answer is one line of JSON. These functions append to the text of the answers.
 
 /// Appends the shortest digits that read back as the same double; "-0.0" for a negative zero, so
 /// that no reader takes it for an integer; null for a number that is not finite.

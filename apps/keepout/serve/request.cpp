@@ -87,7 +87,7 @@ void append_numbers(const Json& value, std::vector<double>& numbers) {
   if (value.is_array()) {
     for (const Json& item : value) append_numbers(item, numbers);
   } else {
-    // Of integers with a sign, only "-0" is zero: what C++ prints for a negative zero.
+    // The parser returns a signed integer 0 only for "-0", which C++ prints for a negative zero.
     const bool is_negative_zero = value.type() == Json::value_t::number_integer && value == 0;
     numbers.push_back(is_negative_zero ? -0.0 : value.get<double>());
   }

@@ -40,7 +40,7 @@ struct Field {
 
 struct Client;
 
-/// Something that a client may ask for: a value of "do".
+/// A kind of request: a value of "do".
 struct Verb {
   std::string_view name;
   std::vector<std::string_view> needed;    // keys beside "id" and "do"
@@ -66,10 +66,10 @@ class RequestReader {
   /// `verbs` must outlive it.
   RequestReader(const RequestLimits& limits, std::span<const Verb> verbs);
 
-  /// Reads a line into `request`, and returns what it asks for: all that the verb needs is there,
-  /// nothing that it does not take, and each value is one of its field. Throws Refusal: "not_json",
-  /// or "not_a_request" for JSON with another key, type or size. Whatever the outcome, `id` is what
-  /// is to be echoed, as JSON: null if there is none, or none that can be read.
+  /// Reads a line into `request` and returns its verb. The request has all keys that the verb needs
+  /// and no key that it does not take, and each value is valid for its field. Throws Refusal:
+  /// "not_json", or "not_a_request" for JSON with another key, type or size. Sets `id` in every
+  /// case to the request's id as JSON, which the answer repeats: null if the line has no valid id.
   const Verb& read(std::string_view line, std::string& id, Json& request) const;
 
   /// Returns the keys of all requests, but for "id" and "do".

@@ -55,7 +55,7 @@ std::error_code last_error() { return {errno, std::system_category()}; }
 void make_way(asio::io_context& io, const path& file, const Local::endpoint& endpoint) {
   std::error_code error;
   const auto type = std::filesystem::symlink_status(file, error).type();
-  // Of everything else that may be wrong, bind() finds the reason.
+  // bind() reports every other fault.
   if (type == std::filesystem::file_type::none || type == std::filesystem::file_type::not_found) {
     return;
   }
@@ -91,7 +91,7 @@ class UnixSocket {
     }
     const Local::endpoint endpoint(file_.native());
     const path folder = file_.has_parent_path() ? file_.parent_path() : ".";
-    // Of two servers that start at once, each might remove the other's new socket for an old one.
+    // Without this lock, two servers that start at once might each remove the other's new socket.
     const int folder_file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder_file < 0) {
       fail(file_, "its folder " + folder.string() + " cannot be used", last_error());

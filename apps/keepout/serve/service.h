@@ -20,7 +20,7 @@ namespace keepout::app {
 
 inline constexpr std::size_t most_work = 16;  // of a turn, in steps
 
-/// What a service is made from.
+/// The mesh, options and limits of a service.
 struct ServiceSettings {
   std::filesystem::path mesh;                         // what it was read from, for "info"
   AnatomicalSpace space = AnatomicalSpace::unstated;  // that its coordinates are in, for "info"
@@ -29,7 +29,7 @@ struct ServiceSettings {
   std::size_t longest_line = std::size_t{1} << 18;  // [bytes]
 };
 
-/// What all clients share: one mesh, one index, and one constraint of tips. Not thread-safe.
+/// The mesh, the index and the constraint of tips that all clients share. Not thread-safe.
 struct Service {
   /// Throws Error where make_motion_constraint does.
   Service(std::shared_ptr<const Mesh> served, const ServiceSettings& settings);
@@ -55,7 +55,7 @@ struct Guarded {
   void set_guides(std::vector<Guide> guides);
 };
 
-/// What is kept of one client from line to line. Knows no file or socket.
+/// The state of one client between lines. Independent of files and sockets.
 struct Client {
   Service& service;
   SideWatch side = {};                            // of the tip, where the last step led it
@@ -64,16 +64,16 @@ struct Client {
   bool is_skipping = false;  // the beginning of this line is gone: it was too long
 };
 
-/// Returns all that a client may ask for.
+/// Returns the verbs of all requests.
 std::span<const Verb> verbs();
 
-/// Returns how many bytes of a client at most wait for the end of their line.
+/// Returns the largest number of bytes of an unfinished line.
 std::size_t most_received(const Service& service) noexcept;
 
-/// Answers the lines in what was received, a line for each but blank ones, up to a turn's work, so
-/// that other clients have their turn. Lines end with "\n" or "\r\n". A line that is too long is
-/// skipped to its end, and reported once. Appends to `answers`, and returns how many bytes are done
-/// with. `received`: at most most_received().
+/// Answers the complete lines of `received`, except blank ones, until the work of one turn is done,
+/// so that other clients are served too. Lines end with "\n" or "\r\n". A line that is too long is
+/// skipped to its end and answered once. Appends to `answers` and returns the number of bytes used.
+/// `received`: at most most_received().
 std::size_t take_turn(Client& client, std::string_view received, std::string& answers);
 
 }  // namespace keepout::app

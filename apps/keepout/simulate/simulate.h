@@ -39,9 +39,9 @@ struct SimulateOptions {
   TimeParts time_parts = {};             // unset in programs that cannot
   bool is_timing_parts = false;          // whether to do so after the simulation
   bool is_verbose = false;               // prints the tables of these timings
-  std::string robot;                     // whose instrument is driven instead; empty: none
+  std::string robot;                     // drives its instrument instead of a tip; empty: a tip
   std::vector<double> speeds{1.0, 5.0};  // of it, in multiples of 0.5 mm and 0.02 rad a cycle
-  std::string called_as = "keepout";     // what the user is told to type next
+  std::string called_as = "keepout";     // the name of the command in the suggestions at the end
   std::string command;                   // that does it again
 };
 

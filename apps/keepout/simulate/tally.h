@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,7 +15,7 @@
 
 namespace keepout::app {
 
-/// What became of the motion that the operator commanded in one cycle.
+/// The outcome of the motion that the operator commanded in one cycle.
 enum class Outcome : std::uint8_t {
   moved_freely,  // all of it was allowed
   limited,       // a part of it was
@@ -35,7 +36,11 @@ struct Cycle {
   Outcome outcome = Outcome::moved_freely;
   bool is_breach = false;  // the tip passed through a triangle, or a joint left its limits
 
-  double least() const { return *std::ranges::min_element(clearances); }
+  /// Returns the smallest clearance; NaN if one is, as no clearance is proved then.
+  double least() const {
+    const auto unknown = std::ranges::find_if(clearances, [](double c) { return std::isnan(c); });
+    return unknown != clearances.end() ? *unknown : *std::ranges::min_element(clearances);
+  }
 };
 
 /// The cycles in which a body was too close.

@@ -48,7 +48,8 @@ struct Shard {
   static constexpr std::uint64_t most = 10'000;  // shards; more than anybody has processors for
 };
 
-/// What a campaign does: with whole instruments if it names a robot or scenarios, else with tips.
+/// The settings of a campaign: with whole instruments if it names a robot or scenarios, else with
+/// tips.
 /// The same seed, steps and meshes give the same motions, whatever the shards.
 struct Campaign {
   // With instruments, for each mesh and row_kinds() of it:

@@ -104,10 +104,16 @@ TEST(Summary, ARunThatStaysOutsideTellsItsClosestApproach) {
 }
 
 TEST(Summary, AClearanceThatIsNotANumberCountsAgainstTheRule) {
-  RunTally run;
-  run.add({cycle(test::nan)}, 0.0);
-  EXPECT_EQ(run.any.in_mesh, 1U);
-  EXPECT_FALSE(run.kept_out());
+  for (std::size_t body = 0; body < 3; ++body) {
+    Cycle one = cycle(1.0);
+    one.clearances[2] = 0.5;
+    one.clearances[body] = test::nan;
+    RunTally run;
+    run.add({one}, 0.0);
+    EXPECT_EQ(run.any.in_mesh, 1U) << body;
+    EXPECT_EQ(run.bodies[body].in_mesh, 1U) << body;
+    EXPECT_FALSE(run.kept_out()) << body;
+  }
 }
 
 TEST(Summary, ARunThatCrossedAnOpenSurfaceCameAsNearAsCanBe) {

@@ -155,8 +155,8 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
 TEST(Campaign, BlockedCyclesOnHostileMeshesAreBlocked) {
   std::uint64_t samples = 0, movable = 0;
   for (const std::uint64_t seed : {1u, 70000u}) {
-    const Findings findings = run_campaign({.scenarios = {"approach"},
-                                            .cycles = test::trials(std::uint64_t{700}),
+    const Findings findings = run_campaign({.scenarios = {"approach", "blade"},
+                                            .cycles = test::trials(std::uint64_t{300}),
                                             .speeds = {1.0},
                                             .searched = 1,
                                             .seed = seed},
