@@ -108,7 +108,7 @@ void add_stroke(int stroke, bool meshes_move, bool is_guided, Fingerprint& finge
       mesh->triangle(static_cast<TriangleId>(random.below(mesh->triangle_count())));
   const Vec3 normal = (there[1] - there[0]).cross(there[2] - there[0]).normalized();
   const Vec3 along = (state.flange().rotation.col(2) + 0.6 * random.direction()).normalized();
-  const Mat3 turned = Eigen::Quaterniond::FromTwoVectors(normal, -along).toRotationMatrix();
+  const Mat3 turned = rotation_between(normal, -along).toRotationMatrix();
   const Vec3 middle = (there[0] + there[1] + there[2]) / 3.0;
   InstrumentConstraint guard = guard_of(mesh, robot, {.margin = 0.3});
   Twist velocity;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/oracle/best_step.h"
 
-#include <Eigen/Geometry>
 #include <span>
 
 #include "keepout/fixtures/poses.h"
+#include "keepout/fixtures/robots.h"
 #include "keepout/geometry/closest_point.h"
 #include "meshes.h"
 #include "trials.h"
@@ -201,7 +201,7 @@ Vec3 lattice_direction(int i, int count) {
 double brute_force(const Mesh& mesh, std::span<const TriangleId> near, const Vec3& tip,
                    const Vec3& desired, double margin, double cost) {
   constexpr int directions = 50'000;
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), desired);
+  const auto turn = rotation_between(Vec3::UnitZ(), desired);
   for (int i = 0; i < directions; ++i) {
     const Vec3 u = turn * lattice_direction(i, directions);
     const double along = u.dot(desired);

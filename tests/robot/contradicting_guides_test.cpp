@@ -63,7 +63,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
   int blocked = 0;
   int movable = 0;
   int cycles = 0;
-  for (int scene = 0; scene < test::trials(40); ++scene) {
+  for (int scene = 0; scene < 40; ++scene) {
     InstrumentConstraint guard =
         guard_of(far_cube(), arm(n), {.orientation_weight = 0.0, .check_sides = false});
     const Chain& chain = guard.instrument().chain();

@@ -94,7 +94,7 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
       std::vector<double> way;
       int held = 0;
       const double kept = guard.options().margin - guard.options().band;
-      const int cycles = test::trials(60);
+      const int cycles = test::trials(part.solver == "active_set" ? 60 : 20);  // others are slow
       for (int i = 0; i < cycles; ++i) {
         const Twist desired{.linear = Vec3(0, 0, -1.0) + random.direction(),
                             .angular = 0.05 * random.direction()};
@@ -160,7 +160,7 @@ TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
   int free = 0;
   int proven = 0;
   int partly = 0;
-  for (int i = 0; i < test::trials(600); ++i) {
+  for (int i = 0; i < test::trials(1200); ++i) {
     std::vector<double> q = straight_down(random.uniform(40.0, 80.0));
     for (const std::size_t k : {0u, 1u}) q[k] = random.uniform(-0.3, 0.3);
     for (const std::size_t k : {3u, 4u, 5u}) q[k] = random.uniform(-0.8, 0.8);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include "chains.h"
 #include "keepout/activation/certified.h"
 #include "keepout/factory/make_motion_constraint.h"
@@ -50,7 +48,7 @@ inline Pose port_over(const Vec3& place, double height) {
   const ChainState state = test::state_of(psm().chain(), std::vector<double>{0, 0, 100, 0, 0, 0});
   const Vec3 way = state.flange().position.normalized();
   return {place + Vec3(0, 0, height),
-          Eigen::Quaterniond::FromTwoVectors(way, -Vec3::UnitZ()).toRotationMatrix()};
+          rotation_between(way, -Vec3::UnitZ()).toRotationMatrix()};
 }
 
 }  // namespace keepout

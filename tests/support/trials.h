@@ -8,6 +8,7 @@
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "keepout/fixtures/shapes.h"
@@ -21,22 +22,30 @@ namespace keepout::test {
 inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Whether few random trials are enough: under sanitizers, where what counts is that every path is
-/// taken and not how often; unless KEEPOUT_ALL_TRIALS is set, as `./test --long` does.
+/// Whether all random trials are made, as `./test --long` asks for by KEEPOUT_ALL_TRIALS.
+inline bool all_trials() {
+  static const bool all = std::getenv("KEEPOUT_ALL_TRIALS") != nullptr;
+  return all;
+}
+
+/// Whether a short test under sanitizers runs. There every path is taken, but few times each.
 inline bool few_trials() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  static const bool few = std::getenv("KEEPOUT_ALL_TRIALS") == nullptr;
-  return few;
+  return !all_trials();
 #else
   return false;
 #endif
 }
 
-/// How many of so many random trials are made: all of them, or a tenth and at least one. What a
-/// test expects to have seen in them is told in the same way.
+/// Returns how many of `all` random trials a test makes: all in a long test, a quarter in a short
+/// test, a tenth in a short test under sanitizers, and at least one of what is counted. A test scales with it what it
+/// expects to have seen in its trials.
 template <class Count>
 Count trials(Count all) {
-  return few_trials() ? static_cast<Count>((all + 9) / 10) : all;
+  if (all_trials()) return all;
+  const auto share = static_cast<Count>(few_trials() ? 10 : 4);
+  if constexpr (std::is_floating_point_v<Count>) return all / share;
+  return (all + share - 1) / share;
 }
 
 }  // namespace keepout::test

@@ -22,6 +22,7 @@ import {
   large,
   launched,
   note,
+  onlyLong,
   opened,
   root,
   sleep,
@@ -160,10 +161,11 @@ function testPage(name, ...options) {
   };
 }
 
-/** The last tests of a page: it looks well on both, and nothing was complained of. */
+/** The last tests of a page: controls have names, contrast holds, and the browser reported no fault. */
 function testLooks(name) {
   for (const [looks, scheme] of Object.entries({ phone: "dark", light: "light", dark: "dark" })) {
-    test(`${name}: controls have names and contrast holds: ${looks}`, async () => {
+    const options = looks === "phone" ? onlyLong : {};
+    test(`${name}: controls have names and contrast holds: ${looks}`, options, async () => {
       const tab = looks === "phone" ? phone : desk;
       await tab.bringToFront();
       await tab.$eval("#save", (button) => button.click()); // a word is told, on a ground of one color
@@ -172,28 +174,28 @@ function testLooks(name) {
     });
   }
   test(`${name}: nothing was complained of`, async () => {
-    const faults = [...desk.faults, ...phone.faults];
-    await Promise.all([desk.close(), phone.close()]);
+    const tabs = [desk, phone].filter(Boolean);
+    const faults = tabs.flatMap((tab) => tab.faults);
+    await Promise.all(tabs.map((tab) => tab.close()));
     assert.deepEqual(faults, []);
   });
 }
 
-/** Leads the hand by keys, each until something holds, and out of hand; a figure is `rest` then. */
-async function ledByKeys(keys, figure, rest) {
+/** Leads the hand by a key into the anatomy, where a figure is no longer `rest`; and lets it go by Escape. */
+async function ledByKeys(key, figure, rest) {
   await desk.click("#again");
   await sleep(500);
   await desk.focus("#view");
-  for (const [key, until] of Object.entries(keys)) {
-    await desk.keyboard.down(key);
-    await until(await limitedCycles(desk));
-    await desk.keyboard.up(key);
-  }
+  const before = await limitedCycles(desk);
+  await desk.keyboard.down(key);
+  await comesTo(desk, before + 101);
   await desk.waitForFunction(
     (where, text) => !document.querySelector(where).textContent.startsWith(text),
     {},
     figure,
     rest,
   );
+  await desk.keyboard.up(key);
   await desk.keyboard.press("Escape");
   await says(desk, figure, rest);
 }
@@ -285,15 +287,7 @@ test("the same drag without a fixture goes in", async () => {
   await desk.click("#rules input[value=certified]");
 });
 
-test("a tip led by keys", () =>
-  ledByKeys(
-    {
-      ArrowLeft: (before) => comesTo(desk, before + 101),
-      PageUp: () => sleep(300),
-    },
-    "#newtons",
-    "0.00 N",
-  ));
+test("a tip led by keys", () => ledByKeys("ArrowLeft", "#newtons", "0.00 N"));
 
 test("counterexamples: the paper's rule goes through, the certified one stays out", async () => {
   await desk.click("#fail");
@@ -351,7 +345,7 @@ test("files are dropped: a mesh, then what is none, and the page lives on", asyn
   );
 });
 
-test("a tip led by touch, on a phone", async () => {
+test("a tip led by touch, on a phone", onlyLong, async () => {
   phone = await openTip(small);
   const finger = await touched((i) => [12 - 2 * i, 20 * Math.sin(i / 6)]);
   assert.ok((await limitedCycles(phone)) > 100, "touch does not lead into the skull");
@@ -400,7 +394,7 @@ test("the jaw dragged into the skull: held back, and all bodies clear, says the 
   assert.ok(judged("stricter.txt").below > 0, "the judge sees nothing");
 });
 
-test("it is turned by the wheel and by keys, and the hand with it", async () => {
+test("it is turned by the wheel and by keys, and the hand with it", onlyLong, async () => {
   await desk.click("#again");
   await sleep(700);
   const { x, y } = await handAt(desk);
@@ -420,9 +414,9 @@ test("it is turned by the wheel and by keys, and the hand with it", async () => 
 });
 
 test("an instrument led by keys, into the skull and out of hand", () =>
-  ledByKeys({ ArrowDown: (before) => comesTo(desk, before + 100) }, "#hand-off", "0.00 mm"));
+  ledByKeys("ArrowDown", "#hand-off", "0.00 mm"));
 
-test("a wider margin is come up to, and kept", async () => {
+test("a wider margin is come up to, and kept", onlyLong, async () => {
   await desk.$eval("#margin", (slider) => {
     slider.value = "1";
     slider.dispatchEvent(new Event("input"));
@@ -438,23 +432,27 @@ test("a wider margin is come up to, and kept", async () => {
   await clearPath();
 });
 
-test("a path is played again, the same in every bit", async () => {
+test("a path is played again, the same in every bit", onlyLong, async () => {
   await desk.click("#replay");
   await assertReplayed();
 });
 
-test("an instrument led by touch, on a phone, and turned by a second finger", async () => {
-  phone = await openInstrument(small);
-  const { x, y } = await handAt(phone);
-  const finger = await touched((i) => [0, 3 * i]);
-  await comesTo(phone, 100);
-  const second = await phone.touchscreen.touchStart(x + 60, y);
-  for (let i = 0; i < 30; ++i) await second.move(x + 60 + 5 * i, y);
-  await sleep(500);
-  await second.end();
-  await finger.end();
-  const { verdict } = await clearPath(phone);
-  assert.ok(verdict.turn > 0.1, `turned by ${verdict.turn} rad only`);
-});
+test(
+  "an instrument led by touch, on a phone, and turned by a second finger",
+  onlyLong,
+  async () => {
+    phone = await openInstrument(small);
+    const { x, y } = await handAt(phone);
+    const finger = await touched((i) => [0, 3 * i]);
+    await comesTo(phone, 100);
+    const second = await phone.touchscreen.touchStart(x + 60, y);
+    for (let i = 0; i < 30; ++i) await second.move(x + 60 + 5 * i, y);
+    await sleep(500);
+    await second.end();
+    await finger.end();
+    const { verdict } = await clearPath(phone);
+    assert.ok(verdict.turn > 0.1, `turned by ${verdict.turn} rad only`);
+  },
+);
 
 testLooks("instrument");

@@ -19,8 +19,10 @@ import {
   assertAccessible,
   assertAlone,
   empty,
+  isLong,
   launched,
   note,
+  onlyLong,
   opened as openedTab,
   sleep,
   small,
@@ -54,10 +56,21 @@ const files = given
       .filter((name) => name.endsWith(".json"))
       .map((name) => run(basename(name, ".json"), "report", join(given, name)))
   : [
-      run("simulate", "simulate", "cube", "--strokes", "2", "--cycles", "300", "--bench"),
+      run(
+        "simulate",
+        ..."simulate cube --strokes 2 --cycles 300".split(" "),
+        ...(isLong ? ["--bench"] : []),
+      ),
       run("open", "simulate", "flat_plate", "--strokes", "2", "--cycles", "300"),
-      run("bench", "bench", "--mesh", "cube,sphere", "--seconds", "0.01", "--radius", "5,1"),
-      run("speed", ..."bench --speed --quick --triangles 30000 --steps 20000".split(" ")),
+      run(
+        "bench",
+        ..."bench --mesh cube,sphere --seconds 0.01 --radius".split(" "),
+        isLong ? "5,1" : "5",
+      ),
+      run(
+        "speed",
+        ..."bench --speed --quick --triangles 4000 --steps 3000 --largest 80000".split(" "),
+      ),
       run("compare", "compare", "cube", "--poses", "6", "--problems", "100", "--pairs", "20"),
       run("plan", "plan", "cube", "--problems", "2", "--resolution", "0.01"),
       run(
@@ -283,30 +296,35 @@ const contrasts = (tab) =>
     }),
   );
 
+/** Brings all pictures into sight, one after another, and asserts that each is drawn. */
 async function assertDrawn(tab) {
-  const all = await contrasts(tab);
-  assert.ok(all.length > 0 && all.every((contrast) => contrast > 60), `contrasts: ${all}`);
+  const pictures = await tab.$$("canvas.anatomy");
+  assert.ok(pictures.length > 0);
+  for (const [place, picture] of pictures.entries()) {
+    await picture.evaluate((one) => one.scrollIntoView({ block: "center" }));
+    const isDrawn = async () => (await contrasts(tab))[place] > 60;
+    await until(isDrawn, "a picture is not drawn");
+  }
 }
 
-/** Brings all pictures into sight, one after another, so that they are drawn. */
-async function seenPictures(tab) {
-  for (const picture of await tab.$$("canvas.anatomy")) {
-    await picture.evaluate((one) => one.scrollIntoView({ block: "center" }));
-    await sleep(700);
-  }
+/** Waits until something holds, for at most ten seconds. */
+async function until(holds, otherwise) {
+  for (let i = 0; i < 100 && !(await holds()); ++i) await sleep(100);
+  assert.ok(await holds(), otherwise);
 }
 
 for (const { file, name, record } of pages) {
   const hasAnatomy = showsAnatomy({ record });
-  // Pages with anatomy share their code, and drawing takes long: two of four, or all.
-  const isDrawn = process.env.KEEPOUT_ALL_TRIALS || name.startsWith("simulate");
-  const testAnatomy = hasAnatomy && isDrawn ? test : () => {};
+  // Pages share their code for anatomy and for small screens: one or three of them do for a short test.
+  const ifDrawn = name === "simulate" || given ? {} : onlyLong;
+  const isOnPhone = given || ["simulate", "bench", "experiments"].includes(name);
+  const onPhone = isOnPhone ? {} : onlyLong;
+  const testAnatomy = hasAnatomy ? test : () => {};
   let desk; // goes on from one test to the next
 
-  testAnatomy(`${name}: a drag turns all pictures of a group alike`, async () => {
+  testAnatomy(`${name}: a drag turns all pictures of a group alike`, ifDrawn, async () => {
     const tab = await opened(file, large);
     desk = tab;
-    await seenPictures(tab);
     await assertDrawn(tab);
     for (const group of await tab.$$("[data-view]")) {
       const before = await group.evaluate((one) => one.dataset.view);
@@ -320,13 +338,9 @@ for (const { file, name, record } of pages) {
       await tab.mouse.down();
       await tab.mouse.move(x + width / 2 + 80, y + height / 2 + 25, { steps: 5 });
       await tab.mouse.up();
-      await sleep(1500);
       assert.notEqual(await group.evaluate((one) => one.dataset.view), before, "nothing turned");
-      const turned = await pixels();
-      assert.ok(
-        turned.every((one, i) => one !== still[i]),
-        "a picture has not turned with the others",
-      );
+      const allTurned = async () => (await pixels()).every((one, i) => one !== still[i]);
+      await until(allTurned, "a picture has not turned with the others");
     }
     if (record.keepout_record.startsWith("simulate")) {
       const now = () => tab.$$eval(".now", (all) => all.map((one) => one.textContent).join());
@@ -384,12 +398,12 @@ for (const { file, name, record } of pages) {
       "the table of all rows is on wide sheets",
     );
     await assertAccessible(tab, "light");
-    await assertAccessible(tab, "dark");
+    if (isLong) await assertAccessible(tab, "dark"); // as on a phone, below
     assert.deepEqual(tab.faults, []);
     await tab.close();
   });
 
-  test(`${name}: on a phone`, async () => {
+  test(`${name}: on a phone`, onPhone, async () => {
     const tab = await opened(file, small);
     const widths = await tab.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
     assert.equal(widths[0], widths[1], "the page scrolls sideways");
@@ -398,7 +412,7 @@ for (const { file, name, record } of pages) {
     await tab.close();
   });
 
-  testAnatomy(`${name}: without WebGL there are still pictures`, async () => {
+  testAnatomy(`${name}: without WebGL there are still pictures`, ifDrawn, async () => {
     const tab = await opened(file, large, (page) =>
       page.evaluateOnNewDocument(() => {
         const own = HTMLCanvasElement.prototype.getContext;
@@ -407,7 +421,6 @@ for (const { file, name, record } of pages) {
         };
       }),
     );
-    await seenPictures(tab);
     await assertDrawn(tab);
     assert.match(await tab.$eval("body", (body) => body.textContent), /WebGL/);
     assert.deepEqual(tab.faults, []);

@@ -16,6 +16,12 @@ export const small = { width: 390, height: 844, hasTouch: true, isMobile: true }
 export const note = (text) => console.log(`# ${text}`);
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
+/** Whether `./test --long` runs the tests. */
+export const isLong = Boolean(process.env.KEEPOUT_ALL_TRIALS);
+
+/** Options of a test that only `./test --long` runs. */
+export const onlyLong = { skip: isLong ? false : "only with ./test --long" };
+
 export function empty(folder) {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
@@ -24,7 +30,12 @@ export function empty(folder) {
 export const launched = (browserPath = "/usr/bin/chromium") =>
   puppeteer.launch({
     executablePath: browserPath,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    args: [
+      "--no-sandbox",
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--disable-gpu-compositing", // pages are drawn by software faster without it
+    ],
   });
 
 /** Opens a page, once `prepare` is done with its tab; the tab has a list of faults. */

@@ -229,7 +229,7 @@ TEST_F(CompareCommand, HoldsEveryIndexToBruteForceAndWritesHowToDoItAgain) {
 TEST_F(CompareCommand, KeepsWhatIsFinishedWhenItIsInterrupted) {
   const ProcessOutcome outcome =
       folder.run("compare cube.stl --poses 6 --problems 200000 --pairs 10 --json c.json",
-                 "timeout --foreground --preserve-status --signal=INT 6");
+                 "timeout --foreground --preserve-status --signal=INT 3");
   EXPECT_EQ(outcome.status, 130) << outcome.output;
   EXPECT_CONTAINS(outcome.output, "Interrupted");
   const json comparison = read("c.json")["comparison"];

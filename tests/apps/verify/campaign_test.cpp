@@ -155,6 +155,7 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
 TEST(Campaign, BlockedCyclesOnHostileMeshesAreBlocked) {
   std::uint64_t samples = 0, movable = 0;
   for (const std::uint64_t seed : {1u, 70000u}) {
+    if (seed != 1u && !test::all_trials()) break;
     const Findings findings = run_campaign({.scenarios = {"approach", "blade"},
                                             .cycles = test::trials(std::uint64_t{300}),
                                             .speeds = {1.0},
@@ -167,7 +168,7 @@ TEST(Campaign, BlockedCyclesOnHostileMeshesAreBlocked) {
       movable += row.movable;
     }
   }
-  EXPECT_GT(samples, test::trials(2000u));
+  EXPECT_GT(samples, test::all_trials() ? 2000u : 150u);
   EXPECT_LE(movable, samples / 50);
 }
 

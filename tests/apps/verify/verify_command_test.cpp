@@ -66,7 +66,7 @@ TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
     // In the foreground `timeout` sends one signal; else two, and the second ends the process.
     const Outcome outcome =
         run("cube.stl --steps 1e9 --shard 1/2 --json part.json",
-            "timeout --foreground --preserve-status -k 30 -s " + std::string(signal) + " 5 ");
+            "timeout --foreground --preserve-status -k 30 -s " + std::string(signal) + " 2 ");
     EXPECT_EQ(outcome.status, 130) << outcome.output;
     const nlohmann::json part = read("part.json");
     const auto done = part["total"]["steps"].get<std::uint64_t>();

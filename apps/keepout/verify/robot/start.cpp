@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verify/robot/start.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <numbers>
 
+#include "keepout/fixtures/robots.h"
 #include "keepout/oracle/instrument_oracle.h"
 #include "verify/setup.h"
 
@@ -71,7 +71,7 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
     const Vec3 along = has_length ? Vec3(axis.to - axis.from) : random.direction();
     const double roll = random.uniform(-std::numbers::pi, std::numbers::pi);
     start.base.rotation = (Eigen::AngleAxisd(roll, target->way) *
-                           Eigen::Quaterniond::FromTwoVectors(along, target->way))
+                           rotation_between(along, target->way))
                               .toRotationMatrix();
     start.base.position = target->tip - start.base.rotation * axis.to;
     if (clearance(judged, start, scene, margin) < margin) continue;
