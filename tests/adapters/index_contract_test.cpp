@@ -280,19 +280,6 @@ TEST(IndexRegistry, AnUnknownNameListsTheKnownOnes) {
   for (const IndexBackend& backend : index_backends()) EXPECT_CONTAINS(text, backend.name);
 }
 
-TEST(IndexRegistry, AnAbsentIndexSaysWhatItNeeds) {
-  struct Part {
-    std::string_view name;
-  };
-  const Part known[] = {{"brute_force"}};
-  const PeerPart absent[] = {{"bullet", "Bullet (install libbullet-dev)"}};
-  const std::string text =
-      error_of([&] { Registry<Part>("index", known, absent).named("bullet"); });
-  for (const std::string_view part : {"bullet", "install libbullet-dev", "brute_force"}) {
-    EXPECT_CONTAINS(text, part);
-  }
-}
-
 TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
   std::set<std::string_view> names;
   for (const IndexBackend& backend : index_backends()) names.insert(backend.name);

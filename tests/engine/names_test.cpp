@@ -160,6 +160,8 @@ TEST(Registry, AsksWhetherTheNearestNameWasMeant) {
   EXPECT_EQ(refusal("embre"),
             "there is no rule 'embre'; did you mean 'embree'? known: certified, paper");
   EXPECT_EQ(refusal("nonsense"), "there is no rule 'nonsense'; known: certified, paper");
+  EXPECT_EQ(refusal("embree"),
+            "rule 'embree' is not here: it needs Embree; there are: certified, paper");
 }
 
 std::string refusal(const StepOptions& options) {

@@ -21,7 +21,6 @@ namespace keepout::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
 using Outcome = test::ProcessOutcome;
 
 const std::string place = "<!-- keepout live: the anatomy goes here -->\n";
@@ -45,7 +44,7 @@ class Live : public testing::Test {
     const std::size_t from = at + start.size();
     return text.substr(from, text.find("</script", from) - from);
   }
-  Json settings() const { return Json::parse(element("settings")); }
+  nlohmann::json settings() const { return nlohmann::json::parse(element("settings")); }
   void expect_refused(const std::string& arguments, const std::string& told, int status = 1,
                       const std::string& environment = {}) const {
     const Outcome outcome = run(arguments, environment);
@@ -62,23 +61,24 @@ TEST_F(Live, ThePageHasTheSettingsAndEveryBitOfTheMeshes) {
   succeeded(
       run("cube 'heart of a pig.stl' --activation none --radius 4 --tool-radius 0.5 --margin 0.25 "
           "--max-step 0.125"));
-  Json told = settings();
-  const Json meshes = told.at("meshes");
+  nlohmann::json told = settings();
+  const nlohmann::json meshes = told.at("meshes");
   told.erase("meshes");
-  EXPECT_EQ(told, Json::parse(R"({"format": "keepout live", "version": 1, "activation": "none",
+  EXPECT_EQ(told,
+            nlohmann::json::parse(R"({"format": "keepout live", "version": 1, "activation": "none",
       "radius": 4.0, "tool_radius": 0.5, "margin": 0.25, "max_step": 0.125,
       "keepout": ")" KEEPOUT_VERSION R"("})"));
   ASSERT_EQ(meshes.size(), 2U);
   EXPECT_EQ(meshes[0].at("name"), "cube");
   EXPECT_EQ(meshes[0].at("command_name"), "cube");
-  EXPECT_EQ(meshes[0].at("warnings"), Json::array());
+  EXPECT_EQ(meshes[0].at("warnings"), nlohmann::json::array());
   EXPECT_EQ(meshes[1].at("name"), "heart of a pig.stl");
   EXPECT_EQ(meshes[1].at("command_name"), "'heart of a pig.stl'");
   const Mesh cube(make_shape("cube"));
   const auto sphere = load_mesh(folder_.file("heart of a pig.stl")).mesh;
   for (std::size_t i = 0; i < 2; ++i) {
     const Mesh& mesh = i == 0 ? cube : *sphere;
-    const Json& facts = meshes[i];
+    const nlohmann::json& facts = meshes[i];
     EXPECT_EQ(facts.at("vertices"), mesh.vertex_count());
     EXPECT_EQ(facts.at("triangles"), mesh.triangle_count());
     const auto bytes = test::gunzipped(test::from_base64(element("mesh-" + std::to_string(i))));
@@ -94,7 +94,7 @@ TEST_F(Live, ThePageHasTheSettingsAndEveryBitOfTheMeshes) {
 
 TEST_F(Live, BeginsWithTheCertifiedRule) {
   ASSERT_EQ(run("cube").status, 0);
-  const Json told = settings();
+  const nlohmann::json told = settings();
   EXPECT_EQ(told.at("activation"), "certified");
   EXPECT_EQ(told.at("radius"), 5.0);
   EXPECT_EQ(told.at("tool_radius"), 3.0);
@@ -105,10 +105,10 @@ TEST_F(Live, BeginsWithTheCertifiedRule) {
 TEST_F(Live, AnInstrumentBeginsWithAllBodiesClearAndItsPortBesideTheMesh) {
   const Outcome outcome = succeeded(run("cortex --robot psm --margin 0.5"));
   EXPECT_CONTAINS(outcome.output, "Drag the jaw");
-  const Json told = settings();
+  const nlohmann::json told = settings();
   EXPECT_EQ(told.at("robot"), "psm");
   EXPECT_EQ(told.at("margin"), 0.5);
-  const Json& facts = told.at("meshes").at(0);
+  const nlohmann::json& facts = told.at("meshes").at(0);
   const auto mesh = mesh_of("cortex");
   EXPECT_EQ(facts.at("digest"), index_cache_file(*mesh, {}).stem().string());
   const auto numbers = facts.at("start").at("base").get<std::array<double, 12>>();
@@ -140,9 +140,9 @@ TEST_F(Live, AMeshThatWasTurnedIsNamedAsItWas) {
 
 TEST_F(Live, WarningsOfAMeshAreInThePageToo) {
   const Outcome outcome = succeeded(run("flat_plate"));
-  const Json warnings = settings().at("meshes").at(0).at("warnings");
+  const nlohmann::json warnings = settings().at("meshes").at(0).at("warnings");
   ASSERT_FALSE(warnings.empty());
-  for (const Json& warning : warnings) {
+  for (const nlohmann::json& warning : warnings) {
     EXPECT_CONTAINS(outcome.output, warning.get<std::string>());
   }
 }

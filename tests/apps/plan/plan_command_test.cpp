@@ -16,7 +16,7 @@ class PlanCommandTest : public testing::Test {
   CommandFolder folder_;
 };
 
-#ifdef KEEPOUT_HAS_OMPL
+#if KEEPOUT_HAS_OMPL
 
 using Json = nlohmann::json;
 

@@ -28,10 +28,10 @@ std::shared_ptr<const Mesh> shape(std::string_view name) {
 
 MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const ConvexTool& tool,
                        std::unique_ptr<NarrowPhase> narrow_phase = nullptr,
-                       StepOptions options = {.radius = radius, .margin = margin}) {
+                       StepOptions step_options = {.radius = radius, .margin = margin}) {
   return {mesh, std::make_unique<PdTree>(mesh),
           std::make_unique<ConvexToolRule>(tool, std::move(narrow_phase)),
-          std::make_unique<ActiveSet>(), options};
+          std::make_unique<ActiveSet>(), step_options};
 }
 
 /// Returns the distance that a plane proves, in 64-bit arithmetic: at most the true one, for any
