@@ -21,6 +21,7 @@ INLINE = re.compile(r"(?<!`)`(\./run [^`]+)`(?!`)")
 SMALL = {
     "simulate": {"--strokes": "1", "--cycles": "100"},
     "verify": {"--steps": "2000"},
+    "verify --scenario": {"--cycles": "100"},
     "bench": {"--triangles": "20000", "--queries": "5", "--seconds": "0.01"},
     "bench --speed": {"--quick": None, "--steps": "1000"},
     "compare": {"--poses": "6", "--problems": "30", "--pairs": "10"},
