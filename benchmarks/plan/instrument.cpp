@@ -29,12 +29,12 @@ constexpr double least_advance = 30;       // [mm]
 constexpr double finer_than = 2.0;         // the farthest place is not looked for [mm]
 constexpr std::size_t most_starts = 100;   // to each problem that is asked for
 
-/// What there is to say of a path of joint motions.
+/// The verdict on a path of joint motions.
 struct JointPathVerdict {
   std::size_t motions = 0;
   std::size_t too_close = 0;  // in which a body comes closer than margin - band - 3 tau
   std::size_t entering = 0;   // of them, those in which the mesh reaches into a body
-  std::size_t unproven = 0;   // that `prove` does not find clear, in pieces of a millimetre
+  std::size_t unproven = 0;   // motions that `prove` does not prove clear in pieces of 1 mm
   /// The least clearance of all bodies; below 0, how deep the mesh reaches into one. Infinite where
   /// none came as near as the margin. [mm]
   double clearance = std::numeric_limits<double>::infinity();

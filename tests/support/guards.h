@@ -47,8 +47,7 @@ inline std::vector<double> moved(std::vector<double> q, const InstrumentStep& st
 inline Pose port_over(const Vec3& place, double height) {
   const ChainState state = test::state_of(psm().chain(), std::vector<double>{0, 0, 100, 0, 0, 0});
   const Vec3 way = state.flange().position.normalized();
-  return {place + Vec3(0, 0, height),
-          rotation_between(way, -Vec3::UnitZ()).toRotationMatrix()};
+  return {place + Vec3(0, 0, height), rotation_between(way, -Vec3::UnitZ()).toRotationMatrix()};
 }
 
 }  // namespace keepout

@@ -22,13 +22,13 @@ namespace keepout::test {
 inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Whether all random trials are made, as `./test --long` asks for by KEEPOUT_ALL_TRIALS.
+/// Returns true if tests make all random trials. `./test --long` sets KEEPOUT_ALL_TRIALS for that.
 inline bool all_trials() {
   static const bool all = std::getenv("KEEPOUT_ALL_TRIALS") != nullptr;
   return all;
 }
 
-/// Whether a short test under sanitizers runs. There every path is taken, but few times each.
+/// Returns true in a short test under sanitizers. It takes each path a few times only.
 inline bool few_trials() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return !all_trials();
@@ -38,8 +38,8 @@ inline bool few_trials() {
 }
 
 /// Returns how many of `all` random trials a test makes: all in a long test, a quarter in a short
-/// test, a tenth in a short test under sanitizers, and at least one of what is counted. A test scales with it what it
-/// expects to have seen in its trials.
+/// test, a tenth in a short test under sanitizers, and at least one of what is counted. A test
+/// scales with it what it expects to have seen in its trials.
 template <class Count>
 Count trials(Count all) {
   if (all_trials()) return all;

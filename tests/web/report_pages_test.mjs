@@ -286,24 +286,21 @@ async function assertTips(tab, record) {
   return told;
 }
 
-/** How much the pixels of each picture differ from each other. */
-const contrasts = (tab) =>
-  tab.$$eval("canvas.anatomy", (all) =>
-    all.map((canvas) => {
-      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-      const reds = data.filter((_, i) => i % 4 === 0);
-      return Math.max(...new Set(reds)) - Math.min(...new Set(reds));
-    }),
-  );
+/** Returns the largest difference between the red values of a picture. */
+const contrastOf = (picture) =>
+  picture.evaluate((canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    const reds = new Set(data.filter((_, i) => i % 4 === 0));
+    return Math.max(...reds) - Math.min(...reds);
+  });
 
 /** Brings all pictures into sight, one after another, and asserts that each is drawn. */
 async function assertDrawn(tab) {
   const pictures = await tab.$$("canvas.anatomy");
   assert.ok(pictures.length > 0);
-  for (const [place, picture] of pictures.entries()) {
+  for (const picture of pictures) {
     await picture.evaluate((one) => one.scrollIntoView({ block: "center" }));
-    const isDrawn = async () => (await contrasts(tab))[place] > 60;
-    await until(isDrawn, "a picture is not drawn");
+    await until(async () => (await contrastOf(picture)) > 60, "a picture is not drawn");
   }
 }
 
@@ -315,7 +312,7 @@ async function until(holds, otherwise) {
 
 for (const { file, name, record } of pages) {
   const hasAnatomy = showsAnatomy({ record });
-  // Pages share their code for anatomy and for small screens: one or three of them do for a short test.
+  // Pages share their code for anatomy and for small screens, so a short test checks a few of them.
   const ifDrawn = name === "simulate" || given ? {} : onlyLong;
   const isOnPhone = given || ["simulate", "bench", "experiments"].includes(name);
   const onPhone = isOnPhone ? {} : onlyLong;

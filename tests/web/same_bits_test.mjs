@@ -18,6 +18,7 @@ import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { dirname, join, resolve } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
+import { isLong } from "./tabs.mjs";
 
 const [command, buildFolder] = process.argv.slice(2).map((path) => resolve(path));
 assert(buildFolder, "usage: node same_bits_test.mjs KEEPOUT BUILD_WASM");
@@ -37,7 +38,7 @@ const keepout = await loadKeepout(instantiate, readFileSync(join(buildFolder, "k
 
 const statuses = keepout.statuses("tip");
 
-const share = process.env.KEEPOUT_ALL_TRIALS ? 1 : 4;
+const share = isLong ? 1 : 4;
 const openSteps = 8000 / share;
 const closedSteps = 4000 / share;
 const settings = { radius: 1.2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8 };

@@ -16,7 +16,7 @@ export const small = { width: 390, height: 844, hasTouch: true, isMobile: true }
 export const note = (text) => console.log(`# ${text}`);
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
-/** Whether `./test --long` runs the tests. */
+/** True if `./test --long` runs the tests. */
 export const isLong = Boolean(process.env.KEEPOUT_ALL_TRIALS);
 
 /** Options of a test that only `./test --long` runs. */

@@ -237,7 +237,7 @@ INSTANTIATE_TEST_SUITE_P(
         instrument("AMarginThatIsTenTolerancesTooSmall", "convex_tool", "saddle",
                    {.margin_less = 10.0}),
         instrument("AMotionThatOvershoots", "unlimited", "saddle", {.of_step = overshoot},
-                   Breach::strayed, test::trials(std::uint64_t{100}) + 1, 4000)),
+                   Breach::strayed, test::all_trials() ? 101 : 11, 2000)),
     by_name);
 
 TEST_P(Sabotage, IsCaught) {

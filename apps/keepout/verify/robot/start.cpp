@@ -70,9 +70,9 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
     const bool has_length = axis.from != axis.to;
     const Vec3 along = has_length ? Vec3(axis.to - axis.from) : random.direction();
     const double roll = random.uniform(-std::numbers::pi, std::numbers::pi);
-    start.base.rotation = (Eigen::AngleAxisd(roll, target->way) *
-                           rotation_between(along, target->way))
-                              .toRotationMatrix();
+    start.base.rotation =
+        (Eigen::AngleAxisd(roll, target->way) * rotation_between(along, target->way))
+            .toRotationMatrix();
     start.base.position = target->tip - start.base.rotation * axis.to;
     if (clearance(judged, start, scene, margin) < margin) continue;
     if (begin != Begin::overlapping) return start;
