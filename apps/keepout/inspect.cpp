@@ -44,8 +44,10 @@ std::string triple(const Vec3& v, std::string_view between) {
   return text;
 }
 
-/// The unit that is assumed, and the others that are plausible.
-std::string unit_text(double extent) {
+/// The unit that was asked for, or that is assumed, and the others that are plausible.
+std::string unit_text(const LoadOptions& load, double extent) {
+  if (load.scale) return "mm, scaled by " + trimmed(*load.scale) + " as asked";
+  if (!load.unit.empty()) return "mm, from a file in " + load.unit + " as asked";
   std::string text = "mm, which is assumed";
   std::string_view joint = "; as plausible: ";
   for (const UnitGuess& guess : other_units(extent)) {
@@ -85,8 +87,9 @@ void print_text(const InspectOptions& options, const Inspection& inspection, std
   print_row(out, "size", triple(mesh.bounds.size(), " x ") + " mm");
   print_row(out, "from", triple(mesh.bounds.low, ", ") + " mm");
   print_row(out, "to", triple(mesh.bounds.high, ", ") + " mm");
-  print_row(out, "unit", unit_text(mesh.bounds.size().maxCoeff()));
+  print_row(out, "unit", unit_text(options.load, mesh.bounds.size().maxCoeff()));
   print_row(out, "space", space_text(inspection.loaded));
+  if (inspection.loaded.flipped) print_row(out, "winding", "flipped, as asked");
   print_row(out, "area", trimmed(mesh.area) + " mm^2");
   if (mesh.is_watertight()) {
     print_row(out, "volume", trimmed(mesh.signed_volume) + " mm^3");
@@ -107,7 +110,7 @@ void print_text(const InspectOptions& options, const Inspection& inspection, std
     out << "  - " << text_of(finding) << ".\n    What to do: " << finding.advice << ".\n";
   }
   for (const std::string& warning : inspection.loaded.warnings) {
-    out << "  - in the file: " << warning << ".\n";
+    out << "  - " << warning << ".\n";
   }
 }
 
@@ -147,7 +150,10 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
             {"signed_volume", mesh.is_watertight() ? Json(mesh.signed_volume) : nullptr},
             {"bounds", {{"low", json_of(mesh.bounds.low)}, {"high", json_of(mesh.bounds.high)}}},
             {"self_intersections", or_null(inspection.self_intersections)},
+            {"scale", inspection.loaded.scale},
+            {"flipped", inspection.loaded.flipped},
             {"warnings", inspection.loaded.warnings},
+            {"notices", inspection.loaded.notices},
             {"findings", Json::array()}};
   for (const UnitGuess& guess : other_units(mesh.bounds.size().maxCoeff())) {
     json["other_units"].push_back({{"unit", guess.unit}, {"scale", guess.millimetres}});

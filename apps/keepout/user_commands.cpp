@@ -27,7 +27,7 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
       "Say what a mesh is made of and what is wrong with it: counts, holes, winding, "
       "degenerate and duplicate triangles, size, unit and anatomical space");
   add_mesh(command, options.mesh);
-  add_spaces(command, options.load);
+  add_load_options(command, options.load);
   command.add_flag("--json", options.json, "Print JSON instead of text");
   command.add_flag("--self-intersections", options.self_intersections,
                    "Also count the pairs of triangles that cut through each other");
@@ -75,7 +75,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "replay", "Solve one step for each line of a pose file and write every result as CSV");
   add_mesh(command, options.mesh);
-  add_spaces(command, options.load);
+  add_load_options(command, options.load);
   command
       .add_option("--poses", options.poses,
                   "One step a line, 'px py pz dx dy dz': tip and desired increment, in mm")
@@ -119,7 +119,7 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       "and with each rule, and write an HTML report with pictures");
   command.add_option("MESH", options.meshes, std::string(mesh_help) + "; with --robot several")
       ->type_name("");
-  add_spaces(command, options.load);
+  add_load_options(command, options.load);
   options.files.add_to(command);
   command.add_option("--activation", options.rules, "Rules to run beside the unguarded tool")
       ->check(one_of(names(activation_rules())))
@@ -180,7 +180,7 @@ void add_serve(CLI::App& app, ServeOptions& options) {
       "Unix socket");
   ServiceSettings& service = options.service;
   add_mesh(command, service.mesh);
-  add_spaces(command, options.load);
+  add_load_options(command, options.load);
   CLI::Option* socket =
       command.add_option("--socket", options.socket, "Listen at this path instead of stdin")
           ->type_name("PATH");

@@ -64,17 +64,24 @@ AnatomicalSpace space_from(const char* argument, const std::optional<std::string
 }
 
 MeshHandle load(const std::filesystem::path& path, const std::optional<std::string>& space,
-                const std::optional<std::string>& untagged) {
+                const std::optional<std::string>& untagged, const std::optional<std::string>& unit,
+                std::optional<double> scale, bool flip) {
+  if (unit && unit->empty()) refuse("unit", "the name of a unit or None", "''");
   const LoadOptions options{.space = space_from("space", space),
-                            .untagged = space_from("untagged", untagged)};
+                            .untagged = space_from("untagged", untagged),
+                            .unit = unit.value_or(""),
+                            .scale = scale,
+                            .flip = flip};
   const auto loaded = [&] {
     const py::gil_scoped_release release;
     return load_mesh(path, options);
   };
   MeshHandle mesh{loaded()};
   // Nobody looks at warnings who does not know of any.
-  for (const std::string& warning : mesh.warnings) {
-    warn(path.filename().string() + ": " + warning);
+  for (const std::string& warning : mesh.warnings) warn(warning);
+  if (!mesh.notices.empty()) {  // what was asked for is no reason to warn
+    const py::object log = py::module_::import("logging").attr("getLogger")("keepout").attr("info");
+    for (const std::string& notice : mesh.notices) log("%s", notice);
   }
   return mesh;
 }
@@ -126,7 +133,8 @@ std::string summary(const Inspection& mesh) {
   tell(mesh.duplicate_triangles, "duplicate triangles");
   tell(mesh.unused_vertices, "unused vertices");
   tell(mesh.self_intersections.value_or(0), "self-intersecting pairs");
-  if (mesh.looks_like_metres()) text << "; smaller than 3 in every direction: metres, not mm?";
+  if (mesh.looks_like_metres())
+    text << "; smaller than 3 in every direction: metres, not mm? Then load it with unit=\"m\"";
   return text.str();
 }
 
@@ -242,8 +250,14 @@ void bind_mesh(py::module_& module) {
           },
           "(2, 3) float64 [length]: the lowest and the highest corner of the smallest box around.")
       .def_readonly("warnings", &MeshHandle::warnings,
-                    "What the file had to say, if it came from one: a list of lines, which "
-                    "load_mesh\nshows as Python's warnings, too.")
+                    "What is odd about the file that the mesh came from: a list of sentences, "
+                    "which load_mesh\nshows as Python's warnings, too.")
+      .def_readonly("notices", &MeshHandle::notices,
+                    "What load_mesh did because it was asked to: scaled, turned, flipped. A list "
+                    "of sentences,\nwhich also go to the logger 'keepout' at level INFO.")
+      .def_readonly("scale", &MeshHandle::scale, "What the lengths of the file were multiplied by.")
+      .def_readonly("flipped", &MeshHandle::flipped,
+                    "True if load_mesh wound each triangle the other way.")
       .def_property_readonly(
           "space",
           [](const MeshHandle& self) -> std::optional<std::string> {
@@ -259,15 +273,21 @@ void bind_mesh(py::module_& module) {
             .format(self.mesh->triangle_count(), self.mesh->vertex_count());
       });
 
-  module.def("load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
-             py::arg("untagged") = py::none(),
-             R"(Reads a mesh from an STL, PLY, OBJ or OFF file, and welds it exactly. Nothing is
-rescaled and nothing repaired: see Mesh.inspect. What is odd about it is a UserWarning, and
-in Mesh.warnings.
+  module.def(
+      "load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
+      py::arg("untagged") = py::none(), py::arg("unit") = py::none(), py::arg("scale") = py::none(),
+      py::arg("flip") = false,
+      R"(Reads a mesh from an STL, PLY, OBJ, OFF, legacy VTK or VTP file, and welds it exactly.
+Nothing is repaired: see Mesh.inspect. What is odd about the mesh is a UserWarning, and in
+Mesh.warnings; what was done to it, as asked for, is in Mesh.notices.
 
 space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file
 says the other one (SPACE=...). None: as they stand.
-untagged: the space of a file that does not say. One that does is believed.)");
+untagged: the space of a file that does not say. One that does is believed.
+unit: 'm', 'cm', 'mm', 'um' or 'in', the unit of the lengths in the file, which are scaled
+to mm. None: mm.
+scale: the factor from lengths in the file to mm, above 0, instead of a unit.
+flip: wind each triangle the other way, for normals that point into the solid.)");
 }
 
 }  // namespace keepout::python

@@ -36,6 +36,7 @@ ARGUMENTS = {
     "simulate.out": "Simulation | None",
     "out": "Steps | None",
     "space": SPACE,
+    "unit": 'Literal["m", "cm", "mm", "um", "in"] | None',
     "untagged": SPACE,
 }
 RESULTS = {

@@ -120,7 +120,7 @@ TEST_F(Inspect, TheAnatomicalSpaceIsPrintedAndHowItIsKnown) {
   out << std::string("3D Slicer output. SPACE=LPS").append(53, '\0');
   out.close();
   EXPECT_CONTAINS(text(), "LPS, as stated in the file");
-  EXPECT_CONTAINS(text(), "in the file: states SPACE=LPS: taken as it stands");
+  EXPECT_CONTAINS(text(), ": the file states SPACE=LPS: taken as it stands");
   EXPECT_EQ(json().at("space"), "LPS");
   std::ostringstream turned;
   inspect({.mesh = file, .load = {.space = AnatomicalSpace::ras}}, turned);

@@ -11,6 +11,7 @@
 #include "keepout/error.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/index/index_cache.h"
+#include "keepout/option_table.h"
 #include "keepout/version.h"
 #include "live/browser.h"
 #include "page/base64.h"
@@ -42,7 +43,8 @@ struct Anatomy {
 /// by the page: the constraint itself is not kept. `start`: where an instrument begins.
 std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions& options,
                                      const std::optional<RobotStart>& start) {
-  std::vector<std::string> warnings = loaded.warnings;
+  std::vector<std::string> warnings = loaded.notices;
+  warnings.insert(warnings.end(), loaded.warnings.begin(), loaded.warnings.end());
   const auto warn = [&warnings](const std::string& text) {
     warn_on_stderr(text);
     warnings.push_back(text);
@@ -70,8 +72,8 @@ Json record_of(const RobotStart& start) {
   return {{"base", base}, {"positions", start.positions}};
 }
 
-/// What to type after a command to get the mesh again: its name, and the space that it was turned
-/// to.
+/// What to type after a command to get the mesh again: its name, and the options that it was read
+/// with.
 std::string command_name(const std::filesystem::path& mesh, const LoadOptions& load) {
   std::string words = shell_word(mesh.string());
   for (const auto& [option, space] :
@@ -79,6 +81,9 @@ std::string command_name(const std::filesystem::path& mesh, const LoadOptions& l
     if (space == AnatomicalSpace::unstated) continue;
     words.append(" ").append(option).append(" ").append(name(space));
   }
+  if (!load.unit.empty()) words += " --unit " + load.unit;
+  if (load.scale) words += " --scale " + keepout::text_of(OptionValue(*load.scale));
+  if (load.flip) words += " --flip";
   return words;
 }
 
@@ -187,7 +192,7 @@ void add_live(CLI::App& app, LiveOptions& options) {
   command.add_option("MESH", options.meshes, std::string(mesh_help) + "; several to choose from")
       ->type_name("")
       ->capture_default_str();
-  add_spaces(command, options.load);
+  add_load_options(command, options.load);
   CLI::Option* const robot =
       command
           .add_option("--robot", options.robot,

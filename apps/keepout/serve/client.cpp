@@ -227,13 +227,34 @@ void set_guides(Client& client, const Json& request, std::string& out) {
   append_member(out, "ok", true);
 }
 
+AnatomicalSpace space_of(const Json& request, const char* key) {
+  if (!request.contains(key)) return AnatomicalSpace::unstated;
+  const std::string text = request[key].get<std::string>();
+  for (const AnatomicalSpace space : {AnatomicalSpace::ras, AnatomicalSpace::lps}) {
+    if (text == name(space)) return space;
+  }
+  throw Error(in_quotes(key) + " must be 'RAS' or 'LPS', not " + in_quotes(text));
+}
+
+LoadOptions load_options_of(const Json& request) {
+  LoadOptions options{.space = space_of(request, "space"),
+                      .untagged = space_of(request, "untagged"),
+                      .unit = request.value("unit", ""),
+                      .flip = request.value("flip", false)};
+  if (request.contains("scale")) options.scale = request["scale"].get<double>();
+  return options;
+}
+
 void add_anatomy(Client& client, const Json& request, std::string& out) {
   InstrumentConstraint& guarded = instrument_of(client);
-  const std::shared_ptr<const Mesh> mesh = load_mesh(file_of(request, "file")).mesh;
+  const LoadedMesh loaded = load_mesh(file_of(request, "file"), load_options_of(request));
+  const std::shared_ptr<const Mesh>& mesh = loaded.mesh;
   const std::size_t number = guarded.add_mesh(mesh, make_or_load_index(mesh, client.service.tip),
                                               request.value("margin", 0.0));
   append_member(out, "ok", true);
   append_member(out, "mesh", number);
+  append_member(out, "notices", loaded.notices);
+  append_member(out, "warnings", loaded.warnings);
 }
 
 void place_anatomy(Client& client, const Json& request, std::string& out) {
@@ -287,7 +308,12 @@ std::span<const Verb> verbs() {
       {"joint_step", {"q"}, {"linear", "angular", "increment", "weights"}, joint_step},
       {"tool", {"tool"}, {"narrow_phase"}, open_tool, "no_tool", most_work},
       {"guides", {"guides"}, {"of"}, set_guides, "no_guide"},
-      {"anatomy", {"file"}, {"margin"}, add_anatomy, "no_anatomy", most_work},
+      {"anatomy",
+       {"file"},
+       {"margin", "unit", "scale", "flip", "space", "untagged"},
+       add_anatomy,
+       "no_anatomy",
+       most_work},
       {"place", {"mesh", "frame"}, {"linear", "angular"}, place_anatomy, "no_anatomy"},
       {"info", {}, {}, info},
       {"statuses", {}, {}, statuses},

@@ -37,7 +37,7 @@ bool is_id(const Json& value) {
 bool fits(const Json& value, const Field& field) {
   if (field.option != nullptr) return option_value(value, field.option->kind).has_value();
   const auto is_item = [&](const Json& item) {
-    return field.is_text ? item.is_string() : item.is_number();
+    return field.is_text ? item.is_string() : field.is_flag ? item.is_boolean() : item.is_number();
   };
   const auto is_row = [&](const Json& row) {
     return row.is_array() && field.columns.has(row.size()) && std::ranges::all_of(row, is_item);
@@ -142,9 +142,11 @@ std::vector<Field> fields_within(const RequestLimits& limits) {
       of_joints("increment"),
       of_joints("weights"),
       number("mesh")};
-  for (const char* name : {"urdf", "base_link", "tip_link", "tool", "narrow_phase", "of", "file"}) {
+  for (const char* name : {"urdf", "base_link", "tip_link", "tool", "narrow_phase", "of", "file",
+                           "unit", "space", "untagged"}) {
     fields.push_back({.name = name, .expected = "a string", .is_text = true});
   }
+  fields.push_back({.name = "flip", .expected = "true or false", .is_flag = true});
   for (const auto& option : instrument_options) {
     fields.push_back({.name = option.name, .expected = option.expected(), .option = &option});
   }

@@ -22,8 +22,9 @@ struct RequestLimits {
   std::size_t motions = 1024;  // of one batch
 };
 
-/// A key of requests, and its value: a number or a string, an array of them, or an array of arrays
-/// of one length; or what an option takes, whose range is checked where the option is set.
+/// A key of requests, and its value: a number, a string or a truth value, an array of them, or an
+/// array of arrays of one length; or what an option takes, whose range is checked where the option
+/// is set.
 struct Field {
   struct Count {
     std::size_t least, most;
@@ -35,6 +36,7 @@ struct Field {
   Count columns = {1, 1};
   Count rows = {1, 1};
   bool is_text = false;                // strings, not numbers
+  bool is_flag = false;                // true or false
   const OptionText* option = nullptr;  // that the value is of
 };
 

@@ -250,6 +250,7 @@ int serve(const ServeOptions& options, std::ostream& log) {
   ServiceSettings settings = options.service;
   settings.constraint.warn = warn_on_stderr;
   settings.space = loaded.space;
+  settings.notices = loaded.notices;
   Service service(loaded.mesh, settings);
   const StopSignal stop;
   ::signal(SIGPIPE, SIG_IGN);  // a client who has gone is an error of write() alone
@@ -291,7 +292,8 @@ joint_step  q, and linear and angular of its flange, or an increment: the increm
 tool      tool, as --tool takes it, and narrow_phase: from now on this client's steps guard it.
 guides    guides, texts as --guide of 'keepout replay' takes them, of this client's tip; or with of,
           "instrument", of his instrument: see docs/guides.md.
-anatomy   file, and margin: one more mesh that his instrument is kept out of.
+anatomy   file, and margin: one more mesh that his instrument is kept out of; unit or scale, flip,
+          space and untagged as for the mesh of the command.
 place     mesh, its number, frame, and linear and angular: where it is, and how it moves.
 info      version, mesh, settings and limits.
 statuses  all statuses by name, each with its reason.

@@ -63,6 +63,7 @@ Json info_on(const Mesh& mesh, const ServiceSettings& settings, const MotionCons
           {"mesh",
            {{"file", settings.mesh.string()},
             {"space", std::string(name(settings.space))},
+            {"notices", settings.notices},
             {"triangles", mesh.triangle_count()},
             {"vertices", mesh.vertex_count()},
             {"low", array(mesh.bounds().low)},

@@ -24,6 +24,7 @@ inline constexpr std::size_t most_work = 16;  // of a turn, in steps
 struct ServiceSettings {
   std::filesystem::path mesh;                         // what it was read from, for "info"
   AnatomicalSpace space = AnatomicalSpace::unstated;  // that its coordinates are in, for "info"
+  std::vector<std::string> notices = {};              // on how it was read, for "info"
   MotionConstraintSettings constraint{.options = {.distances = Distances::always}};
   RequestLimits limits;
   std::size_t longest_line = std::size_t{1} << 18;  // [bytes]

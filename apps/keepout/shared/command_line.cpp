@@ -14,6 +14,7 @@
 #include "keepout/error.h"
 #include "keepout/factory/convex_tool_text.h"
 #include "keepout/factory/guide_text.h"
+#include "keepout/mesh/doctor.h"
 #include "keepout/solvers/registry.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
@@ -192,12 +193,27 @@ void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
   command.add_option("MESH", mesh, std::string(mesh_help))->type_name("")->required();
 }
 
-void add_spaces(CLI::App& command, LoadOptions& load) {
+void add_load_options(CLI::App& command, LoadOptions& load) {
   add_space(command, "--space", load.space,
             "Anatomical space to have the mesh in: turned if the file says SPACE=LPS or SPACE=RAS "
             "and it is the other one. Without it: as it stands");
   add_space(command, "--untagged", load.untagged,
             "Anatomical space of a file that does not say which it is in");
+  std::vector<std::string> units;
+  for (const UnitGuess& known : length_units()) units.emplace_back(known.unit);
+  CLI::Option* const unit =
+      command
+          .add_option("--unit", load.unit,
+                      "Unit of the lengths in the file, which are scaled to mm. Without it: mm")
+          ->check(one_of(std::move(units)));
+  command
+      .add_option("--scale", load.scale,
+                  "Factor from lengths in the file to mm, for a unit without a name")
+      ->check(number_within(1e-30, 1e30, "a number from 1e-30 to 1e30", "NUMBER"))
+      ->type_name("NUMBER")
+      ->excludes(unit);
+  command.add_flag("--flip", load.flip,
+                   "Wind each triangle the other way, if the normals point into the solid");
 }
 
 void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {

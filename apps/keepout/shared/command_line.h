@@ -147,8 +147,8 @@ CLI::Option* add_part(CLI::App& command, const std::string& name, std::string& v
 /// The mesh: a file or a fixture.
 void add_mesh(CLI::App& command, std::filesystem::path& mesh);
 
-/// Of every command that places something in the frame of the mesh.
-void add_spaces(CLI::App& command, LoadOptions& load);
+/// Adds the options of load_mesh() to a command that places something in the frame of the mesh.
+void add_load_options(CLI::App& command, LoadOptions& load);
 
 /// Of every command that builds a motion constraint, but for the rule, of which one may take
 /// several.

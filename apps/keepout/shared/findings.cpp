@@ -9,14 +9,16 @@ std::vector<Finding> findings_of(const MeshFindings& mesh,
                                  std::optional<std::size_t> self_intersections) {
   const std::vector<Finding> all{
       {"inside_out", mesh.is_inside_out(), "",
-       "the normals point into the solid: tissue and free space are swapped", "flip all triangles"},
+       "the normals point into the solid: tissue and free space are swapped",
+       "flip all triangles: --flip, or flip=True in Python"},
       {"looks_like_metres", mesh.looks_like_metres(), "",
        "smaller than 3 in every direction: in millimetres that is tiny, so these may be metres",
-       "scale by 1000 if so, or by what 'unit' above names; nothing is rescaled here"},
+       "give the unit of the file: --unit m, or another that 'unit' above names; in Python "
+       "unit=\"m\""},
       {"looks_like_micrometres", mesh.looks_like_micrometres(), "",
        "larger than 3000 in some direction: 3 m in millimetres, so these may be micrometres, or "
        "something lies far from the rest",
-       "divide by 1000 if so; nothing is rescaled here"},
+       "give the unit of the file if so: --unit um, or in Python unit=\"um\""},
       {"inconsistent_edges", mesh.inconsistent_edges, "inconsistently wound edge",
        "the two triangles there disagree about which side is free",
        "orient the surface consistently"},

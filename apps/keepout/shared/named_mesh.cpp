@@ -37,7 +37,8 @@ bool is_shape(const std::filesystem::path& name) {
 
 /// The meshes in the folder where the user thought there was this one.
 std::vector<std::string> files_beside(const std::filesystem::path& path) {
-  constexpr std::array<std::string_view, 4> extensions{".stl", ".ply", ".obj", ".off"};
+  constexpr std::array<std::string_view, 6> extensions{".stl", ".ply", ".obj",
+                                                       ".off", ".vtk", ".vtp"};
   const std::filesystem::path folder = path.parent_path();
   std::vector<std::string> files;
   std::error_code error;
@@ -70,16 +71,26 @@ LoadedMesh generate(const std::filesystem::path& name, const LoadOptions& option
   if (options.space != AnatomicalSpace::unstated && options.space != options.untagged) {
     throw Error(name.string() + ": is generated, and in no anatomical space: leave --space out");
   }
+  if (!options.unit.empty() || options.scale || options.flip) {
+    throw Error(name.string() +
+                ": is generated, in mm and wound as it should be: leave --unit, --scale and --flip "
+                "out");
+  }
   LoadedMesh loaded{.mesh = std::make_shared<const Mesh>(make_shape(name.string())),
                     .space = options.untagged};
-  if (options.check == MeshCheck::quick) loaded.warnings = quick_check(*loaded.mesh);
+  if (options.check == MeshCheck::quick) {
+    for (const std::string& warning : quick_check(*loaded.mesh)) {
+      loaded.warnings.push_back(name.string() + ": " + warning);
+    }
+  }
   return loaded;
 }
 
 }  // namespace
 
 const std::string_view mesh_help =
-    "Mesh file in mm, STL, PLY, OBJ or OFF; or the name of a fixture, such as skull or cube: see "
+    "Mesh file in mm, STL, PLY, OBJ, OFF, VTK or VTP; or the name of a fixture, such as skull or "
+    "cube: see "
     "'keepout --help'";
 
 std::string mesh_names_help() {
@@ -103,8 +114,8 @@ LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions&
 
 LoadedMesh load_named_mesh(const std::filesystem::path& name, const LoadOptions& options) {
   LoadedMesh loaded = read_named_mesh(name, options);
-  for (const std::string& warning : loaded.warnings) {
-    warn_on_stderr(name.string() + ": " + warning);
+  for (const auto* sentences : {&loaded.notices, &loaded.warnings}) {
+    for (const std::string& sentence : *sentences) warn_on_stderr(sentence);
   }
   return loaded;
 }

@@ -23,7 +23,7 @@ std::filesystem::path file_of_mesh(const std::filesystem::path& name);
 /// Reads or generates it. Throws Error.
 LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions& options = {});
 
-/// The same; warnings go to stderr, a line each that begins with the name.
+/// Like read_named_mesh(), but also writes notices and warnings to stderr, a line each.
 LoadedMesh load_named_mesh(const std::filesystem::path& name, const LoadOptions& options = {});
 
 }  // namespace keepout::app

@@ -97,7 +97,8 @@ Anatomy* anatomy_of_surface(const val& vertices, const val& corners) {
   });
 }
 
-/// Anatomy of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ or OFF, in mm.
+/// Anatomy of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ, OFF or VTK, in
+/// mm.
 Anatomy* anatomy_of_file(const std::string& name, const val& content) {
   return or_error([&] {
     const auto bytes = emscripten::convertJSArrayToNumberVector<std::uint8_t>(content);

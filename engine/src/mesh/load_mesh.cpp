@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <new>
 #include <utility>
@@ -39,6 +40,11 @@ std::string_view extension_by_content(std::string_view beginning) {
   if (beginning.starts_with("solid") && beginning.find("facet") != std::string_view::npos) {
     return ".stl";
   }
+  if (beginning.starts_with("# vtk DataFile Version")) return ".vtk";
+  if (beginning.find("<VTKFile") != std::string_view::npos &&
+      beginning.find("\"PolyData\"") != std::string_view::npos) {
+    return ".vtp";
+  }
   return {};
 }
 
@@ -65,8 +71,12 @@ struct Format {
   MeshFile (*read)(const MeshSource&);  // all that is not binary STL
 };
 
-constexpr std::array<Format, 4> formats{
-    {{".stl", read_text_stl}, {".ply", read_ply}, {".obj", read_obj}, {".off", read_off}}};
+constexpr std::array<Format, 6> formats{{{".stl", read_text_stl},
+                                         {".ply", read_ply},
+                                         {".obj", read_obj},
+                                         {".off", read_off},
+                                         {".vtk", read_vtk},
+                                         {".vtp", read_vtp}}};
 
 /// A file's surface, welded.
 MeshFile read_welded(const MeshSource& source, const std::string& extension) {
@@ -74,7 +84,9 @@ MeshFile read_welded(const MeshSource& source, const std::string& extension) {
   refuse_compressed(source, beginning);
   const auto format = std::ranges::find(formats, extension, &Format::extension);
   if (format == formats.end()) {
-    source.fail("its extension is none of .stl, .ply, .obj, .off; convert the mesh to one of them");
+    source.fail(
+        "its extension is none of .stl, .ply, .obj, .off, .vtk, .vtp; convert the mesh to one of "
+        "them");
   }
   if (extension == ".stl") {
     if (auto surface = read_binary_stl(source)) {
@@ -91,8 +103,8 @@ MeshFile read_welded(const MeshSource& source, const std::string& extension) {
   return mesh;
 }
 
-/// Turns the surface into the space that is wanted, and takes down what is known of it. Throws
-/// Error when that cannot be done without guessing.
+/// Turns the surface into the space that is wanted, and notes what is known of it. Throws Error if
+/// that cannot be done without guessing.
 void settle_space(const MeshSource& source, const CoordinateNotes& notes,
                   const LoadOptions& options, Surface& surface, LoadedMesh& loaded) {
   constexpr AnatomicalSpace unstated = AnatomicalSpace::unstated;
@@ -107,15 +119,15 @@ void settle_space(const MeshSource& source, const CoordinateNotes& notes,
   const bool is_another = !notes.space.empty() && loaded.stated == unstated;
   if (options.space == unstated) {
     if (is_another) {
-      loaded.warnings.push_back("states SPACE=" + notes.space +
+      loaded.warnings.push_back("the file states SPACE=" + notes.space +
                                 ", which is neither RAS nor LPS: taken as it stands");
     } else if (loaded.stated != unstated) {
       const std::string other(name(loaded.stated == AnatomicalSpace::ras ? AnatomicalSpace::lps
                                                                          : AnatomicalSpace::ras));
-      loaded.warnings.push_back("states SPACE=" + notes.space +
-                                ": taken as it stands, so tips must be in " + notes.space +
-                                " too; ask for the space " + notes.space + ", or for " + other +
-                                " to have it turned");
+      loaded.warnings.push_back(
+          "the file states SPACE=" + notes.space + ": taken as it stands, so tips must be in " +
+          notes.space + " too; ask for the space " + notes.space + " (--space " + notes.space +
+          ", space=\"" + notes.space + "\"), or for " + other + " to have it turned");
     }
     return;
   }
@@ -132,20 +144,83 @@ void settle_space(const MeshSource& source, const CoordinateNotes& notes,
   }
   if (loaded.space != options.space) {
     swap_ras_and_lps(surface);
+    loaded.notices.push_back("turned from " + std::string(name(loaded.space)) + " to " + wanted +
+                             ": x and y have changed their signs");
     loaded.space = options.space;
   }
 }
 
-void warn_of_unit(const CoordinateNotes& notes, std::vector<std::string>& warnings) {
-  if (!notes.millimetres || *notes.millimetres == 1.0) return;
+std::string number_text(double value) {
   std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), *notes.millimetres);
-  const std::string factor(digits.data(), end.ptr);
-  warnings.push_back("states that 1 unit is " + factor + " mm: not rescaled; scale it by " +
-                     factor + " where lengths are in millimetres");
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+  return {digits.data(), end.ptr};
+}
+
+/// The factor from lengths in the file to mm. Throws Error for a unit or a scale that is none.
+double scale_of(const LoadOptions& options) {
+  if (options.scale) {
+    if (!options.unit.empty()) throw Error("unit and scale: give one of them, not both");
+    if (!(*options.scale > 0.0) || !std::isfinite(*options.scale)) {
+      throw Error(
+          "scale must be a finite number above 0, the factor from lengths in the file to "
+          "mm, not " +
+          number_text(*options.scale));
+    }
+    return *options.scale;
+  }
+  if (options.unit.empty()) return 1.0;
+  std::string names;
+  for (const UnitGuess& known : length_units()) {
+    if (options.unit == known.unit) return known.millimetres;
+    names.append(names.empty() ? "'" : ", '").append(known.unit).append("'");
+  }
+  throw Error("unit must be one of " + names + ", the unit of the lengths in the file, not '" +
+              options.unit + "'");
+}
+
+/// Scales the surface to mm. Two vertices may round to one, so that it is welded again.
+void scale_to_mm(const MeshSource& source, const LoadOptions& options, double scale,
+                 Surface& surface, LoadedMesh& loaded) {
+  if (scale == 1.0) return;
+  for (Vec3& vertex : surface.vertices) {
+    vertex *= scale;
+    if (!vertex.allFinite()) {
+      source.fail("scaled by " + number_text(scale) +
+                  " it has a coordinate that is not finite; check the scale");
+    }
+  }
+  surface = weld(std::move(surface));
+  loaded.scale = scale;
+  loaded.notices.push_back("scaled by " + number_text(scale) +
+                           (options.unit.empty() ? "" : ", from " + options.unit + " to mm"));
+}
+
+/// Reports a unit that the file states unless it is read in that one.
+void warn_of_unit(const CoordinateNotes& notes, const LoadOptions& options, double scale,
+                  std::vector<std::string>& warnings) {
+  if (!notes.millimetres || *notes.millimetres == scale) return;
+  const std::string factor = number_text(*notes.millimetres);
+  const bool is_given = options.scale || !options.unit.empty();
+  warnings.push_back("the file states that 1 unit is " + factor + " mm, " +
+                     (is_given ? "but it was read as if 1 unit were " + number_text(scale) +
+                                     " mm, as was asked for: check which is right"
+                               : "but nothing is scaled unless you ask for it: give --scale " +
+                                     factor + " or scale=" + factor));
+}
+
+void flip_triangles(Surface& surface, LoadedMesh& loaded) {
+  for (Corners& corners : surface.triangles) std::swap(corners[1], corners[2]);
+  loaded.flipped = true;
+  loaded.notices.emplace_back("flipped: each triangle is wound the other way");
 }
 
 }  // namespace
+
+#ifndef KEEPOUT_READS_VTP
+MeshFile read_vtp(const MeshSource& source) {
+  source.fail("this build of keepout does not read VTP; save the mesh as .vtk, .stl or .ply");
+}
+#endif
 
 std::string_view name(AnatomicalSpace space) noexcept {
   constexpr std::array<std::string_view, 3> names{"unstated", "RAS", "LPS"};
@@ -184,6 +259,7 @@ std::string MeshSource::contents(std::uint64_t at_most) const {
 void MeshSource::fail(const std::string& what) const { throw Error(name_ + ": " + what); }
 
 LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& options) {
+  const double scale = scale_of(options);
   const MeshSource source(path);
   LoadedMesh loaded;
   MeshFile read;
@@ -195,16 +271,22 @@ LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& optio
   loaded.warnings = std::move(read.warnings);
   const CoordinateNotes notes = notes_of(read.comments);
   settle_space(source, notes, options, read.surface, loaded);
-  warn_of_unit(notes, loaded.warnings);
+  warn_of_unit(notes, options, scale, loaded.warnings);
+  scale_to_mm(source, options, scale, read.surface, loaded);
+  if (options.flip) flip_triangles(read.surface, loaded);
   try {
     loaded.mesh = std::make_shared<const Mesh>(std::move(read.surface));
   } catch (const Error& error) {
     source.fail(error.what());
   }
   if (options.check == MeshCheck::quick) {
-    for (std::string& warning : quick_check(*loaded.mesh)) {
+    for (std::string& warning : quick_check(*loaded.mesh, 0, scale)) {
       loaded.warnings.push_back(std::move(warning));
     }
+  }
+  const std::string file = path.filename().string() + ": ";
+  for (auto* sentences : {&loaded.warnings, &loaded.notices}) {
+    for (std::string& sentence : *sentences) sentence.insert(0, file);
   }
   return loaded;
 }

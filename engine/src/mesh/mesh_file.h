@@ -53,8 +53,9 @@ struct MeshFile {
 /// What the comments of a mesh file say of its coordinates.
 ///
 /// 3D Slicer writes "SPACE=LPS" or "SPACE=RAS": in the header of an STL file ("3D Slicer output.
-/// SPACE=LPS"), in a comment of a PLY or OBJ file. Mimics writes into OBJ files "vertex coordinates
-/// are measured in units, where 1 unit = 1000.000000 mm".
+/// SPACE=LPS"), in the title of a legacy VTK file, in a comment of a PLY or OBJ file, and as a
+/// field SPACE of a VTP file. Mimics writes into OBJ files "vertex coordinates are measured in
+/// units, where 1 unit = 1000.000000 mm".
 struct CoordinateNotes {
   std::string space;                  // that is stated: "RAS", "LPS", or another such as "LAS"
   std::string contradiction;          // two spaces that were both stated
@@ -94,5 +95,13 @@ MeshFile read_ply(const MeshSource& source);
 MeshFile read_text_stl(const MeshSource& source);
 MeshFile read_obj(const MeshSource& source);
 MeshFile read_off(const MeshSource& source);
+
+/// A legacy VTK file of PolyData, text or binary, of version 1 to 5: polygons and triangle strips.
+/// Its title is a comment, and so is a field SPACE. Reads no further than the surface.
+MeshFile read_vtk(const MeshSource& source);
+
+/// An XML file of VTK with PolyData: polygons and triangle strips of all pieces; arrays as text, as
+/// base64, or appended, raw or in base64; compressed by zlib or not. A field SPACE is a comment.
+MeshFile read_vtp(const MeshSource& source);
 
 }  // namespace keepout

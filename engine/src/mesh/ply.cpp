@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include "../huge_pages.h"
 #include "../parallel.h"
+#include "binary_number.h"
 #include "mesh_file.h"
 #include "ply_header.h"
 #include "polygons.h"
@@ -37,14 +37,19 @@ class PlyText {
   explicit PlyText(TextLines& lines) : lines_(lines) {}
 
   /// Comes to the next item of an element, and to its end.
-  void begin_item(const PlyElement& element, std::uint64_t) {
+  void begin_item(const PlyElement& element, std::uint64_t item) {
     element_ = &element;
+    item_ = item;
     used_ = 0;
     if (!lines_.next()) fail(cut_short(element));
   }
   void end_item() const {
     if (used_ != lines_.words().size()) {
-      fail("more values than the header declares for a " + in_quotes(element_->name));
+      const std::string name = in_quotes(element_->name);
+      fail(std::to_string(lines_.words().size()) + " values, but by the header each " + name +
+           " has " + std::to_string(used_) +
+           ": the header lacks a property, or the file has only " + std::to_string(item_) +
+           " of the " + std::to_string(element_->count) + " " + name + " that it declares");
     }
   }
 
@@ -85,6 +90,7 @@ class PlyText {
 
   TextLines& lines_;
   const PlyElement* element_ = nullptr;
+  std::uint64_t item_ = 0;  // of the element
   std::size_t used_ = 0;
 };
 
@@ -139,19 +145,10 @@ class PlyBytes {
   void move_on(std::uint64_t bytes) noexcept { position_ += bytes; }
 
   double real(const char* bytes, const PlyScalar& type) const noexcept {
-    if (type.whole) return static_cast<double>(whole(bytes, type));
-    return type.size == 4 ? double{get<float>(bytes)} : get<double>(bytes);
+    return real_at(bytes, type, swapped_);
   }
-
   std::int64_t whole(const char* bytes, const PlyScalar& type) const noexcept {
-    switch (type.size) {
-      case 1:
-        return type.is_signed ? std::int64_t{get<std::int8_t>(bytes)} : get<std::uint8_t>(bytes);
-      case 2:
-        return type.is_signed ? std::int64_t{get<std::int16_t>(bytes)} : get<std::uint16_t>(bytes);
-      default:
-        return type.is_signed ? std::int64_t{get<std::int32_t>(bytes)} : get<std::uint32_t>(bytes);
-    }
+    return whole_at(bytes, type, swapped_);
   }
 
  private:
@@ -167,14 +164,6 @@ class PlyBytes {
     const char* bytes = buffer_.data() + (position_ - begin_);
     position_ += size;
     return bytes;
-  }
-
-  template <class T>
-  T get(const char* bytes) const noexcept {
-    char ordered[sizeof(T)];
-    std::memcpy(ordered, bytes, sizeof(T));
-    if (swapped_) std::reverse(ordered, ordered + sizeof(T));
-    return std::bit_cast<T>(ordered);
   }
 
   const MeshSource& source_;

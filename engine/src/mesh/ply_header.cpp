@@ -9,14 +9,14 @@
 namespace keepout {
 namespace {
 
-constexpr std::array<PlyScalar, 8> scalars{{{"char", "int8", 1, true, true},
-                                            {"uchar", "uint8", 1, true, false},
-                                            {"short", "int16", 2, true, true},
-                                            {"ushort", "uint16", 2, true, false},
-                                            {"int", "int32", 4, true, true},
-                                            {"uint", "uint32", 4, true, false},
-                                            {"float", "float32", 4, false, true},
-                                            {"double", "float64", 8, false, true}}};
+constexpr std::array<PlyScalar, 8> scalars{{{{1, true, true}, "char", "int8"},
+                                            {{1, true, false}, "uchar", "uint8"},
+                                            {{2, true, true}, "short", "int16"},
+                                            {{2, true, false}, "ushort", "uint16"},
+                                            {{4, true, true}, "int", "int32"},
+                                            {{4, true, false}, "uint", "uint32"},
+                                            {{4, false, true}, "float", "float32"},
+                                            {{8, false, true}, "double", "float64"}}};
 
 constexpr std::uint64_t longest_header = std::uint64_t{16} << 20;  // [bytes]
 

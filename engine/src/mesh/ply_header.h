@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "binary_number.h"
 #include "mesh_file.h"
 
 namespace keepout {
@@ -19,12 +20,9 @@ namespace keepout {
 enum class PlyEncoding { text, little_endian, big_endian };
 
 /// A type of numbers.
-struct PlyScalar {
+struct PlyScalar : NumberType {
   std::string_view name;     // as the source has it
   std::string_view synonym;  // as others write it
-  std::size_t size;          // [bytes]
-  bool whole;                // an integer, not a floating-point number
-  bool is_signed;
 };
 
 /// What each item of an element has: one value, or a list of them.

@@ -141,8 +141,8 @@ void Polygons::cut_into(MeshFile& mesh, const MeshSource& source) const {
     source.fail("has no faces, only points or lines; a surface must be made of them first");
   }
   if (left_out_ > 0) {
-    mesh.warnings.push_back("left out " + std::to_string(left_out_) +
-                            " faces with fewer than three corners");
+    mesh.warnings.push_back(std::to_string(left_out_) +
+                            " faces with fewer than three corners are left out");
   }
 }
 

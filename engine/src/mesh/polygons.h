@@ -16,14 +16,21 @@ class Polygons {
  public:
   /// The next corner of a polygon.
   void add_corner(VertexId vertex) { corners_.push_back(vertex); }
-  /// The same as a file has it, one of `vertices`. If it is none, `place` fails.
+  /// The same as a file has it, one of `vertices`, which are numbered from `first` on in the mesh.
+  /// If it is none, `place` fails.
   template <class Place>
-  void add_corner(std::uint64_t vertex, std::uint64_t vertices, const Place& place) {
+  void add_corner(std::uint64_t vertex, std::uint64_t vertices, std::uint64_t first,
+                  const Place& place) {
     if (vertex >= vertices) {
       place.fail("a face names vertex " + std::to_string(vertex) + ", but there are only " +
                  std::to_string(vertices) + "; the file is damaged");
     }
-    add_corner(static_cast<VertexId>(vertex));
+    add_corner(static_cast<VertexId>(first + vertex));
+  }
+  /// Like above, where the first vertex of the mesh is number 0 of the file.
+  template <class Place>
+  void add_corner(std::uint64_t vertex, std::uint64_t vertices, const Place& place) {
+    add_corner(vertex, vertices, 0, place);
   }
 
   /// Ends a polygon. One of fewer than three corners is left out.

@@ -103,17 +103,25 @@ std::string short_number(double value) {
 }
 
 /// What its size says of the unit; empty for one that organs have.
-std::string doubt_of_unit(const Mesh& mesh) {
+std::string doubt_of_unit(const Mesh& mesh, double scale) {
   const double extent = mesh.bounds().size().maxCoeff();
   if (extent >= MeshFindings::metres_below && extent <= MeshFindings::micrometres_above) return {};
-  std::string text = "is " + short_number(extent) + " mm large if its numbers are mm";
-  std::string_view joint = "; as plausible are ";
-  for (const UnitGuess& guess : other_units(extent)) {
-    text.append(joint).append(guess.unit).append(", of which it would be ");
-    text += short_number(extent * guess.millimetres) + " mm";
-    joint = ", or ";
+  const std::string size = "the mesh is " + short_number(extent) + " mm across";
+  if (scale != 1.0) {
+    return size + " after it was scaled by " + short_number(scale) +
+           ", and no anatomy is: check the unit or the scale that was given";
   }
-  return text + ": nothing is rescaled, so scale the mesh unless your lengths are in its unit";
+  std::string text = size + " if its unit is mm";
+  std::string example = "m";
+  std::string_view joint = "; in ";
+  for (const UnitGuess& guess : other_units(extent)) {
+    if (joint == "; in ") example = guess.unit;
+    text.append(joint).append(guess.unit).append(" it would be ");
+    text += short_number(extent * guess.millimetres) + " mm across";
+    joint = ", and in ";
+  }
+  return text + ": give the unit of the file, for example --unit " + example + " or unit=\"" +
+         example + "\", unless all your lengths are in its unit";
 }
 
 }  // namespace
@@ -136,30 +144,37 @@ EdgeFaults find_edge_faults(const Mesh& mesh, unsigned threads) {
   return faults;
 }
 
+std::span<const UnitGuess> length_units() noexcept {
+  static constexpr std::array<UnitGuess, 5> units{
+      {{"m", 1000.0}, {"cm", 10.0}, {"mm", 1.0}, {"um", 0.001}, {"in", 25.4}}};
+  return units;
+}
+
 std::vector<UnitGuess> other_units(double extent) {
   // Sizes of organs and bones, and one from which on millimetres are not in doubt. [mm]
   constexpr double smallest = 20.0, largest = 600.0, usual = 30.0;
-  constexpr std::array<UnitGuess, 4> units{
-      {{"m", 1000.0}, {"in", 25.4}, {"cm", 10.0}, {"um", 0.001}}};
   std::vector<UnitGuess> guesses;
   if (extent >= usual && extent <= MeshFindings::micrometres_above) return guesses;
-  for (const UnitGuess& guess : units) {
+  for (const UnitGuess& guess : length_units()) {
     const double size = extent * guess.millimetres;
-    if (size >= smallest && size <= largest) guesses.push_back(guess);
+    const bool is_another = guess.millimetres != 1.0;
+    if (is_another && size >= smallest && size <= largest) guesses.push_back(guess);
   }
   return guesses;
 }
 
-std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads) {
+std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads, double scale) {
   std::vector<std::string> warnings;
-  if (std::string doubt = doubt_of_unit(mesh); !doubt.empty()) warnings.push_back(std::move(doubt));
+  std::string doubt = doubt_of_unit(mesh, scale);
+  if (!doubt.empty()) warnings.push_back(std::move(doubt));
   const EdgeFaults faults = find_edge_faults(mesh, threads);
   if (faults.boundary) {
-    warnings.emplace_back("is an open surface: where triangles are missing nothing is guarded");
+    warnings.emplace_back("the surface is open: nothing is guarded where triangles are missing");
   }
   if (faults.inconsistent) {
     warnings.emplace_back(
-        "is wound inconsistently: some neighbours disagree about which of their sides is free");
+        "the surface is wound inconsistently: some neighbors disagree about which of their sides "
+        "is free");
   }
   return warnings;
 }

@@ -40,9 +40,9 @@ bool is_harmless(std::string_view statement) noexcept {
 void warn_of_unknown(std::uint64_t count, const std::string& first,
                      std::vector<std::string>& warnings) {
   if (count == 0) return;
-  warnings.push_back("left out " + std::to_string(count) +
-                     " lines that are no statements of OBJ, " + "the first in " + first +
-                     ": if the file is damaged, part of the mesh is " + "missing");
+  warnings.push_back(std::to_string(count) +
+                     " lines that are no statements of OBJ are left out, the first in " + first +
+                     ": if the file is damaged, part of the mesh is missing");
 }
 
 /// The vertex that a corner such as 7, -1, 7/2, 7//3 or 7/2/3 names, counted from 0.
@@ -205,7 +205,7 @@ MeshFile read_obj(const MeshSource& source) {
   polygons.cut_into(mesh, source);
   mesh.comments = lines.take_comments();
   if (left_out > 0) {
-    mesh.warnings.push_back("left out " + std::to_string(left_out) + " lines or points");
+    mesh.warnings.push_back(std::to_string(left_out) + " lines or points are left out");
   }
   warn_of_unknown(unknown, first_unknown, mesh.warnings);
   lines.warn_of_open_end("part of the mesh is missing, and OBJ has no counts to tell by",

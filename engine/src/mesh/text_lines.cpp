@@ -42,7 +42,10 @@ double last_place(std::string_view numeral) {
 }  // namespace
 
 TextLines::TextLines(std::string text, std::string file, LineRules rules)
-    : contents_(std::move(text)), file_(std::move(file)), rules_(rules) {
+    : contents_(std::move(text)),
+      file_(std::move(file)),
+      rules_(rules),
+      next_number_(rules.first_line) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text_.starts_with(byte_order_mark)) position_ = byte_order_mark.size();
 }
@@ -50,7 +53,7 @@ TextLines::TextLines(std::string text, std::string file, LineRules rules)
 bool TextLines::next() {
   words_.clear();
   while (words_.empty() && position_ < text_.size()) {
-    line_ = next_line_;
+    line_ = next_number_;
     split_line();
     while (rules_.backslash_joins && !words_.empty() && words_.back().ends_with('\\')) {
       words_.back().remove_suffix(1);
@@ -60,6 +63,22 @@ bool TextLines::next() {
     }
   }
   return !words_.empty();
+}
+
+std::string_view TextLines::next_line() {
+  words_.clear();
+  const std::size_t begin = position_;
+  line_ = next_number_;
+  if (left() > 0) split_line();
+  const std::string_view line = text_.substr(begin, position_ - begin);
+  return line.substr(0, std::min(line.find_first_of("\r\n"), line.size()));
+}
+
+std::string_view TextLines::take_bytes(std::uint64_t count) noexcept {
+  const std::string_view bytes = text_.substr(position_, static_cast<std::size_t>(count));
+  position_ += bytes.size();
+  next_number_ += static_cast<std::size_t>(std::ranges::count(bytes, '\n'));
+  return bytes;
 }
 
 void TextLines::split_line() {
@@ -82,7 +101,7 @@ void TextLines::split_line() {
   }
   if (i < text_.size()) i += text_.substr(i).starts_with("\r\n") ? 2 : 1;
   position_ = i;
-  ++next_line_;
+  ++next_number_;
 }
 
 std::string_view TextLines::after(std::string_view word) const noexcept {

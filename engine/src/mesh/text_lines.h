@@ -17,6 +17,7 @@ namespace keepout {
 struct LineRules {
   char comment = '\0';           // starts one, up to the end of the line; '\0': there are none
   bool backslash_joins = false;  // a backslash at its end carries a line on in the next
+  std::size_t first_line = 1;    // the number of the text's first line in its file
 };
 
 /// The lines of a text that hold anything, cut into words; whatever the line ends (LF, CRLF, CR).
@@ -32,6 +33,14 @@ class TextLines {
 
   /// Moves on to the next line that has a word; false at the end of the text.
   bool next();
+  /// Moves on to the next line, even a blank one, and returns it without its end; empty at the end
+  /// of the text.
+  std::string_view next_line();
+  /// Returns the number of bytes behind the current line.
+  std::uint64_t left() const noexcept { return text_.size() - position_; }
+  /// Moves over the bytes behind the current line and returns them. Precondition: `count` is at
+  /// most left().
+  std::string_view take_bytes(std::uint64_t count) noexcept;
 
   std::span<const std::string_view> words() const noexcept { return words_; }
   std::size_t line() const noexcept { return line_; }
@@ -71,7 +80,7 @@ class TextLines {
   std::vector<std::string> comments_;
   std::size_t position_ = 0;
   std::size_t line_ = 0;
-  std::size_t next_line_ = 1;
+  std::size_t next_number_;  // of the next line
   bool has_only_floats_ = true;
 };
 

@@ -63,8 +63,12 @@ const std::vector<Tagged>& tagged_formats() {
          return slicer_ply(as_binary_ply<float>(s, false), tag);
        }},
       {"Obj", "mesh.obj", slicer_obj},
-      {"Off", "mesh.off", [](const Surface& s, const std::string& tag) {
+      {"Off", "mesh.off",
+       [](const Surface& s, const std::string& tag) {
          return replaced(as_off(s), "OFF\n", "OFF\n# " + tag + "\n");
+       }},
+      {"Vtk", "mesh.vtk", [](const Surface& s, const std::string& tag) {
+         return replaced(as_text_vtk(s), "made by hand", tag);
        }}};
   return all;
 }
@@ -95,6 +99,10 @@ TEST_P(TaggedMesh, OnDemandItIsTurnedByHalfATurnAboutZExactly) {
   EXPECT_EQ(turned.stated, lps);
   EXPECT_TRUE(as_is.warnings.empty());
   EXPECT_TRUE(turned.warnings.empty());
+  EXPECT_TRUE(as_is.notices.empty());
+  EXPECT_EQ(turned.notices,
+            std::vector<std::string>{GetParam().file + ": turned from LPS to RAS: x and y have "
+                                                       "changed their signs"});
   ASSERT_EQ(turned.mesh->vertex_count(), as_is.mesh->vertex_count());
   EXPECT_TRUE(std::ranges::equal(turned.mesh->triangles(), as_is.mesh->triangles()));
   for (VertexId v = 0; v < turned.mesh->vertex_count(); ++v) {
@@ -208,7 +216,8 @@ TEST_F(LoadMesh, AUnitOtherThanMillimetresThatTheFileStatesIsWarnedOf) {
   const Surface surface = tetrahedron();
   const LoadedMesh metres = load_unchecked("a.obj", slicer_obj(surface, start + "1000.000000 mm"));
   ASSERT_EQ(metres.warnings.size(), 1u);
-  EXPECT_CONTAINS(metres.warnings[0], "1 unit is 1000 mm: not rescaled");
+  EXPECT_CONTAINS(metres.warnings[0],
+                  "a.obj: the file states that 1 unit is 1000 mm, but nothing is scaled");
   EXPECT_EQ(metres.mesh->bounds().high.x(), 1.0);
   EXPECT_TRUE(load_unchecked("b.obj", slicer_obj(surface, start + "1.000000 mm")).warnings.empty());
   for (const char* odd : {"-3 mm", "nan mm", "1000 parsecs", "mm", "1e999 mm", ""}) {

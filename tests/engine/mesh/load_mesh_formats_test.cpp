@@ -109,6 +109,13 @@ TEST_F(LoadMesh, FewerFacesThanDeclaredIsAnErrorAndMoreAWarning) {
   }
 }
 
+TEST_F(LoadMesh, FewerVerticesThanAPlyFileDeclaresAreCounted) {
+  const std::string ply = as_text_ply(single_triangle());
+  EXPECT_CONTAINS(complaint("mesh.ply", replaced(ply, "vertex 3", "vertex 5")),
+                  "line 16: 5 values, but by the header each 'vertex' has 4: the header lacks a "
+                  "property, or the file has only 3 of the 5 'vertex' that it declares");
+}
+
 TEST_F(LoadMesh, IndicesOfVerticesThatAreNotThereAreErrors) {
   for (const std::string_view bad : {"4", "4294967295", "4294967296", "-1", "x", "1.0"}) {
     const std::string index(bad);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <zlib.h>
+
 #include <cstring>
 #include <functional>
 #include <iomanip>
@@ -119,6 +121,180 @@ inline std::string as_binary_stl(const Surface& surface) {
   return folder.contents("mesh.stl");
 }
 
+inline std::string vtk_title(const std::string& encoding, const std::string& version) {
+  return "# vtk DataFile Version " + version + "\nmade by hand\n" + encoding +
+         "\nDATASET POLYDATA\n";
+}
+
+inline std::string as_text_vtk(const Surface& surface) {
+  std::string text =
+      vtk_title("ASCII", "4.2") + "POINTS " + std::to_string(surface.vertices.size()) + " double\n";
+  for (const Vec3& v : surface.vertices) text += row(v);
+  const std::size_t count = surface.triangles.size();
+  text += "\nPOLYGONS " + std::to_string(count) + " " + std::to_string(4 * count) + "\n";
+  for (const Corners& c : surface.triangles) {
+    text += "3 " + std::to_string(c[0]) + " " + std::to_string(c[1]) + " " + std::to_string(c[2]) +
+            "\n";
+  }
+  return text;
+}
+
+/// As VTK 9 writes it.
+template <class Real>
+std::string as_binary_vtk(const Surface& surface) {
+  std::string text = vtk_title("BINARY", "5.1") + "POINTS " +
+                     std::to_string(surface.vertices.size()) +
+                     (sizeof(Real) == sizeof(float) ? " float\n" : " double\n");
+  for (const Vec3& v : surface.vertices) {
+    for (const double x : v) append_bytes(text, static_cast<Real>(x), true);
+  }
+  text += "\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 1\n\n";
+  text += "POLYGONS " + std::to_string(surface.triangles.size() + 1) + " " +
+          std::to_string(3 * surface.triangles.size()) + "\nOFFSETS vtktypeint64\n";
+  for (std::size_t i = 0; i <= surface.triangles.size(); ++i) {
+    append_bytes(text, static_cast<std::int64_t>(3 * i), true);
+  }
+  text += "\nCONNECTIVITY vtktypeint64\n";
+  for (const Corners& c : surface.triangles) {
+    for (const VertexId v : c) append_bytes(text, std::int64_t{v}, true);
+  }
+  return text + "\n";
+}
+
+inline std::string in_base64(std::string_view bytes) {
+  constexpr std::string_view digits_of_64 =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::string_view group = bytes.substr(i, 3);
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      bits = bits << 8 | (k < group.size() ? static_cast<unsigned char>(group[k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= group.size() ? digits_of_64[bits >> (18 - 6 * k) & 63U] : '=';
+    }
+  }
+  return text;
+}
+
+/// How a VTP file is written.
+struct VtpStyle {
+  enum class Format { text, base64, appended_base64, appended_raw };
+  Format format = Format::text;
+  bool is_compressed = false;
+  bool has_long_counts = true;
+  bool is_big_endian = false;
+  std::string space = {};
+};
+
+/// Writes the arrays of a VTP file.
+class VtpWriter {
+ public:
+  explicit VtpWriter(VtpStyle style) : style_(std::move(style)) {}
+
+  std::string write(const Surface& surface) {
+    std::string xml =
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"";
+    xml += style_.is_big_endian ? "BigEndian" : "LittleEndian";
+    xml += style_.has_long_counts ? "\" header_type=\"UInt64\"" : "\"";
+    if (style_.is_compressed) xml += " compressor=\"vtkZLibDataCompressor\"";
+    xml += ">\n<PolyData>\n";
+    if (!style_.space.empty()) {
+      std::vector<std::int8_t> letters(style_.space.begin(), style_.space.end());
+      letters.push_back(0);
+      xml += "<FieldData>" + array("Array", "String", "SPACE", letters) + "</FieldData>\n";
+    }
+    std::vector<float> coordinates;
+    for (const Vec3& v : surface.vertices) {
+      for (const double x : v) coordinates.push_back(static_cast<float>(x));
+    }
+    std::vector<std::int64_t> corners, ends;
+    for (const Corners& c : surface.triangles) {
+      corners.insert(corners.end(), c.begin(), c.end());
+      ends.push_back(static_cast<std::int64_t>(corners.size()));
+    }
+    xml += "<Piece NumberOfPoints=\"" + std::to_string(surface.vertices.size()) +
+           "\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"" +
+           std::to_string(surface.triangles.size()) + "\">\n<Points>" +
+           array("DataArray", "Float32", "Points", coordinates) + "</Points>\n<Polys>" +
+           array("DataArray", "Int64", "connectivity", corners) +
+           array("DataArray", "Int64", "offsets", ends) + "</Polys>\n</Piece>\n</PolyData>\n";
+    if (!appended_.empty()) {
+      xml += style_.format == VtpStyle::Format::appended_raw
+                 ? "<AppendedData encoding=\"raw\">\n  _"
+                 : "<AppendedData encoding=\"base64\">\n  _";
+      xml += appended_ + "\n  </AppendedData>\n";
+    }
+    return xml + "</VTKFile>\n";
+  }
+
+ private:
+  template <class Number>
+  std::string array(const std::string& element, const char* type, const char* name,
+                    const std::vector<Number>& numbers) {
+    const std::string begin = "<" + element + " type=\"" + type + "\" Name=\"" + name +
+                              "\" NumberOfComponents=\"3\" format=\"";
+    const std::string end = "</" + element + ">";
+    if (style_.format == VtpStyle::Format::text) {
+      std::string text = begin + "ascii\">\n";
+      for (const Number x : numbers) text += number(static_cast<double>(x)) + " ";
+      return text + "\n<InformationKey name=\"L2_NORM_RANGE\"><Value>7</Value></InformationKey>" +
+             end;
+    }
+    const std::string bytes = encoded(numbers);
+    if (style_.format == VtpStyle::Format::base64)
+      return begin + "binary\">\n" + bytes + "\n" + end;
+    const std::string offset = std::to_string(appended_.size());
+    appended_ += bytes;
+    return begin + "appended\" offset=\"" + offset + "\">" + end;
+  }
+
+  std::string plain_or_base64(const std::string& bytes) const {
+    return style_.format == VtpStyle::Format::appended_raw ? bytes : in_base64(bytes);
+  }
+
+  template <class Number>
+  std::string encoded(const std::vector<Number>& numbers) const {
+    std::string bytes;
+    for (const Number x : numbers) append_bytes(bytes, x, style_.is_big_endian);
+    const auto append_count = [&](std::string& to, std::uint64_t count) {
+      style_.has_long_counts
+          ? append_bytes(to, count, style_.is_big_endian)
+          : append_bytes(to, static_cast<std::uint32_t>(count), style_.is_big_endian);
+    };
+    std::string counts;
+    if (!style_.is_compressed) {
+      append_count(counts, bytes.size());
+      return plain_or_base64(counts + bytes);
+    }
+    // Blocks of 64 bytes, the last of which is shorter.
+    constexpr std::size_t size = 64;
+    const std::size_t blocks = (bytes.size() + size - 1) / size;
+    append_count(counts, blocks);
+    append_count(counts, size);
+    append_count(counts, bytes.size() % size);
+    std::string packed;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const std::string block = bytes.substr(b * size, size);
+      std::string part(compressBound(block.size()), '\0');
+      uLongf length = part.size();
+      compress(reinterpret_cast<Bytef*>(part.data()), &length,
+               reinterpret_cast<const Bytef*>(block.data()), block.size());
+      append_count(counts, length);
+      packed.append(part, 0, length);
+    }
+    return plain_or_base64(counts) + plain_or_base64(packed);
+  }
+
+  VtpStyle style_;
+  std::string appended_;
+};
+
+inline std::string as_vtp(const Surface& surface, const VtpStyle& style) {
+  return VtpWriter(style).write(surface);
+}
+
 struct Format {
   std::string name, file;
   std::function<std::string(const Surface&)> write;
@@ -137,7 +313,22 @@ inline const std::vector<Format>& formats() {
       {"BigEndianPly", "mesh.ply", [](const Surface& s) { return as_binary_ply<float>(s, true); }},
       {"DoublePly", "mesh.ply", [](const Surface& s) { return as_binary_ply<double>(s, false); }},
       {"Obj", "mesh.obj", as_obj},
-      {"Off", "mesh.off", as_off}};
+      {"Off", "mesh.off", as_off},
+      {"TextVtk", "mesh.vtk", as_text_vtk},
+      {"BinaryVtk", "mesh.vtk", as_binary_vtk<float>},
+      {"DoubleVtk", "mesh.vtk", as_binary_vtk<double>},
+      {"TextVtp", "mesh.vtp", [](const Surface& s) { return as_vtp(s, {}); }},
+      {"Base64Vtp", "mesh.vtp",
+       [](const Surface& s) {
+         return as_vtp(s, {.format = VtpStyle::Format::base64, .has_long_counts = false});
+       }},
+      {"RawVtp", "mesh.vtp",
+       [](const Surface& s) {
+         return as_vtp(s, {.format = VtpStyle::Format::appended_raw, .is_big_endian = true});
+       }},
+      {"CompressedVtp", "mesh.vtp", [](const Surface& s) {
+         return as_vtp(s, {.format = VtpStyle::Format::appended_base64, .is_compressed = true});
+       }}};
   return all;
 }
 

@@ -59,14 +59,18 @@ Mesh cube_times(double factor) {
 TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
   const auto metres = quick_check(cube_times(0.001));
   ASSERT_EQ(metres.size(), 1u);
-  EXPECT_CONTAINS(metres[0],
-                  "is 0.1 mm large if its numbers are mm; as plausible are m, of which it "
-                  "would be 100 mm");
+  EXPECT_CONTAINS(
+      metres[0],
+      "the mesh is 0.1 mm across if its unit is mm; in m it would be 100 mm across: give "
+      "the unit of the file, for example --unit m or unit=\"m\"");
   const auto micrometres = quick_check(cube_times(1000.0));
   ASSERT_EQ(micrometres.size(), 1u);
-  EXPECT_CONTAINS(micrometres[0], "is 100000 mm large");
-  EXPECT_CONTAINS(micrometres[0], "um, of which it would be 100 mm");
+  EXPECT_CONTAINS(micrometres[0], "the mesh is 100000 mm across");
+  EXPECT_CONTAINS(micrometres[0], "in um it would be 100 mm across");
   EXPECT_TRUE(quick_check(cube_times(0.25)).empty());  // an aneurysm
+  const auto scaled = quick_check(cube_times(1000.0), 0, 1000.0);
+  ASSERT_EQ(scaled.size(), 1u);
+  EXPECT_CONTAINS(scaled[0], "100000 mm across after it was scaled by 1000");
 }
 
 TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {
@@ -74,7 +78,7 @@ TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {
   surface.triangles.pop_back();
   const auto open = quick_check(Mesh(surface));
   ASSERT_EQ(open.size(), 1u);
-  EXPECT_CONTAINS(open[0], "open surface");
+  EXPECT_CONTAINS(open[0], "the surface is open");
   std::swap(surface.triangles[3][0], surface.triangles[3][1]);
   const auto both = quick_check(Mesh(surface));
   ASSERT_EQ(both.size(), 2u);

@@ -12,8 +12,7 @@ export function showFindings(
   const details = element("findings", HTMLDetailsElement);
   const lines = [
     ...findings.map(({ text, advice }) => `${text}. What to do: ${advice}.`),
-    ...warnings.map((warning) => `In the file: ${warning}.`),
-    ...told.map((warning) => `${warning}.`),
+    ...[...warnings, ...told].map((warning) => `${warning}.`),
   ];
   const facts =
     `${grouped(triangles)} triangles; ${size.map((length) => Number(length.toPrecision(4))).join(" × ")} mm; ` +

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -90,9 +91,12 @@ EdgeFaults find_edge_faults(const Mesh& mesh, unsigned threads = 0);
 
 /// A unit that the numbers of a file may be in.
 struct UnitGuess {
-  std::string_view unit;  // "m", "cm", "in", "um"
+  std::string_view unit;  // "m", "cm", "mm", "um", "in"
   double millimetres;     // that one is
 };
+
+/// All units that a mesh can be read in.
+std::span<const UnitGuess> length_units() noexcept;
 
 /// The units other than millimetres in which something of that largest extent would be of the size
 /// that organs have, 20 to 600 mm. A size that is usual in millimetres has none: from 30 on.
@@ -100,8 +104,9 @@ std::vector<UnitGuess> other_units(double extent);
 
 /// What a mesh should not guard anything without: a sentence each, for people, on a size that is
 /// none of anatomy in millimetres, on an open surface, and on an inconsistent winding. Empty when
-/// there is nothing to say. As quick as find_edge_faults.
-std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads = 0);
+/// there is nothing to say. As quick as find_edge_faults. `scale`: that the lengths of its file
+/// were multiplied by.
+std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads = 0, double scale = 1.0);
 
 /// Whether each edge has two triangles, wound alike: such a mesh has a free side everywhere, which
 /// its winding tells. Segments, which name a vertex twice, are passed over. Time: some .1 s for a

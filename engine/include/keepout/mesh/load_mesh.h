@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,13 @@ struct LoadOptions {
   AnatomicalSpace space = AnatomicalSpace::unstated;
   /// The space of a file that does not say. One that does is believed.
   AnatomicalSpace untagged = AnatomicalSpace::unstated;
+  /// The unit of the lengths in the file, one of length_units(): they are scaled to mm. Empty: the
+  /// file is in mm.
+  std::string unit = {};
+  /// The factor from lengths in the file to mm, above 0, instead of a unit.
+  std::optional<double> scale = std::nullopt;
+  /// True winds each triangle the other way, for a mesh whose normals point into the solid.
+  bool flip = false;
   MeshCheck check = MeshCheck::quick;  // whether the mesh is looked at once it is read
 };
 
@@ -44,25 +52,33 @@ struct LoadedMesh {
   std::shared_ptr<const Mesh> mesh;                    // welded; never null
   AnatomicalSpace space = AnatomicalSpace::unstated;   // that the coordinates are in now
   AnatomicalSpace stated = AnatomicalSpace::unstated;  // that the file states: SPACE=...
-  /// What was left out of the mesh, looks odd in the file, or should not be guarded with unknowing.
+  double scale = 1.0;  // that the lengths of the file were multiplied by
+  bool flipped = false;
+  /// What was left out of the mesh, looks odd in the file, or must be known before the mesh guards
+  /// anything: sentences that begin with the name of the file.
   std::vector<std::string> warnings = {};
+  /// What was done to the mesh because of the options: scaled, turned or flipped. Sentences like
+  /// those of the warnings.
+  std::vector<std::string> notices = {};
 };
 
-/// Reads a triangle mesh from a file: STL, PLY (text and binary both), OBJ or OFF, by its
-/// extension in any case; and welds it exactly. Polygons are triangulated. Nothing is rescaled, and
-/// nothing repaired: see doctor.h. Nothing is turned either, but on demand: see LoadOptions. A file
+/// Reads a triangle mesh from a file and welds it exactly: STL, PLY, OBJ, OFF, legacy VTK or VTP,
+/// by its extension in any case. Polygons are triangulated. Nothing is repaired: see doctor.h. The
+/// mesh is scaled, turned or flipped only if the options say so, and `notices` reports it. A file
 /// that states its space (as 3D Slicer writes it) gets a warning unless `options.space` says what
-/// is wanted, and one that states two is an error; so is a demand on a file of unknown space. The
-/// mesh gets a warning for a size that is none of anatomy in mm, for an open surface, and for an
-/// inconsistent winding.
+/// is wanted, and one that states two is an error; so is a demand on a file of unknown space. A
+/// file that states a unit other than the one that it is read in gets a warning. The mesh gets a
+/// warning for a size that is none of anatomy in mm, for an open surface, and for an inconsistent
+/// winding.
 ///
 /// Coordinates of binary files are exact. Those of text are the doubles nearest to the numerals; or
 /// the nearest floats, where a PLY file declares floats, or where all numerals of a file may have
 /// been printed from floats: with nine digits, these are the floats of its binary twin.
 ///
-/// Throws Error, naming the file, the line where there is one, what is wrong and what to do. A file
-/// that was cut short is an error; or a warning, where only the last number of a text, or the end
-/// of an OBJ file, can be missing; and an OBJ file cut at the end of a line cannot be told.
+/// Throws Error for a unit or a scale that is none. Throws Error, naming the file, the line where
+/// there is one, what is wrong and what to do. A file that was cut short is an error; or a warning,
+/// where only the last number of a text, or the end of an OBJ file, can be missing. It cannot be
+/// told if an OBJ file was cut at the end of a line, or a legacy VTK file between two sections.
 LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace keepout

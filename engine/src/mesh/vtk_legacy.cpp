@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Source of the format: "VTK File Formats", Kitware; METADATA and the arrays of version 5 as VTK 9
+// writes them.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "binary_number.h"
+#include "text_lines.h"
+#include "vtk_cells.h"
+
+namespace keepout {
+namespace {
+
+using NamedType = std::pair<std::string_view, NumberType>;
+
+/// Types by name. VTK writes ids of this type as int, and long as its own machine has it, which is
+/// taken for one of 64 bits.
+constexpr std::array<NamedType, 13> types{{{"char", {1, true, true}},
+                                           {"unsigned_char", {1, true, false}},
+                                           {"short", {2, true, true}},
+                                           {"unsigned_short", {2, true, false}},
+                                           {"int", {4, true, true}},
+                                           {"unsigned_int", {4, true, false}},
+                                           {"vtkidtype", {4, true, true}},
+                                           {"long", {8, true, true}},
+                                           {"unsigned_long", {8, true, false}},
+                                           {"vtktypeint64", {8, true, true}},
+                                           {"vtktypeuint64", {8, true, false}},
+                                           {"float", {4, false, true}},
+                                           {"double", {8, false, true}}}};
+
+constexpr const char* cut_short = ", so it was cut short; copy or export it again";
+
+std::string lower(std::string_view word) {
+  std::string text(word);
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Reads a legacy VTK file: lines with keywords, and numbers behind them, as text or as bytes in
+/// big-endian order.
+class LegacyVtk {
+ public:
+  explicit LegacyVtk(const MeshSource& source) : source_(source), lines_(source) {}
+
+  MeshFile read() {
+    read_header();
+    while (true) {
+      if (!next_section()) {
+        if (!is_binary_) lines_.warn_of_open_end(last_number_lost, mesh_.warnings);
+        break;
+      }
+      section_ = lines_.words()[0];
+      const std::string key = lower(section_);
+      if (key == "field") {
+        read_field();
+      } else if (key == "points") {
+        read_points();
+      } else if (key == "polygons") {
+        read_cells(VtkCellKind::polygons);
+      } else if (key == "triangle_strips") {
+        read_cells(VtkCellKind::strips);
+      } else if (key == "vertices" || key == "lines") {
+        pass_over_cells();
+      } else if (key == "cell_data" || key == "point_data") {
+        break;  // the surface is above
+      } else {
+        lines_.fail("a line that is not understood: " + in_quotes(section_) +
+                    "; the file is damaged, or no legacy VTK file");
+      }
+    }
+    if (!is_binary_ && lines_.has_only_floats()) mesh_.round_to_floats();
+    cells_.cut_into(mesh_, source_);
+    return std::move(mesh_);
+  }
+
+ private:
+  void read_header() {
+    constexpr std::string_view magic = "# vtk DataFile Version ";
+    const std::string_view first = lines_.next_line();
+    const std::string_view version = first.substr(std::min(first.size(), magic.size()));
+    if (!first.starts_with(magic) || version.empty() || version[0] < '1' || version[0] > '5' ||
+        !version.substr(1).starts_with('.')) {
+      lines_.fail("expected '# vtk DataFile Version', 1.0 to 5.1, found " + in_quotes(first) +
+                  "; if the file has another format, give it that extension");
+    }
+    major_ = version[0] - '0';
+    mesh_.comments.emplace_back(lines_.next_line());
+    const std::string encoding = lower(lines_.next() ? lines_.words()[0] : "");
+    if (encoding != "ascii" && encoding != "binary") {
+      lines_.fail("expected 'ASCII' or 'BINARY', found " + in_quotes(encoding) +
+                  "; the file is damaged, or was cut short");
+    }
+    is_binary_ = encoding == "binary";
+    if (!next_section() || lower(lines_.words()[0]) != "dataset" || lines_.words().size() != 2) {
+      lines_.fail("expected 'DATASET POLYDATA'; the file is damaged, or was cut short");
+    }
+    if (lower(lines_.words()[1]) != "polydata") {
+      lines_.fail("the dataset is " + in_quotes(lines_.words()[1]) +
+                  ", and only POLYDATA is a surface; extract the surface and save that");
+    }
+  }
+
+  /// Moves on to the next line of a section, over METADATA, which ends with a blank line; false at
+  /// the end of the file.
+  bool next_section() {
+    while (lines_.next()) {
+      if (lower(lines_.words()[0]) != "metadata") return true;
+      while (lines_.next_line().find_first_not_of(" \t") != std::string_view::npos) continue;
+    }
+    return false;
+  }
+
+  /// The word of the section's line, which must have that many.
+  std::string_view word(std::size_t i, std::size_t count) const {
+    if (lines_.words().size() != count) {
+      lines_.fail(in_quotes(section_) + " needs " + std::to_string(count - 1) +
+                  " words behind it; the file is damaged");
+    }
+    return lines_.words()[i];
+  }
+
+  const NumberType& type_named(std::string_view name) const {
+    const auto type = std::ranges::find(types, lower(name), &NamedType::first);
+    if (type == types.end()) {
+      lines_.fail("unknown type " + in_quotes(name) + "; the file is damaged");
+    }
+    return type->second;
+  }
+
+  void check_room(std::uint64_t count, const NumberType& type) const {
+    // In a text a number takes a digit, and something that parts it from the next.
+    const std::uint64_t most = is_binary_ ? lines_.left() / type.size : (lines_.left() + 1) / 2;
+    if (count <= most) return;
+    lines_.fail(in_quotes(section_) + " declares " + std::to_string(count) +
+                " numbers, more than the file has room for; the file is damaged, or was cut short");
+  }
+
+  /// Calls take(bytes, word) for so many numbers of a section, with the bytes of each in a binary
+  /// file and its word in a text.
+  template <class Take>
+  void for_each_number(std::uint64_t count, const NumberType& type, const Take& take) {
+    check_room(count, type);
+    if (is_binary_) {
+      const std::string_view bytes = lines_.take_bytes(count * type.size);
+      for (std::uint64_t i = 0; i < count; ++i) {
+        take(bytes.data() + i * type.size, std::string_view());
+      }
+      return;
+    }
+    std::size_t used = lines_.words().size();
+    for (std::uint64_t i = 0; i < count; ++i, ++used) {
+      if (used == lines_.words().size()) {
+        used = 0;
+        if (!lines_.next()) {
+          lines_.fail("the file ends within its " + in_quotes(section_) + cut_short);
+        }
+      }
+      const std::string_view word = lines_.words()[used];
+      if (std::isalpha(static_cast<unsigned char>(word[0])) != 0 && word.size() > 3) {
+        lines_.fail(in_quotes(section_) + " declares " + std::to_string(count) +
+                    " numbers, but has only " + std::to_string(i) + " before " + in_quotes(word) +
+                    "; the file is damaged");
+      }
+      take(nullptr, word);
+    }
+    if (count > 0 && used != lines_.words().size()) {
+      lines_.fail("more numbers than the " + std::to_string(count) + " that " +
+                  in_quotes(section_) + " declares; the file is damaged");
+    }
+  }
+
+  std::vector<std::uint64_t> wholes(std::uint64_t count, const NumberType& type) {
+    if (!type.whole) lines_.fail(in_quotes(section_) + " must have integers; the file is damaged");
+    check_room(count, type);
+    std::vector<std::uint64_t> numbers;
+    numbers.reserve(static_cast<std::size_t>(count));
+    for_each_number(count, type, [&](const char* bytes, std::string_view word) {
+      const std::int64_t number = bytes != nullptr ? whole_at(bytes, type, is_swapped) : 0;
+      if (number < 0) {
+        lines_.fail(in_quotes(section_) + " has the number " + std::to_string(number) +
+                    ", which is below 0; the file is damaged");
+      }
+      numbers.push_back(bytes != nullptr ? static_cast<std::uint64_t>(number)
+                                         : lines_.whole_number(word));
+    });
+    return numbers;
+  }
+
+  void read_points() {
+    const std::uint64_t count = lines_.whole_number(word(1, 3));
+    const NumberType& type = type_named(word(2, 3));
+    if (has_points_) lines_.fail("has its POINTS twice; check the export");
+    has_points_ = true;
+    const bool is_single = !type.whole && type.size == sizeof(float);
+    check_room(count, type);  // else 3 * count might be too large to be counted
+    std::vector<Vec3>& points = mesh_.surface.vertices;
+    Eigen::Index axis = 0;
+    for_each_number(3 * count, type, [&](const char* bytes, std::string_view word) {
+      if (axis == 0) points.emplace_back();
+      double& x = points.back()[axis];
+      x = bytes != nullptr ? real_at(bytes, type, is_swapped)
+          : is_single      ? double{lines_.number<float>(word)}
+                           : lines_.coordinate(word);
+      if (!std::isfinite(x)) {
+        source_.fail("point " + std::to_string(points.size() - 1) +
+                     " has a coordinate that is not finite; repair the mesh and export it again");
+      }
+      axis = (axis + 1) % 3;
+    });
+  }
+
+  /// Offsets and corners, from version 5 on.
+  std::vector<std::uint64_t> read_array(std::string_view name, std::uint64_t count) {
+    if (!next_section() || lower(lines_.words()[0]) != name || lines_.words().size() != 2) {
+      lines_.fail("expected " + in_quotes(name) +
+                  " and a type; the file is damaged, or was cut short");
+    }
+    section_ = lines_.words()[0];
+    return wholes(count, type_named(lines_.words()[1]));
+  }
+
+  void read_cells(VtkCellKind kind) {
+    const std::uint64_t first = lines_.whole_number(word(1, 3));
+    const std::uint64_t second = lines_.whole_number(word(2, 3));
+    if (major_ >= 5) {
+      if (first == 0) return;  // then VTK writes no arrays
+      std::vector<std::uint64_t> offsets = read_array("offsets", first);
+      if (offsets[0] != 0) lines_.fail("the first offset is not 0; the file is damaged");
+      offsets.erase(offsets.begin());
+      add_cells(kind, offsets, read_array("connectivity", second));
+      return;
+    }
+    // The cells one after the other, each with the number of its corners before it.
+    const std::vector<std::uint64_t> numbers = wholes(second, {4, true, true});
+    std::vector<std::uint64_t> ends;
+    std::vector<std::uint64_t> corners;
+    corners.reserve(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ends.push_back(corners.size())) {
+      const std::uint64_t size = numbers[i++];
+      if (size > numbers.size() - i) {
+        lines_.fail("a cell has fewer corners than it declares; the file is damaged");
+      }
+      const auto begin = numbers.begin() + static_cast<std::ptrdiff_t>(i);
+      corners.insert(corners.end(), begin, begin + static_cast<std::ptrdiff_t>(size));
+      i += static_cast<std::size_t>(size);
+    }
+    if (ends.size() != first) {
+      lines_.fail(in_quotes(section_) + " declares " + std::to_string(first) + " cells, but has " +
+                  std::to_string(ends.size()) + "; the file is damaged");
+    }
+    add_cells(kind, ends, corners);
+  }
+
+  void add_cells(VtkCellKind kind, const std::vector<std::uint64_t>& ends,
+                 const std::vector<std::uint64_t>& corners) {
+    if (!has_points_) lines_.fail("the cells come before the POINTS; export it again");
+    cells_.add(kind, ends, corners, 0, mesh_.surface.vertices.size(), lines_);
+  }
+
+  /// Vertices and lines, which have no area.
+  void pass_over_cells() {
+    const std::uint64_t first = lines_.whole_number(word(1, 3));
+    const std::uint64_t second = lines_.whole_number(word(2, 3));
+    if (major_ < 5) {
+      wholes(second, {4, true, true});
+      cells_.leave_out(first);
+    } else if (first > 0) {
+      read_array("offsets", first);
+      read_array("connectivity", second);
+      cells_.leave_out(first - 1);
+    }
+  }
+
+  /// Passes over the arrays of a field, but for the anatomical space.
+  void read_field() {
+    const std::uint64_t arrays = lines_.whole_number(word(2, 3));
+    for (std::uint64_t i = 0; i < arrays; ++i) {
+      if (!next_section()) lines_.fail("the file ends within a field" + std::string(cut_short));
+      if (lines_.words()[0] == "NULL_ARRAY") continue;
+      section_ = lines_.words()[0];
+      const std::string name = lower(section_);
+      const std::uint64_t components = lines_.whole_number(word(1, 4));
+      const std::uint64_t tuples = lines_.whole_number(word(2, 4));
+      if (components > 0 && tuples > lines_.left() / components) {
+        lines_.fail("the field " + in_quotes(section_) +
+                    " is larger than the file; the file is damaged, or was cut short");
+      }
+      const std::string type = lower(word(3, 4));
+      if (type != "string") {
+        for_each_number(components * tuples, type_named(type),
+                        [](const char*, std::string_view) {});
+        continue;
+      }
+      for (std::uint64_t s = 0; s < components * tuples; ++s) {
+        const std::string text(is_binary_ ? take_string() : lines_.next_line());
+        if (name == "space") mesh_.comments.push_back("SPACE=" + text);
+      }
+    }
+  }
+
+  /// A string of a binary file. The two highest bits of its first byte say how many bytes its
+  /// length takes.
+  std::string_view take_string() {
+    const auto take = [&](std::uint64_t count) {
+      if (count > lines_.left())
+        lines_.fail("the file ends within a string" + std::string(cut_short));
+      return lines_.take_bytes(count);
+    };
+    const auto first = static_cast<unsigned char>(take(1)[0]);
+    constexpr std::array<std::size_t, 4> lengths{8, 4, 2, 1};
+    std::uint64_t length = first & 0x3fU;
+    for (const char c : take(lengths[first >> 6] - 1)) {
+      length = length << 8 | static_cast<unsigned char>(c);
+    }
+    return take(length);
+  }
+
+  static constexpr bool is_swapped = std::endian::native != std::endian::big;
+
+  const MeshSource& source_;
+  TextLines lines_;
+  MeshFile mesh_;
+  VtkCells cells_;
+  std::string section_;  // what is read, for messages
+  int major_ = 0;        // of the version
+  bool is_binary_ = false;
+  bool has_points_ = false;
+};
+
+}  // namespace
+
+MeshFile read_vtk(const MeshSource& source) { return LegacyVtk(source).read(); }
+
+}  // namespace keepout

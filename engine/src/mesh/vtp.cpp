@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "binary_number.h"
+#include "text_lines.h"
+#include "vtk_cells.h"
+#include "vtp_document.h"
+
+namespace keepout {
+namespace {
+
+using NamedType = std::pair<std::string_view, NumberType>;
+
+constexpr std::array<NamedType, 10> types{{{"Int8", {1, true, true}},
+                                           {"UInt8", {1, true, false}},
+                                           {"Int16", {2, true, true}},
+                                           {"UInt16", {2, true, false}},
+                                           {"Int32", {4, true, true}},
+                                           {"UInt32", {4, true, false}},
+                                           {"Int64", {8, true, true}},
+                                           {"UInt64", {8, true, false}},
+                                           {"Float32", {4, false, true}},
+                                           {"Float64", {8, false, true}}}};
+
+constexpr const char* cut_short = "; the file is damaged, or was cut short";
+
+/// The six bits that a character of base64 stands for; -1 for any other.
+int bits_of(char c) noexcept {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+
+/// Part of a file, as it is or in base64, from which bytes are read one after the other. Padding
+/// may stand within base64, as VTK encodes counts and compressed data apart.
+class ByteStream {
+ public:
+  ByteStream(const MeshSource& source, const std::string& array, std::uint64_t begin,
+             std::uint64_t end, bool is_base64)
+      : source_(source),
+        array_(array),
+        begin_(begin),
+        position_(begin),
+        end_(end),
+        is_base64_(is_base64) {}
+
+  /// At most so many bytes follow.
+  std::uint64_t left() const noexcept {
+    const std::uint64_t left = end_ - position_ + (buffer_.size() - used_);
+    return is_base64_ ? left / 4 * 3 + 3 : left;
+  }
+
+  /// So many bytes of the file were used.
+  std::uint64_t taken() const noexcept { return position_ - begin_ - (buffer_.size() - used_); }
+
+  void read(char* to, std::uint64_t size) {
+    if (size > left()) fail("ends too early" + std::string(cut_short));
+    if (!is_base64_) {
+      source_.read(position_, to, static_cast<std::size_t>(size));
+      position_ += size;
+      return;
+    }
+    for (std::uint64_t i = 0; i < size; ++i) {
+      if (decoded_ == 0) decode_group();
+      to[i] = group_[3 - decoded_--];
+    }
+  }
+
+  /// A count before binary data.
+  std::uint64_t read_count(const VtpDocument& document) {
+    std::array<char, 8> bytes;
+    read(bytes.data(), document.count_size);
+    const bool swapped = document.is_big_endian != (std::endian::native == std::endian::big);
+    return document.count_size == 8 ? number_at<std::uint64_t>(bytes.data(), swapped)
+                                    : number_at<std::uint32_t>(bytes.data(), swapped);
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    source_.fail("array " + in_quotes(array_) + ": " + what);
+  }
+
+ private:
+  char next_character() {
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 16;
+    while (true) {
+      if (used_ == buffer_.size()) {
+        buffer_.resize(static_cast<std::size_t>(std::min(at_once, end_ - position_)));
+        if (buffer_.empty()) fail("ends too early" + std::string(cut_short));
+        source_.read(position_, buffer_.data(), buffer_.size());
+        position_ += buffer_.size();
+        used_ = 0;
+      }
+      const char c = buffer_[used_++];
+      if (c != ' ' && c != '\n' && c != '\r' && c != '\t') return c;
+    }
+  }
+
+  /// Four characters stand for three bytes, or fewer if they end with '='.
+  void decode_group() {
+    std::uint32_t bits = 0;
+    std::size_t padding = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const char c = next_character();
+      const int six = bits_of(c);
+      const bool is_padding = c == '=' && i >= 2;
+      padding += is_padding ? 1 : 0;
+      if ((six < 0 && !is_padding) || (padding > 0 && !is_padding)) {
+        fail(in_quotes(std::string_view(&c, 1)) + " is not of base64" + cut_short);
+      }
+      bits = bits << 6 | static_cast<std::uint32_t>(is_padding ? 0 : six);
+    }
+    decoded_ = 3 - padding;
+    // The group's bytes are its last ones, so that the next one is always decoded_ from the end.
+    for (std::size_t i = 0; i < decoded_; ++i) {
+      group_[padding + i] = static_cast<char>(bits >> (16 - 8 * i) & 0xffU);
+    }
+  }
+
+  const MeshSource& source_;
+  const std::string& array_;
+  std::uint64_t begin_;
+  std::uint64_t position_;
+  std::uint64_t end_;
+  bool is_base64_;
+  std::vector<char> buffer_;  // of base64
+  std::size_t used_ = 0;      // of the buffer
+  std::array<char, 3> group_{};
+  std::size_t decoded_ = 0;  // bytes of the group that were not read yet
+};
+
+std::vector<char> read_plain(ByteStream& stream, const VtpDocument& document) {
+  const std::uint64_t size = stream.read_count(document);
+  if (size > stream.left()) {
+    stream.fail("declares " + std::to_string(size) + " bytes, more than the file has room for" +
+                cut_short);
+  }
+  std::vector<char> bytes(static_cast<std::size_t>(size));
+  stream.read(bytes.data(), bytes.size());
+  return bytes;
+}
+
+/// Reads blocks of data, each compressed by zlib.
+std::vector<char> read_compressed(ByteStream& stream, const VtpDocument& document) {
+  std::vector<char> bytes;
+  const std::uint64_t blocks = stream.read_count(document);
+  if (blocks == 0) return bytes;
+  const std::uint64_t size = stream.read_count(document);
+  const std::uint64_t last_size = stream.read_count(document);
+  if (blocks > stream.left() / document.count_size) {
+    stream.fail("declares " + std::to_string(blocks) + " blocks, more than the file has room for" +
+                cut_short);
+  }
+  std::vector<std::uint64_t> packed(static_cast<std::size_t>(blocks));
+  for (std::uint64_t& count : packed) count = stream.read_count(document);
+  std::vector<char> block;
+  for (std::size_t b = 0; b < packed.size(); ++b) {
+    const std::uint64_t unpacked = b + 1 == packed.size() && last_size > 0 ? last_size : size;
+    // No more comes out of zlib for each byte, so a damaged size is found before memory is taken.
+    constexpr std::uint64_t most = 1032;
+    if (packed[b] > stream.left() || unpacked > most * packed[b]) {
+      stream.fail("block " + std::to_string(b) + " has an impossible size" + cut_short);
+    }
+    block.resize(static_cast<std::size_t>(packed[b]));
+    stream.read(block.data(), block.size());
+    const std::size_t before = bytes.size();
+    bytes.resize(before + static_cast<std::size_t>(unpacked));
+    uLongf got = unpacked;
+    const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &got,
+                                  reinterpret_cast<const Bytef*>(block.data()), block.size());
+    if (status != Z_OK || got != unpacked) {
+      stream.fail("block " + std::to_string(b) + " cannot be unpacked" + cut_short);
+    }
+  }
+  return bytes;
+}
+
+/// Reads the arrays of a document.
+class VtpArrays {
+ public:
+  VtpArrays(const MeshSource& source, const VtpDocument& document)
+      : source_(source), document_(document), unread_(source.size()) {}
+
+  std::vector<double> reals(const VtpArray& array) {
+    const NumberType& type = type_of(array);
+    std::vector<double> numbers;
+    if (array.format == VtpArray::Format::text) {
+      TextLines lines = text_of(array);
+      const bool is_single = !type.whole && type.size == sizeof(float);
+      while (lines.next()) {
+        for (const std::string_view word : lines.words()) {
+          numbers.push_back(is_single ? double{lines.number<float>(word)} : lines.coordinate(word));
+        }
+      }
+      if (!lines.has_only_floats()) return numbers;
+      for (double& x : numbers) x = static_cast<float>(x);
+      return numbers;
+    }
+    for_each_number(array, type, [&](const char* bytes, bool swapped) {
+      numbers.push_back(real_at(bytes, type, swapped));
+    });
+    return numbers;
+  }
+
+  std::vector<std::uint64_t> wholes(const VtpArray& array) {
+    const NumberType& type = type_of(array);
+    if (!type.whole) fail(array, "must have integers, not " + in_quotes(array.type));
+    std::vector<std::uint64_t> numbers;
+    if (array.format == VtpArray::Format::text) {
+      TextLines lines = text_of(array);
+      while (lines.next()) {
+        for (const std::string_view word : lines.words()) {
+          numbers.push_back(lines.whole_number(word));
+        }
+      }
+      return numbers;
+    }
+    for_each_number(array, type, [&](const char* bytes, bool swapped) {
+      const std::int64_t number = whole_at(bytes, type, swapped);
+      if (number < 0) fail(array, "has a number below 0; the file is damaged");
+      numbers.push_back(static_cast<std::uint64_t>(number));
+    });
+    return numbers;
+  }
+
+  /// The first string of an array. As text, each of its characters is a number.
+  std::string string(const VtpArray& array) {
+    std::string text;
+    if (array.format == VtpArray::Format::text) {
+      TextLines lines = text_of(array);
+      while (lines.next()) {
+        for (const std::string_view word : lines.words()) {
+          text += static_cast<char>(lines.whole_number(word));
+        }
+      }
+    } else {
+      const std::vector<char> bytes = bytes_of(array);
+      text.assign(bytes.begin(), bytes.end());
+    }
+    return text.substr(0, text.find('\0'));
+  }
+
+  [[noreturn]] void fail(const VtpArray& array, const std::string& what) const {
+    source_.fail("array " + in_quotes(array.name) + ": " + what);
+  }
+
+ private:
+  const NumberType& type_of(const VtpArray& array) const {
+    const auto type = std::ranges::find(types, array.type, &NamedType::first);
+    if (type == types.end()) fail(array, "unknown type " + in_quotes(array.type));
+    return type->second;
+  }
+
+  TextLines text_of(const VtpArray& array) const {
+    std::string text(static_cast<std::size_t>(array.end - array.begin), '\0');
+    source_.read(array.begin, text.data(), text.size());
+    return TextLines(std::move(text), source_.name(), {.first_line = array.line});
+  }
+
+  std::vector<char> bytes_of(const VtpArray& array) {
+    std::uint64_t begin = array.begin;
+    std::uint64_t end = array.end;
+    const bool is_appended = array.format == VtpArray::Format::appended;
+    if (is_appended) {
+      end = source_.size();
+      if (document_.appended == 0 || array.begin > end - document_.appended) {
+        fail(array, "its data are not in the file" + std::string(cut_short));
+      }
+      begin += document_.appended;
+    }
+    ByteStream stream(source_, array.name, begin, end, !(is_appended && document_.is_raw));
+    std::vector<char> bytes = document_.is_compressed ? read_compressed(stream, document_)
+                                                      : read_plain(stream, document_);
+    if (stream.taken() > unread_) fail(array, "overlaps another one; the file is damaged");
+    unread_ -= stream.taken();
+    return bytes;
+  }
+
+  template <class Take>
+  void for_each_number(const VtpArray& array, const NumberType& type, const Take& take) {
+    const std::vector<char> bytes = bytes_of(array);
+    if (bytes.size() % type.size != 0) fail(array, "has half a number" + std::string(cut_short));
+    const bool swapped = document_.is_big_endian != (std::endian::native == std::endian::big);
+    for (std::size_t i = 0; i < bytes.size(); i += type.size) take(bytes.data() + i, swapped);
+  }
+
+  const MeshSource& source_;
+  const VtpDocument& document_;
+  std::uint64_t unread_;  // bytes of the file: many arrays at one place would take any memory
+};
+
+void add_points(const VtpPiece& piece, VtpArrays& arrays, const MeshSource& source,
+                std::vector<Vec3>& points) {
+  if (!piece.coordinates) source.fail("a Piece has no array in its Points; check the export");
+  const std::vector<double> numbers = arrays.reals(*piece.coordinates);
+  if (numbers.size() / 3 != piece.points || numbers.size() % 3 != 0) {
+    arrays.fail(*piece.coordinates, "has " + std::to_string(numbers.size()) +
+                                        " numbers, which must be three for each of " +
+                                        std::to_string(piece.points) + " points" + cut_short);
+  }
+  for (std::size_t i = 0; i < numbers.size(); i += 3) {
+    points.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+    if (points.back().allFinite()) continue;
+    source.fail("point " + std::to_string(points.size() - 1) +
+                " has a coordinate that is not finite; repair the mesh and export it again");
+  }
+}
+
+void add_cells(VtkCellKind kind, const VtpCellArrays& cells, std::uint64_t first,
+               std::uint64_t points, VtpArrays& arrays, const MeshSource& source, VtkCells& all) {
+  if (cells.count == 0) return;
+  if (!cells.ends || !cells.corners) {
+    source.fail(
+        "a Piece has cells, but not both of their arrays, connectivity and offsets; check "
+        "the export");
+  }
+  const std::vector<std::uint64_t> ends = arrays.wholes(*cells.ends);
+  if (ends.size() != cells.count) {
+    arrays.fail(*cells.ends, "has " + std::to_string(ends.size()) + " numbers for " +
+                                 std::to_string(cells.count) + " cells" + cut_short);
+  }
+  all.add(kind, ends, arrays.wholes(*cells.corners), first, points, source);
+}
+
+}  // namespace
+
+MeshFile read_vtp(const MeshSource& source) {
+  const VtpDocument document = read_vtp_document(source);
+  VtpArrays arrays(source, document);
+  MeshFile mesh;
+  VtkCells cells;
+  if (document.space) mesh.comments.push_back("SPACE=" + arrays.string(*document.space));
+  for (const VtpPiece& piece : document.pieces) {
+    if (piece.points == 0) continue;
+    const std::uint64_t first = mesh.surface.vertices.size();
+    add_points(piece, arrays, source, mesh.surface.vertices);
+    add_cells(VtkCellKind::polygons, piece.polygons, first, piece.points, arrays, source, cells);
+    add_cells(VtkCellKind::strips, piece.strips, first, piece.points, arrays, source, cells);
+    cells.leave_out(piece.left_out);
+  }
+  cells.cut_into(mesh, source);
+  return mesh;
+}
+
+}  // namespace keepout

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Legacy VTK and VTP: what they may hold, and what is wrong with them.
+#include "engine/mesh/mesh_files.h"
+
+namespace keepout {
+namespace {
+
+using Mode = VtpStyle::Format;
+
+// Legacy VTK.
+
+const std::string points = "POINTS 4 float\n0 0 0 1 0 0\n0 1 0 0 0 1\n";
+const std::string faces = "POLYGONS 4 16\n3 0 2 1\n3 0 1 3 3 1 2 3\n3 2 0 3\n";
+
+std::string text_vtk(const std::string& body, const std::string& version = "3.0") {
+  return vtk_title("ASCII", version) + body;
+}
+
+TEST_F(LoadMesh, VtkNumbersMayStandOnAnyLines) {
+  const LoadedMesh loaded = load_unchecked("mesh.vtk", text_vtk(points + faces));
+  EXPECT_EQ(loaded.mesh->triangle_count(), 4u);
+  EXPECT_TRUE(loaded.warnings.empty());
+  for (const char* version : {"1.0", "2.0", "3.0", "4.2"}) {
+    EXPECT_EQ(load("mesh.vtk", text_vtk(points + faces, version)).mesh->triangle_count(), 4u);
+  }
+}
+
+TEST_F(LoadMesh, VtkStripsAlternateTheirWinding) {
+  for (const auto& [version, strip] :
+       {std::pair("4.2", "TRIANGLE_STRIPS 1 6\n5 0 1 2 3 4\n"),
+        std::pair("5.1",
+                  "TRIANGLE_STRIPS 2 5\nOFFSETS vtktypeint64\n0 5\nCONNECTIVITY "
+                  "vtktypeint64\n0 1 2 3 4\n")}) {
+    const LoadedMesh loaded = load_unchecked(
+        "mesh.vtk",
+        text_vtk("POINTS 5 float\n0 0 0 1 0 0 0 1 0 1 1 0 0 2 0\n" + std::string(strip), version));
+    ASSERT_EQ(loaded.mesh->triangle_count(), 3u);
+    for (TriangleId t = 0; t < 3; ++t) EXPECT_EQ(loaded.mesh->normal(t), Vec3(0, 0, 1)) << t;
+  }
+}
+
+TEST_F(LoadMesh, VtkPolygonsAreCutAndLinesAndDataAreLeftOut) {
+  const std::string body =
+      "METADATA\nCOMPONENT_NAMES\nX\nPOLYGONS\n\nVERTICES 1 2\n1 0\nLINES 2 6\n2 0 1 2 1 2\n"
+      "POLYGONS 1 5\n4 0 1 2 3\nCELL_DATA 1\nSCALARS s float 1\nLOOKUP_TABLE default\nnan\n";
+  const LoadedMesh loaded = load_unchecked("mesh.vtk", text_vtk(points + body));
+  EXPECT_EQ(loaded.mesh->triangle_count(), 2u);
+  EXPECT_EQ(loaded.warnings, std::vector<std::string>{"mesh.vtk: 3 lines or points are left out"});
+}
+
+TEST_F(LoadMesh, AVtkFieldMayNameTheSpace) {
+  const std::string text =
+      text_vtk("FIELD FieldData 2\nTime 1 2 double\n1 2\nSPACE 1 1 string\nLPS\n" + points + faces);
+  EXPECT_EQ(load("mesh.vtk", text).stated, AnatomicalSpace::lps);
+  std::string binary = as_binary_vtk<float>(tetrahedron());
+  std::string field = "FIELD FieldData 2\nSPACE 1 1 string\n\xc3LPS\nbytes 2 2 unsigned_char\n";
+  field += std::string("\0\n\xff\r", 4) + "\n";
+  binary.insert(binary.find("POINTS"), field);
+  const LoadedMesh loaded = load("mesh.vtk", binary);
+  EXPECT_EQ(loaded.stated, AnatomicalSpace::lps);
+  EXPECT_EQ(loaded.mesh->triangle_count(), 4u);
+}
+
+TEST_F(LoadMesh, VtkThatIsMalformedIsAnErrorWithItsLine) {
+  const std::string good = text_vtk(points + faces);
+  const auto message = [&](const char* from, const char* to) {
+    return complaint("mesh.vtk", replaced(good, from, to));
+  };
+  EXPECT_CONTAINS(message("3.0", "6.0"), "line 1: expected '# vtk DataFile Version'");
+  EXPECT_CONTAINS(message("ASCII", "MORSE"), "line 3: expected 'ASCII' or 'BINARY'");
+  EXPECT_CONTAINS(message("POLYDATA", "UNSTRUCTURED_GRID"), "only POLYDATA is a surface");
+  EXPECT_CONTAINS(message("POINTS 4", "POINTS 3"), "line 7: more numbers than the 9");
+  EXPECT_CONTAINS(message("POINTS 4", "POINTS 5"), "only 12 before 'POLYGONS'");
+  EXPECT_CONTAINS(message("POINTS 4", "POINTS 40000000000"), "more than the file has room for");
+  EXPECT_CONTAINS(message("POINTS 4", "POINTS 18446744073709551615"),
+                  "more than the file has room");
+  EXPECT_CONTAINS(message("POINTS 4 float", "POINTS 4"), "needs 2 words");
+  EXPECT_CONTAINS(message("float", "quaternion"), "unknown type 'quaternion'");
+  EXPECT_CONTAINS(message("POLYGONS 4 16", "POLYGONS 3 16"), "declares 3 cells, but has 4");
+  EXPECT_CONTAINS(message("3 1 2 3\n3 2 0 3\n", "3 1 200000 3\n3 2 0"),
+                  "ends within its 'POLYGONS'");
+  EXPECT_CONTAINS(message("POLYGONS 4 16", "POLYGONS 4 17"), "more than the file has room for");
+  EXPECT_CONTAINS(message("3 2 0 3", "4 2 0 3"), "fewer corners than it declares");
+  EXPECT_CONTAINS(message("3 2 0 3", "3 2 0 4"), "names vertex 4");
+  EXPECT_CONTAINS(message("3 2 0 3", "3 2 0 -1"), "expected a whole number, found '-1'");
+  EXPECT_CONTAINS(message("0 0 1\n", "0 0 nan\n"), "not finite");
+  EXPECT_CONTAINS(message("POLYGONS", "HEXAGONS"), "not understood: 'HEXAGONS'");
+  EXPECT_CONTAINS(complaint("mesh.vtk", text_vtk(faces + points)), "before the POINTS");
+  EXPECT_CONTAINS(complaint("mesh.vtk", text_vtk(points + points)), "twice");
+  EXPECT_CONTAINS(complaint("mesh.vtk", text_vtk(points)), "no faces");
+  EXPECT_CONTAINS(complaint("mesh.stl", good), "its content is .vtk");
+}
+
+TEST_F(LoadMesh, OffsetsOfVtkThatDoNotFitAreErrors) {
+  const std::string good = text_vtk(
+      points + "POLYGONS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 1 2\n",
+      "5.1");
+  EXPECT_EQ(load("mesh.vtk", good).mesh->triangle_count(), 1u);
+  const auto message = [&](const char* from, const char* to) {
+    return complaint("mesh.vtk", replaced(good, from, to));
+  };
+  EXPECT_CONTAINS(message("0 3\n", "1 3\n"), "first offset");
+  EXPECT_CONTAINS(message("0 3\n", "0 4\n"), "from corner 0 to 4 of 3");
+  EXPECT_CONTAINS(message("0 3\n", "0 2\n"), "there are 3 corners, but the cells have 2");
+  EXPECT_CONTAINS(message("CONNECTIVITY", "CONNECTION"), "expected 'connectivity' and a type");
+  EXPECT_CONTAINS(message("vtktypeint64", "double"), "must have integers");
+}
+
+TEST_F(LoadMesh, BinaryVtkWithACoordinateOrAnIdThatIsNoneIsAnError) {
+  std::string vtk = as_binary_vtk<float>(tetrahedron());
+  const std::size_t first = vtk.find("float\n") + 6;
+  EXPECT_CONTAINS(complaint("mesh.vtk", std::string(vtk).replace(first, 4, "\x7f\xc0\0\0", 4)),
+                  "point 0 has a coordinate that is not finite");
+  const std::size_t id = vtk.find("CONNECTIVITY vtktypeint64\n") + 26;
+  EXPECT_CONTAINS(complaint("mesh.vtk", std::string(vtk).replace(id, 1, "\xff")), "below 0");
+}
+
+// VTP.
+
+TEST_F(LoadMesh, AVtpFieldNamesTheSpace) {
+  for (const Mode mode : {Mode::text, Mode::base64, Mode::appended_base64, Mode::appended_raw}) {
+    for (const bool is_compressed : {false, true}) {
+      for (const bool has_long_counts : {false, true}) {
+        const LoadedMesh loaded =
+            load("mesh.vtp", as_vtp(tetrahedron(), {.format = mode,
+                                                    .is_compressed = is_compressed,
+                                                    .has_long_counts = has_long_counts,
+                                                    .space = "RAS"}));
+        EXPECT_EQ(loaded.stated, AnatomicalSpace::ras);
+        EXPECT_EQ(loaded.mesh->triangle_count(), 4u);
+      }
+    }
+  }
+}
+
+TEST_F(LoadMesh, VtpPiecesAreJoined) {
+  const std::string one = as_vtp(single_triangle(), {});
+  const std::size_t begin = one.find("<Piece");
+  const std::size_t end = one.find("</PolyData>");
+  std::string two = one;
+  two.insert(end, replaced(one.substr(begin, end - begin), "0 1 2 ", "2 0 1 "));
+  const LoadedMesh loaded = load_unchecked("mesh.vtp", two);
+  ASSERT_EQ(loaded.mesh->triangle_count(), 2u);
+  EXPECT_EQ(loaded.mesh->triangle(1)[0], loaded.mesh->triangle(0)[2]);
+}
+
+TEST_F(LoadMesh, VtpThatIsMalformedIsAnErrorThatSaysWhere) {
+  const std::string good = as_vtp(tetrahedron(), {});
+  const auto message = [&](const char* from, const char* to) {
+    return complaint("mesh.vtp", replaced(good, from, to));
+  };
+  EXPECT_CONTAINS(message("</Points>", "</Point>"), "XML that is not well-formed, mismatched tag");
+  EXPECT_CONTAINS(message("PolyData", "UnstructuredGrid"), "only PolyData is a surface");
+  EXPECT_CONTAINS(message("<VTKFile", "<KTVFile"), "line 2: expected 'VTKFile'");
+  EXPECT_CONTAINS(message("NumberOfPoints=\"4", "NumberOfPoints=\"5"),
+                  "three for each of 5 points");
+  EXPECT_CONTAINS(message("NumberOfPoints=\"4", "NumberOfPoints=\"-4"), "must be a whole number");
+  EXPECT_CONTAINS(message("NumberOfPolys=\"4", "NumberOfPolys=\"5"), "4 numbers for 5 cells");
+  EXPECT_CONTAINS(message("Float32", "Float16"), "unknown type 'Float16'");
+  EXPECT_CONTAINS(message("type=\"Int64\"", "type=\"Float64\""), "must have integers");
+  EXPECT_CONTAINS(message("\"offsets\"", "\"onsets\""), "not both of their arrays");
+  EXPECT_CONTAINS(message("\"ascii\"", "\"morse\""), "must be ascii, binary or appended");
+  EXPECT_CONTAINS(message("UInt64", "UInt16"), "header_type");
+  EXPECT_CONTAINS(message("3 6 9 12", "3 6 9 13"), "from corner 9 to 13 of 12");
+  EXPECT_CONTAINS(message("3 6 9 12", "3 6 9 x"), "line 11: expected a whole number, found 'x'");
+  EXPECT_CONTAINS(message("Piece", "Peace"), "no Piece");
+}
+
+TEST_F(LoadMesh, VtpInACompressionOtherThanZlibIsAnError) {
+  const std::string vtp = as_vtp(tetrahedron(), {.format = Mode::base64, .is_compressed = true});
+  EXPECT_CONTAINS(complaint("mesh.vtp", replaced(vtp, "vtkZLib", "vtkLZ4")), "only zlib is read");
+}
+
+TEST_F(LoadMesh, VtpDataThatAreDamagedAreErrors) {
+  const std::string raw = as_vtp(tetrahedron(), {.format = Mode::appended_raw});
+  const std::size_t data = raw.find("  _") + 3;
+  const auto changed = [](std::string text, std::size_t at, std::string_view bytes) {
+    return text.replace(at, bytes.size(), bytes);
+  };
+  const std::string huge(8, '\x7f');
+  EXPECT_CONTAINS(complaint("mesh.vtp", changed(raw, data, huge)), "more than the file has room");
+  EXPECT_CONTAINS(complaint("mesh.vtp", replaced(raw, "offset=\"0\"", "offset=\"99999\"")),
+                  "not in the file");
+  EXPECT_CONTAINS(complaint("mesh.vtp", replaced(raw, "  _", "   ")), "do not begin with '_'");
+  EXPECT_CONTAINS(complaint("mesh.vtp", raw.substr(0, raw.size() - 20)), "cut short");
+
+  const std::string packed =
+      as_vtp(tetrahedron(), {.format = Mode::appended_raw, .is_compressed = true});
+  const std::size_t counts = packed.find("  _") + 3;
+  EXPECT_CONTAINS(complaint("mesh.vtp", changed(packed, counts, huge)),
+                  "blocks, more than the file");
+  EXPECT_CONTAINS(complaint("mesh.vtp", changed(packed, counts + 16, huge)), "an impossible size");
+  EXPECT_CONTAINS(complaint("mesh.vtp", changed(packed, counts + 24, huge)), "an impossible size");
+  EXPECT_CONTAINS(complaint("mesh.vtp", changed(packed, counts + 34, "xx")), "cannot be unpacked");
+
+  const std::string letters = as_vtp(tetrahedron(), {.format = Mode::base64});
+  EXPECT_CONTAINS(complaint("mesh.vtp", replaced(letters, "AAAA", "A*AA")), "'*' is not of base64");
+}
+
+TEST_F(LoadMesh, VtpArraysThatOverlapAreAnError) {
+  // Otherwise a small file of many pieces would take any memory.
+  const std::string raw = as_vtp(torus(20), {.format = Mode::appended_raw});
+  const std::size_t begin = raw.find("<Piece");
+  const std::size_t end = raw.find("</PolyData>");
+  std::string many = raw;
+  for (int i = 0; i < 3; ++i) many.insert(end, raw.substr(begin, end - begin));
+  EXPECT_CONTAINS(complaint("mesh.vtp", many), "overlaps another one");
+}
+
+TEST_F(LoadMesh, EntitiesOfAVtpFileDoNotTakeMemory) {
+  std::string bomb =
+      "<?xml version=\"1.0\"?>\n<!DOCTYPE V [<!ENTITY a \"aaaaaaaaaaaaaaaaaaaaaaaaa\">\n";
+  for (char c = 'b'; c < 'm'; ++c) {
+    std::string last;
+    for (int i = 0; i < 10; ++i) last += std::string("&") + static_cast<char>(c - 1) + ";";
+    bomb += std::string("<!ENTITY ") + c + " \"" + last + "\">\n";
+  }
+  bomb += "]>\n<VTKFile type=\"&l;\"></VTKFile>\n";
+  EXPECT_CONTAINS(complaint("mesh.vtp", bomb), "line ");
+}
+
+}  // namespace
+}  // namespace keepout
