@@ -140,6 +140,30 @@ TEST_F(Command, TheAnatomicalSpaceIsAskedForAndGiven) {
   EXPECT_CONTAINS(inspected.output, "LPS, not stated in the file");
 }
 
+TEST_F(Command, AMeshIsScaledAndFlippedOnDemandAndStderrSaysSo) {
+  folder_.write("poses.txt", "0 0 60000 1 2 -3\n");
+  const std::string replay = "replay cube.stl --poses poses.txt --out s.csv ";
+  const Outcome scaled = run(replay + "--unit m --flip");
+  EXPECT_EQ(scaled.status, 0);
+  EXPECT_CONTAINS(scaled.output, "keepout: cube.stl: scaled by 1000, from m to mm");
+  EXPECT_CONTAINS(scaled.output,
+                  "keepout: cube.stl: flipped: each triangle is wound the other way");
+  EXPECT_CONTAINS(scaled.output, "mm across after it was scaled by 1000");
+  EXPECT_CONTAINS(run(replay + "--scale 2").output, "cube.stl: scaled by 2");
+  EXPECT_CONTAINS(run("inspect cube.stl --flip").output, "flipped, as asked");
+  for (const char* bad : {"0", "-1", "nan", "inf", "x"}) {
+    const Outcome refused = run(replay + "--scale " + bad);
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_CONTAINS(refused.output, "--scale: expected a number from 1e-30 to 1e30, not '" +
+                                        std::string(bad) + "'");
+  }
+  const Outcome unknown = run(replay + "--unit inch");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_CONTAINS(unknown.output, "there is no 'inch'");
+  EXPECT_EQ(run(replay + "--unit m --scale 2").status, 2);
+  EXPECT_CONTAINS(run("inspect sphere --unit m").output, "is generated");
+}
+
 TEST_F(Command, EveryNumberReadsBackExactly) {
   folder_.write("poses.txt", "0.1 0.2 60.3 0.30000000000000004 1e-17 -0.7\n");
   ASSERT_EQ(run("replay cube.stl --poses poses.txt --out s.csv").status, 0);

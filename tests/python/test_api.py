@@ -250,6 +250,34 @@ def test_a_mesh_is_turned_to_the_space_asked_for(tmp_path):
         keepout.load_mesh(bare, space="ras")
 
 
+def test_a_mesh_is_scaled_and_flipped_on_demand_and_says_so(tmp_path, caplog):
+    path = tmp_path / "part.obj"
+    path.write_text("v 0 0 0\nv .05 0 0\nv 0 .05 0\nv 0 0 .05\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+    with pytest.warns(UserWarning, match='part.obj: the mesh is 0.05 mm across.*unit="m"'):
+        plain = keepout.load_mesh(path)
+    with warnings.catch_warnings(), caplog.at_level("INFO", "keepout"):
+        warnings.simplefilter("error")
+        mesh = keepout.load_mesh(path, unit="m", flip=True)
+    assert mesh.notices == [
+        "part.obj: scaled by 1000, from m to mm",
+        "part.obj: flipped: each triangle is wound the other way",
+    ]
+    assert caplog.messages == mesh.notices
+    assert (mesh.scale, mesh.flipped, mesh.warnings) == (1000, True, [])
+    assert (plain.scale, plain.flipped, plain.notices) == (1, False, [])
+    np.testing.assert_array_equal(mesh.vertices, 1000 * plain.vertices)
+    np.testing.assert_array_equal(mesh.normals, -plain.normals)
+    assert keepout.load_mesh(path, scale=500).scale == 500
+    for bad in (0, -1, float("nan"), float("inf")):
+        with pytest.raises(keepout.Error, match="scale must be a finite number above 0"):
+            keepout.load_mesh(path, scale=bad)
+    for bad in ("inch", "", "M"):
+        with pytest.raises(keepout.Error, match="unit"):
+            keepout.load_mesh(path, unit=bad)
+    with pytest.raises(keepout.Error, match="one of them"):
+        keepout.load_mesh(path, unit="m", scale=2)
+
+
 def test_closed_loops_stay_out(guard):
     hands = np.zeros((3, 60, 3))
     hands[:, :, 2] = np.linspace(14, 5, 60)

@@ -557,6 +557,9 @@ TEST_F(ClientTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
       "wall.off", "OFF\n4 2 0\n-300 -300 0\n300 -300 0\n300 300 0\n-300 300 0\n3 0 1 2\n3 0 2 3\n");
   const Answer added = talk_.told(R"({"do":"anatomy","margin":2,"file":")" + file + "\"}");
   ASSERT_EQ(added["mesh"], 1) << added;
+  EXPECT_EQ(added["notices"], Answer::array());
+  EXPECT_EQ(added["warnings"].size(), 1u);
+  EXPECT_CONTAINS(std::string(added["warnings"][0]), "wall.off: the surface is open");
   EXPECT_EQ(talk_.refusal(R"({"do":"anatomy","file":"/none.stl"})"), "no_anatomy");
   // The tip is at 200 - 60 - 3.7, and the wall comes up to the jaw from 2.001 mm below.
   ASSERT_EQ(talk_.told(place(1, "133.299", R"(,"linear":[0,0,200])"))["ok"], true);
@@ -569,6 +572,19 @@ TEST_F(ClientTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
   EXPECT_TRUE(!outrun["ok"] || outrun["status"] == "yielding") << outrun;
   EXPECT_LT(outrun["level"], 1.0);
   EXPECT_EQ(talk_.refusal(place(2, "0")), "no_anatomy");
+  const auto add_wall = [&](const std::string& more) {
+    return talk_.told(R"({"do":"anatomy","file":")" + file + "\"," + more + '}');
+  };
+  const Answer scaled = add_wall(R"("unit":"cm","flip":true,"untagged":"LPS","space":"RAS")");
+  EXPECT_EQ(scaled["notices"],
+            Answer({"wall.off: turned from LPS to RAS: x and y have changed their signs",
+                    "wall.off: scaled by 10, from cm to mm",
+                    "wall.off: flipped: each triangle is wound the other way"}))
+      << scaled;
+  EXPECT_CONTAINS(std::string(add_wall(R"("unit":"inch")")["error"]["message"]), "not 'inch'");
+  EXPECT_CONTAINS(std::string(add_wall(R"("scale":0)")["error"]["message"]), "above 0");
+  EXPECT_CONTAINS(std::string(add_wall(R"("space":"ras")")["error"]["message"]), "'RAS' or 'LPS'");
+  EXPECT_CONTAINS(std::string(add_wall(R"("flip":1)")["error"]["message"]), "true or false");
 }
 
 TEST_F(ClientTest, WhatIsNoInstrumentIsToldAndLeavesTheOneThereIs) {
@@ -642,6 +658,7 @@ TEST_F(ClientTest, InfoAndStatusesTellWhatThereIs) {
   EXPECT_EQ(info["id"], "i");
   EXPECT_EQ(info["version"], KEEPOUT_VERSION);
   EXPECT_EQ(info["mesh"]["space"], "unstated");
+  EXPECT_EQ(info["mesh"]["notices"], Answer::array());
   EXPECT_EQ(info["mesh"]["triangles"], mesh_->triangle_count());
   EXPECT_EQ(info["settings"]["radius"], 1.0);
   EXPECT_EQ(info["limits"]["line"], 4096);

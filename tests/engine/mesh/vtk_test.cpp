@@ -117,6 +117,48 @@ TEST_F(LoadMesh, BinaryVtkWithACoordinateOrAnIdThatIsNoneIsAnError) {
 
 // VTP.
 
+/// Which space a file states that VTK 9.1 wrote (tests/python/write_vtk_files.py): those with a
+/// title as 3D Slicer writes it state LPS.
+AnatomicalSpace space_of(const std::string& name) {
+  const bool is_titled = name.ends_with(".vtk") && !name.starts_with("field");
+  return is_titled || name == "slicer.vtp" ? AnatomicalSpace::lps : AnatomicalSpace::ras;
+}
+
+TEST_F(LoadMesh, FilesThatVtkWroteAreTheSameSphere) {
+  const fs::path files = KEEPOUT_VTK_FILES;
+  const auto load_file = [&](const fs::path& file) {
+    return load_mesh(file, {.check = MeshCheck::none});
+  };
+  const LoadedMesh expected = load_file(files / "binary42.vtk");
+  ASSERT_EQ(expected.mesh->triangle_count(), 20u);
+  std::size_t count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(files)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with('.')) continue;
+    SCOPED_TRACE(name);
+    ++count;
+    const LoadedMesh loaded = load_file(entry.path());
+    EXPECT_EQ(loaded.stated, space_of(name));
+    EXPECT_EQ(loaded.warnings.size(), 1u);
+    ASSERT_EQ(loaded.mesh->triangle_count(), 20u);
+    EXPECT_EQ(loaded.mesh->vertex_count(), 12u);
+    // Strips are in another order. Texts have six digits.
+    double farthest = 0.0;
+    for (const Vec3& vertex : loaded.mesh->vertices()) {
+      double nearest = 1e9;
+      for (const Vec3& other : expected.mesh->vertices()) {
+        nearest = std::min(nearest, (vertex - other).norm());
+      }
+      farthest = std::max(farthest, nearest);
+    }
+    EXPECT_LT(farthest, 1e-4);
+    for (TriangleId t = 0; t < 20; ++t) {
+      EXPECT_GT(loaded.mesh->normal(t).dot(loaded.mesh->triangle(t)[0]), 0.0) << "outwards";
+    }
+  }
+  EXPECT_EQ(count, 15u);
+}
+
 TEST_F(LoadMesh, AVtpFieldNamesTheSpace) {
   for (const Mode mode : {Mode::text, Mode::base64, Mode::appended_base64, Mode::appended_raw}) {
     for (const bool is_compressed : {false, true}) {

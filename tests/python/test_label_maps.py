@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A label map becomes a mesh where the image is."""
+
+import gzip
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from surfaces import run
+
+import keepout
+
+nibabel = pytest.importorskip("nibabel", reason="needs python3-nibabel")
+pytest.importorskip("skimage", reason="needs python3-skimage")
+
+script = Path(__file__).resolve().parents[2] / "examples" / "python" / "mesh_of_labels.py"
+
+# An ellipsoid in an image whose axes are oblique, of three spacings, and mirrored.
+turn = np.linalg.qr(np.array([[0.9, -0.3, 0.1], [0.2, 0.9, -0.3], [0.1, 0.3, 1.1]]))[0]
+affine = np.eye(4)
+affine[:3, :3] = turn @ np.diag([-0.8, 1.0, 1.5])
+affine[:3, 3] = [-40, 25, 100]
+shape = (50, 40, 30)
+center = np.array([24.0, 20.0, 14.0])
+radii = np.array([15.0, 12.0, 8.0])  # [voxels]
+
+
+def labels():
+    index = np.moveaxis(np.indices(shape), 0, -1)
+    return (((index - center) / radii) ** 2).sum(axis=-1) <= 1
+
+
+def write_nifti(path, values):
+    nibabel.save(nibabel.Nifti1Image(values.astype(np.int16), affine), path)
+    return path
+
+
+def write_nrrd(path, values, encoding="gzip", flip=(-1, -1, 1), space="left-posterior-superior"):
+    columns = [",".join(str(float(x)) for x in np.array(flip) * column) for column in affine[:3].T]
+    header = f"""NRRD0004
+# by hand
+type: unsigned short
+dimension: 3
+space: {space}
+sizes: {' '.join(map(str, shape))}
+space directions: ({columns[0]}) ({columns[1]}) ({columns[2]})
+kinds: domain domain domain
+endian: big
+encoding: {encoding}
+space origin: ({columns[3]})
+key:=value
+
+"""
+    data = values.astype(">u2").tobytes(order="F")
+    path.write_bytes(header.encode() + (gzip.compress(data) if encoding == "gzip" else data))
+    return path
+
+
+def mesh_of(file, tmp_path, *options):
+    said = run(sys.executable, script, file, tmp_path / "out.ply", *options)
+    return keepout.load_mesh(tmp_path / "out.ply", space="RAS"), said
+
+
+def test_the_surface_is_where_the_image_is(tmp_path):
+    plain, said = mesh_of(write_nifti(tmp_path / "a.nii.gz", 3 * labels()), tmp_path, "--smooth", "0")
+    assert "label 3, " in said and "in LPS" in said
+    found = plain.inspect()
+    assert found.watertight and not found.inside_out and plain.warnings == []
+    # Back in voxels, all vertices are half a voxel from where the ellipsoid ends.
+    voxels = (plain.vertices - affine[:3, 3]) @ np.linalg.inv(affine[:3, :3]).T
+    distance = np.abs(np.linalg.norm((voxels - center) / radii, axis=1) - 1)
+    assert distance.max() < 1 / radii.min()
+    volume = 4 / 3 * np.pi * np.prod(radii) * abs(np.linalg.det(affine[:3, :3]))
+    assert found.signed_volume == pytest.approx(volume, rel=0.02)
+
+
+def test_formats_and_spaces_agree(tmp_path):
+    expected, _ = mesh_of(write_nifti(tmp_path / "a.nii", labels()), tmp_path)
+    for file, options in [
+        (write_nrrd(tmp_path / "lps.nrrd", labels()), []),
+        (write_nrrd(tmp_path / "raw.nrrd", labels(), "raw"), ["--space", "RAS"]),
+        (write_nrrd(tmp_path / "ras.nrrd", labels(), "raw", (1, 1, 1), "right-anterior-superior"), []),
+    ]:
+        mesh, _ = mesh_of(file, tmp_path, *options)
+        np.testing.assert_allclose(mesh.vertices, expected.vertices, atol=1e-4)
+        np.testing.assert_array_equal(mesh.triangles, expected.triangles)
+
+
+def test_a_label_is_chosen_and_closed_at_the_border(tmp_path):
+    values = np.zeros(shape, int)
+    values[:10, :, :] = 1
+    values[30:35, 10:20, 5:9] = 2
+    file = write_nifti(tmp_path / "a.nii", values)
+    ended = subprocess.run([sys.executable, script, file, tmp_path / "m.ply"], capture_output=True, text=True)
+    assert ended.returncode == 1 and "labels 1, 2; choose one of them with --label" in ended.stderr
+    assert not (tmp_path / "m.ply").exists()
+    mesh, _ = mesh_of(file, tmp_path, "--label", "1", "--smooth", "0")
+    assert mesh.inspect().watertight
+    assert mesh.inspect().signed_volume == pytest.approx(10 * 40 * 30 * 1.2, rel=0.01)
+
+
+def test_what_is_no_label_map_is_one_sentence(tmp_path):
+    good = write_nrrd(tmp_path / "good.nrrd", labels(), "raw").read_bytes()
+    for old, new, says in [
+        (b"NRRD0004", b"DRRN0004", "is not NRRD"),
+        (b"unsigned short", b"float", "not integers"),
+        (b"space: left-posterior-superior", b"space: scanner-xyz", "scanner-xyz"),
+        (b"space origin", b"space roigin", "no 'space origin'"),
+        (b"encoding: raw", b"encoding: bzip2", "bzip2"),
+        (b"encoding: raw", b"encoding: gzip", "gzip"),
+        (b"sizes: 50", b"sizes: 51", "numbers for 51 x 40 x 30"),
+        (b"kinds: ", b"data file: other.raw\nkinds: ", "'data file'"),
+    ]:
+        (tmp_path / "bad.nrrd").write_bytes(good.replace(old, new))
+        for file in ["bad.nrrd", "absent.nrrd"]:
+            ended = subprocess.run(
+                [sys.executable, script, tmp_path / file, tmp_path / "m.ply"], capture_output=True, text=True
+            )
+            assert ended.returncode == 1 and "Traceback" not in ended.stderr, ended.stderr
+            assert (says in ended.stderr) == (file == "bad.nrrd"), ended.stderr
+            assert len(ended.stderr.splitlines()) == 1
+    (tmp_path / "bad.nii").write_bytes(b"nothing")
+    ended = subprocess.run([sys.executable, script, tmp_path / "bad.nii", tmp_path / "m.ply"], capture_output=True, text=True)
+    assert ended.returncode == 1 and "Traceback" not in ended.stderr
