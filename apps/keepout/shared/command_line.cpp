@@ -205,6 +205,7 @@ void add_load_options(CLI::App& command, LoadOptions& load) {
       command
           .add_option("--unit", load.unit,
                       "Unit of the lengths in the file, which are scaled to mm. Without it: mm")
+          ->type_name("")
           ->check(one_of(std::move(units)));
   command
       .add_option("--scale", load.scale,

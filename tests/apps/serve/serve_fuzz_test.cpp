@@ -67,7 +67,9 @@ bool is_value(const Json& value, const app::Field& field) {
   const auto is_row = [&](const Json& row) {
     return row.is_array() && row.size() >= field.columns.least &&
            row.size() <= field.columns.most && std::ranges::all_of(row, [&](const Json& item) {
-             return field.is_text ? item.is_string() : item.is_number();
+             return field.is_text   ? item.is_string()
+                    : field.is_flag ? item.is_boolean()
+                                    : item.is_number();
            });
   };
   if (field.rank == 0) return is_row(Json::array({value}));
@@ -410,7 +412,11 @@ class Garbler {
     if (!useful.empty() && below(3) > 0) return std::string(useful);
     if (field.option != nullptr) return any(R"(0.5 1 true -7 "other" [0.5])");
     size_ = field.name == "tip" || field.name == "motions" || field.name == "q" ? 6.0 : 1.2;
-    const auto item = [&] { return field.is_text ? std::string(R"("ball:0,0,0:9")") : number(); };
+    const auto item = [&] {
+      return field.is_text   ? std::string(R"("ball:0,0,0:9")")
+             : field.is_flag ? any("true false")
+                             : number();
+    };
     const auto row = [&] {
       return array(field.columns.least == 0 ? rows_ : columns_, field.columns, item);
     };
