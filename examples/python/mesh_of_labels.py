@@ -43,7 +43,12 @@ def read_nifti(path):
     """Returns the labels, and the matrix (4, 4) from indices to RAS [mm]."""
     import nibabel
 
-    image = nibabel.load(path)
+    try:
+        image = nibabel.load(path)
+    except nibabel.filebasedimages.ImageFileError:
+        raise Unreadable("is no NIfTI file, or was cut short; name a .nii, .nii.gz or .nrrd file") from None
+    if "qform_code" not in image.header:
+        raise Unreadable("is not NIfTI; save it as .nii.gz or .nrrd")
     if image.header["qform_code"] == 0 and image.header["sform_code"] == 0:
         raise Unreadable("does not state where it is (qform_code and sform_code are 0); save it with its orientation")
     scale = MILLIMETERS[image.header.get_xyzt_units()[0]]
