@@ -83,7 +83,7 @@ typos = [
     ("simulate cube --json ''", "--json: its value is empty"),
     ("serve cube --socket ''", "--socket: its value is empty"),
     ("report ''", "FILE: its value is empty"),
-    ("compare cube --out=", "--out: its value is empty"),
+    ("compare cube --out=", "--out: a value is missing"),
     # Names of parts.
     ("--simd AVX22 inspect cube", "--simd: there is no 'AVX22'; "),
     ("inspect cube --space lsp", "--space: there is no 'lsp'; did you mean 'lps'?"),
@@ -150,7 +150,7 @@ values = [
 
 # Files that are missing, no files, or of another kind; outputs that cannot be. The message has all of the texts.
 files = [
-    ("inspect none.stl", "none.stl: there is no such file", "fixtures are skull"),
+    ("inspect none.stl", "none.stl: there is no such file, and no fixture of that name"),
     ("inspect skul", "did you mean 'skull'?"),
     ("inspect folder", "folder: is a directory"),
     ("register none.csv", "none.csv: cannot be read", "FILE"),
@@ -184,9 +184,9 @@ files = [
     ("replay cube.off --poses poses.txt --out link.off", "--out 'link.off' is the same file as MESH"),
     ("replay cube.off --poses poses.txt --out s.csv --planes cube.off", "--planes 'cube.off' is the same file as MESH"),
     ("replay cube.off --poses poses.txt --out s.csv --planes ./s.csv", "--planes './s.csv' is the same file as --out"),
-    (f"{simulate} --out cube --json cube", "--out 'cube' is the same file as --json"),
+    (f"{simulate} --out r.html --json r.html", "--out 'r.html' is the same file as --json"),
     ("simulate cube.off --out cube.off", "--out 'cube.off' is the same file as MESH"),
-    ("simulate broken.stl --out no/r.html", "no/r.html: cannot write here"),  # said before the mesh is read
+    ("simulate broken.stl --out no/r.html", "no/r.html", "cannot write here"),  # said before the mesh is read
     ("simulate broken.stl --out folder", "folder: is a folder"),
     (f"{simulate} --out old.html --json no/r.json", "no/r.json: cannot write here"),
     ("register f.csv --json f.csv", "--json 'f.csv' is the same file as FILE 'f.csv'"),
@@ -198,8 +198,8 @@ files = [
     # Full disks and closed pipes: the limit on the size of a file stands for the disk.
     ("replay cube.off --poses many.txt --out s.csv --planes p.csv", "s.csv: could not be written to the end", "ulimit -f 8;"),
     ("replay cube.off --poses many.txt --out old.csv", "old.csv: could not be written to the end", "ulimit -f 8;"),
-    (f"{simulate} --cycles 3000 --json r.json --out r.html", "r.json: could not be written to the end", "ulimit -f 4;"),
-    (f"{simulate} --cycles 3000 --json old.json --out old.html", "could not be written to the end", "ulimit -f 4;"),
+    (f"{simulate} --json r.json --out r.html", "r.json: could not be written to the end", "ulimit -f 4;"),
+    (f"{simulate} --json old.json --out old.html", "could not be written to the end", "ulimit -f 4;"),
     ("inspect cube.off > /dev/full", "stdout: could not be written to the end"),
     ("inspect cube.off >&-", "stdout: could not be written to the end"),
     ("--help > /dev/full", "stdout: could not be written to the end"),
@@ -207,7 +207,6 @@ files = [
     ("simulate --help > /dev/full", "stdout: could not be written to the end"),
     ("serve cube.off <&-", "stdin or stdout is closed"),
     ("serve cube.off >&-", "stdin or stdout is closed"),
-    ("serve cube.off < .", "stdin: Is a directory"),
 ]
 
 
@@ -410,7 +409,7 @@ def test_files_without_permission_are_named(world):
 def test_every_command_names_a_broken_mesh(world, command):
     needs_bench(command)
     out = "" if command in ("inspect", "serve") else "--json old.json"
-    judge(world, f"{command} broken.stl {out}", 1, ["broken.stl: line 5: ", cut_short])
+    judge(world, f"{command} broken.stl {out}", 1, ["broken.stl: line 6: ", cut_short])
 
 
 def test_a_closed_stdout_does_not_end_up_in_a_result(tmp_path):
@@ -494,7 +493,7 @@ requests = [
     (asked("tool", '"tool":"sphere"'), "no_tool", "the tool 'sphere': '' is not a number; write sphere:R"),
     (asked("tool", '"tool":"ball:1"'), "no_tool", "there is no such form"),
     (asked("tool", '"tool":"sphere:nan"'), "no_tool", "'nan' is not a number"),
-    (asked("tool", '"tool":"hull:broken.stl"'), "no_tool", "broken.stl: line 5: "),
+    (asked("tool", '"tool":"hull:broken.stl"'), "no_tool", "broken.stl: line 6: "),
     (asked("tool", '"tool":"sphere:1","narrow_phase":"exat"'), "no_tool", "did you mean 'exact'?"),
     (asked("guides", '"guides":["ball:0,0,0"]'), "no_guide", "the guide 'ball:0,0,0': there is no such guide"),
     (asked("guides", '"guides":["tube:0,0,0:1,0,0:-1"]'), "no_guide", "radius: expected a number from 1e-15 to 1e15, got -1"),
@@ -504,7 +503,7 @@ requests = [
     (asked("guides", '"guides":[%s]' % ",".join(17 * ['"ball:0,0,0:1"'])), not_a_request, "'guides' must be", "at most 16"),
     (asked("anatomy", '"file":"none.stl"'), "no_anatomy", "'file' must name a file", "'none.stl'"),
     (asked("anatomy", '"file":"/dev/zero"'), "no_anatomy", "'file' must name a file"),
-    (asked("anatomy", '"file":"broken.stl"'), "no_anatomy", "broken.stl: line 5: "),
+    (asked("anatomy", '"file":"broken.stl"'), "no_anatomy", "broken.stl: line 6: "),
     (asked("anatomy", '"file":"cube.off","margin":-1'), "no_anatomy", "margin: expected", "got -1"),
     (asked("place", f'"mesh":7,"frame":{identity}'), "no_anatomy", "'mesh' must be the number of a mesh, 0 to 0, not 7"),
     (asked("place", f'"mesh":0.5,"frame":{identity}'), "no_anatomy", "not 0.5"),
