@@ -107,19 +107,21 @@ std::optional<std::filesystem::path> RecordFiles::kept_json() const {
 void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files,
                   std::ostream& notes) {
   if (std::ostream* const json = outputs.stream("--json")) print_json(*json, record);
-  std::string missing;  // of what a whole page is made of
   if (std::ostream* const page = outputs.stream("--out")) {
-    missing = missing_template(record);
-    missing.empty() ? print_report(*page, record) : print_plain_page(*page, record);
+    const std::string missing = missing_template(record);
+    if (missing.empty()) {
+      print_report(*page, record);
+    } else {
+      print_plain_page(*page, record);
+      notes << "keepout: " << files.page->string()
+            << " is a plain page of tables, without pictures and plots: " << missing << ".\n";
+      if (const auto kept = files.kept_json()) {
+        notes << "Once that is there, the command 'report " << kept->string()
+              << "' makes the whole page.\n";
+      }
+    }
   }
   outputs.commit();
-  if (missing.empty()) return;
-  notes << "keepout: " << files.page->string()
-        << " is a plain page of tables, without pictures and plots: " << missing << ".\n";
-  if (const auto kept = files.kept_json()) {
-    notes << "Once that is there, the command 'report " << kept->string()
-          << "' makes the whole page.\n";
-  }
 }
 
 void print_json(std::ostream& out, const Json& record) {

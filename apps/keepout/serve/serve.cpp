@@ -84,6 +84,7 @@ class UnixSocket {
   /// cannot be made.
   UnixSocket(asio::io_context& io, path file) : file_(std::move(file)), acceptor_(io) {
     constexpr std::size_t longest = sizeof(sockaddr_un::sun_path) - 1;
+    if (file_.empty()) fail(file_, "give the path of a file");
     if (const std::size_t size = file_.native().size(); size > longest) {
       fail(file_, "the path has " + std::to_string(size) + " bytes; a Unix socket's has at most " +
                       std::to_string(longest) + ": take a shorter one, or one that is relative");

@@ -261,15 +261,6 @@ void add_guides(CLI::App& command, std::vector<Guide>& guides) {
       ->expected(1, static_cast<int>(Guide::most));
 }
 
-void require_no_empty_value(const CLI::App& app) {
-  for (const CLI::App* command : app.get_subcommands()) {
-    for (const CLI::Option* option : command->get_options()) {
-      if (std::ranges::find(option->results(), "") == option->results().end()) continue;
-      throw CLI::ValidationError(option->get_name(), "its value is empty");
-    }
-  }
-}
-
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const CLI::App& command = chosen.empty() ? app : *chosen.front();

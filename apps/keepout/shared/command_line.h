@@ -162,10 +162,6 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
 /// Of a command that guards one tip: regions that it is to stay in. Precondition: its
 void add_guides(CLI::App& command, std::vector<Guide>& guides);
 
-/// Throws CLI::ValidationError for a value of the command that is an empty text, as of an unset
-/// variable of a shell.
-void require_no_empty_value(const CLI::App& app);
-
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error);

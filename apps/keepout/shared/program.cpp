@@ -78,7 +78,6 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
-    require_no_empty_value(app);
   } catch (const CLI::Success& call_for_help) {
     return app.exit(call_for_help);
   } catch (const CLI::ParseError& error) {
