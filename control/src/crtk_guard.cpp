@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/control/crtk_guard.h"
 
-#include <string>
+#include <limits>
 #include <utility>
 
 #include "keepout/error.h"
+#include "require_number.h"
 
 namespace keepout {
 namespace {
 
 const CrtkOptions& checked(const CrtkOptions& options) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw Error(std::string("CRTK guard: ") + what);
-  };
-  require(options.motion_scale > 0.0 && options.motion_scale <= 1e3,
-          "the motion scale must be above 0 and at most 1000");
-  require(is_rotation(options.hand_from_robot),
-          "hand_from_robot must be a rotation: no reflection, no scale");
-  require(options.longest_silence >= 0.0, "the longest silence must not be below 0");
-  require(options.farthest_lag > 0.0, "the farthest lag must be above 0");
-  require(options.farthest_start > 0.0, "the farthest start must be above 0");
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  require_number("CRTK guard: motion_scale", options.motion_scale, above_zero(1e3));
+  if (!is_rotation(options.hand_from_robot)) {
+    throw Error("CRTK guard: hand_from_robot must be a rotation: no reflection, no scale");
+  }
+  require_number("CRTK guard: longest_silence", options.longest_silence, {0.0, infinity});
+  require_number("CRTK guard: farthest_lag", options.farthest_lag, above_zero(infinity));
+  require_number("CRTK guard: farthest_start", options.farthest_start, above_zero(infinity));
   return options;
 }
 

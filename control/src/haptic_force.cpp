@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/control/haptic_force.h"
 
-#include <string>
+#include <limits>
 
-#include "keepout/error.h"
+#include "require_number.h"
 
 namespace keepout {
 
@@ -22,16 +22,11 @@ double SpringDamper::stored(double stretch) const noexcept {
 
 void check(const SpringDamper& spring) {
   constexpr double most = 1e9;  // beyond any device, and far from overflow
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw Error(std::string("haptic spring: ") + what);
-  };
-  require(spring.stiffness > 0.0 && spring.stiffness <= most,
-          "its stiffness must be above 0 and at most 1e9");
-  require(spring.damping >= 0.0 && spring.damping <= most,
-          "its damping must be 0 or above, and at most 1e9");
-  require(spring.largest_force > 0.0 && spring.largest_force <= most,
-          "its largest force must be above 0 and at most 1e9");
-  require(spring.largest_rise > 0.0, "the largest rise of its force must be above 0");
+  require_number("haptic spring: stiffness", spring.stiffness, above_zero(most));
+  require_number("haptic spring: damping", spring.damping, {0.0, most});
+  require_number("haptic spring: largest_force", spring.largest_force, above_zero(most));
+  require_number("haptic spring: largest_rise", spring.largest_rise,
+                 above_zero(std::numeric_limits<double>::infinity()));
 }
 
 Vec3 PassivityObserver::brake(const Vec3& hand_way, double period) const noexcept {

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
 #include <utility>
 
-#include "keepout/error.h"
+#include "require_number.h"
 
 namespace keepout {
 namespace {
@@ -38,20 +37,12 @@ bool is_place(const Vec3& point) noexcept {
 }
 
 const HapticOptions& checked(const HapticOptions& options) {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) throw Error(std::string("haptic proxy: ") + what);
-  };
   check(options.spring);
-  require(options.period >= 1e-6 && options.period <= 1.0,
-          "the period must be 1e-6 s at least and 1 s at most; it is in seconds");
-  require(options.top_speed > 0.0 && options.top_speed <= longest_length,
-          "the top speed must be above 0");
-  require(options.farthest > 0.0 && options.farthest <= longest_length,
-          "the farthest distance of the hand must be above 0");
-  require(options.fade >= options.period && options.fade <= 10.0,
-          "the force must fade within one period at least and 10 s at most");
-  require(options.largest_brake >= 0.0 && options.largest_brake <= longest_length,
-          "the largest brake must not be below 0");
+  require_number("haptic proxy: period, in seconds", options.period, {1e-6, 1.0});
+  require_number("haptic proxy: top_speed", options.top_speed, above_zero(longest_length));
+  require_number("haptic proxy: farthest", options.farthest, above_zero(longest_length));
+  require_number("haptic proxy: fade, from one period on", options.fade, {options.period, 10.0});
+  require_number("haptic proxy: largest_brake", options.largest_brake, {0.0, longest_length});
   return options;
 }
 

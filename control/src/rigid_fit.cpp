@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -41,9 +42,8 @@ std::vector<double> normalised(std::span<const double> weights, std::size_t coun
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (!(weights[i] > 0.0 && std::isfinite(weights[i]))) {
-      refuse(numbered("weights", i) +
-             " must be above 0 and finite; leave out a pair that shall "
-             "not count");
+      refuse(numbered("weights", i) + " must be above 0 and finite, not " + text_of(weights[i]) +
+             "; leave out a pair that must not count");
     }
   }
   const double largest = std::ranges::max(weights);  // first: no sum overflows then

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -59,7 +60,8 @@ double TargetError::worst_deviation() const noexcept {
 TargetError target_error(const RigidFit& fit, const Vec3& target, std::optional<double> fle) {
   if (!target.allFinite()) throw Error("target_error: the target is not finite");
   if (fle && !(*fle > 0.0 && std::isfinite(*fle))) {
-    throw Error("target_error: fle must be above 0 and finite; leave it out to estimate it");
+    throw Error("target_error: fle must be above 0 and finite, not " + text_of(*fle) +
+                "; leave it out to estimate it");
   }
   const double error = fle.value_or(fit.estimated_fle());
   const Vec3 p = target - fit.center;
@@ -76,7 +78,8 @@ double registration_margin(const RigidFit& fit, std::span<const Vec3> targets, d
     throw Error("registration_margin: no targets; say where in the mesh the tool works");
   }
   if (!(confidence > 0.0 && confidence <= 0.9999)) {
-    throw Error("registration_margin: the confidence must be above 0 and at most 0.9999");
+    throw Error("registration_margin: the confidence must be above 0 and at most 0.9999, not " +
+                text_of(confidence));
   }
   double deviation = 0.0;
   for (const Vec3& target : targets) {

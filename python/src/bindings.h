@@ -132,4 +132,7 @@ void bind_instrument_guard(py::module_& module);
 void bind_instrument_results(py::module_& module);
 void bind_registration(py::module_& module);
 
+/// Makes the errors of calls that fit no signature say which argument is wrong. To be called last.
+void explain_call_errors(py::module_& module);
+
 }  // namespace keepout::python

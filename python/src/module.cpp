@@ -80,4 +80,5 @@ PYBIND11_MODULE(_core, module) {
   bind_instrument_results(module);
   bind_instrument_guard(module);
   bind_registration(module);
+  explain_call_errors(module);
 }

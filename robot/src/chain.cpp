@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -80,10 +81,13 @@ void require_usable(const Joint& joint, const std::string& which) {
   const JointLimits& limits = joint.limits;
   if (!(limits.lower <= limits.upper) || !(limits.lower < longest_length) ||
       !(limits.upper > -longest_length)) {
-    throw Error(which + " has a lower limit above its upper one, or one that is not a number");
+    throw Error(which + " has a lower limit above its upper one, or one that is not a number: " +
+                text_of(limits.lower) + " and " + text_of(limits.upper));
   }
-  if (!(limits.velocity > 0.0) || !(limits.increment > 0.0)) {
-    throw Error(which + " has a limit of velocity or increment that is not above zero");
+  for (const auto& [name, limit] :
+       {std::pair("velocity", limits.velocity), std::pair("increment", limits.increment)}) {
+    if (limit > 0.0) continue;
+    throw Error(which + " has a limit of " + name + " that is not above zero: " + text_of(limit));
   }
 }
 

@@ -8,6 +8,7 @@
 
 #include "keepout/activation/tolerances.h"
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -112,12 +113,28 @@ void CycleMemory::require_usable(const InstrumentOptions& o) const {
     beside.margin = mesh.margin(o);
     require_in_range(instrument_options, beside);
   }
-  if (!(o.band < least_margin(o))) throw Error("the band must be below the margin of each mesh");
-  if (is_lost_in_rounding(o)) {
-    throw Error(
-        "the margin, its band or a guide's band is lost in the rounding of an instrument and a "
-        "mesh of this size: each must be well above 1e-11 of both");
+  const double margin = least_margin(o);
+  if (!(o.band < margin)) {
+    throw Error("band: expected less than the margin of each mesh, of which the least is " +
+                text_of(margin) + ", got " + text_of(o.band));
   }
+  const double least = needed_band * tolerance;
+  const std::string lost = ", or it is lost in the rounding of lengths this large; got ";
+  if (!(o.band > least)) {
+    throw Error("band: expected more than " + text_of(least) + lost + text_of(o.band));
+  }
+  if (!(margin - o.band > least)) {
+    throw Error("margin: expected more than " + text_of(o.band + least) + lost + text_of(margin));
+  }
+  for (const GuideMemory& each : guides) require_not_lost(each.guide);
+}
+
+void CycleMemory::require_not_lost(const Guide& guide) const {
+  const double least = needed_band * tolerance_of(guide, tolerance);
+  if (guide.band() > least) return;
+  throw Error("the band of guide '" + guide.name() + "' must be more than " + text_of(least) +
+              ", or it is lost in the rounding of lengths this large; got " +
+              text_of(guide.band()));
 }
 
 void CycleMemory::set_guides(std::vector<Guide> all) {
@@ -127,10 +144,7 @@ void CycleMemory::set_guides(std::vector<Guide> all) {
   }
   const int links = instrument.chain().size();
   for (const Guide& guide : all) {
-    if (!(guide.band() > needed_band * tolerance_of(guide, tolerance))) {
-      throw Error("the band of guide '" + guide.name() +
-                  "' is lost in the rounding of an instrument and a mesh of this size");
-    }
+    require_not_lost(guide);
     if (guide.link() == 0) {
       throw Error("guide '" + guide.name() +
                   "' is on link 0, the base, which no joint moves: give it a link of the chain");

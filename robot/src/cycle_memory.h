@@ -78,6 +78,8 @@ struct CycleMemory {
   bool is_lost_in_rounding(const InstrumentOptions& options) const noexcept;
   /// Throws Error unless all options are in range and rounding leaves something of the margins.
   void require_usable(const InstrumentOptions& options) const;
+  /// Throws Error if rounding hides the band of a guide.
+  void require_not_lost(const Guide& guide) const;
   /// Replaces the guides. Throws Error, and changes nothing, as InstrumentConstraint::set_guides
   /// does.
   void set_guides(std::vector<Guide> all);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -16,7 +17,8 @@ void require_usable(const Body& body, int links, const std::string& which) {
                 std::to_string(Instrument::most_points_of_a_body));
   }
   if (!(body.radius >= 0.0 && body.radius <= longest_length)) {
-    throw Error("the radius of " + which + " is below zero, or no length");
+    throw Error("the radius of " + which + " must be a length from 0 to 1e15, not " +
+                text_of(body.radius));
   }
   for (const LinkPoint& point : body.points) {
     if (point.link < 0 || point.link > links) {

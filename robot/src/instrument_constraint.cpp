@@ -20,7 +20,7 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               const InstrumentCapacity& capacity, Budget& budget) {
   if (!mesh || !index) throw Error("an instrument constraint needs a mesh and an index of it");
   if (capacity.triangles == 0) {
-    throw Error("the capacity must be of at least one triangle");
+    option_named(instrument_capacity_options, "max_triangles").refuse("0");
   }
   return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
                                         budget);
@@ -32,9 +32,8 @@ Solver& required(const std::unique_ptr<Solver>& solver) {
 }
 
 const InstrumentCapacity& checked(const InstrumentCapacity& capacity) {
-  if (capacity.planes == 0 || capacity.planes > (1u << 16)) {
-    throw Error("the capacity must be of at least one plane, and at most 65536");
-  }
+  const auto& planes = option_named(instrument_capacity_options, "max_planes");
+  planes.accepted(planes.get(capacity));
   return capacity;
 }
 
@@ -200,7 +199,10 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
     throw Error("an instrument is kept out of at most " +
                 std::to_string(InstrumentCapacity::most_meshes) + " meshes");
   }
-  if (!(margin >= 0.0)) throw Error("the margin of a mesh must not be below zero");
+  if (!(margin >= 0.0)) {
+    throw Error("margin: expected 0, for that of the options, or a length above, got " +
+                text_of(margin));
+  }
   auto neighborhood =
       neighborhood_of(std::move(mesh), std::move(index), state.capacity, state.memory.budget);
   const bool is_closed = is_watertight(neighborhood->mesh());

@@ -6,6 +6,14 @@
 
 namespace keepout {
 
+std::string_view InstrumentStep::reason() const noexcept {
+  if (status == Status::free && limits.has(Limit::joints_outside)) {
+    return "the motion is the one asked for, but a joint starts outside its position limits, where "
+           "it may stay or come back: check q";
+  }
+  return keepout::reason(status, Subject::instrument);
+}
+
 /// Notes that a guide ended a search.
 void JointCycle::note_guide(std::size_t guide) noexcept {
   stopping_limits_.add(Limit::guide);

@@ -7,6 +7,7 @@
 #include "control/guarded_shapes.h"
 #include "keepout/error.h"
 #include "keepout/index/wide_bvh.h"
+#include "messages.h"
 #include "trials.h"
 
 namespace keepout::test::crtk_guard {
@@ -224,6 +225,8 @@ TEST_F(Crtk, OptionsOutOfRangeAreRefused) {
   EXPECT_THROW(make({.hand_from_robot = -Mat3::Identity()}), Error);
   EXPECT_THROW(make({.hand_from_robot = 1000.0 * Mat3::Identity()}), Error);
   EXPECT_THROW(make({.haptic = {.period = 0.0}}), Error);
+  EXPECT_EQ(error_of([&] { make({.motion_scale = -1.0}); }),
+            "CRTK guard: motion_scale: expected a number above 0 and at most 1000, got -1");
 }
 
 TEST(CycleStatus, EachHasANameAndAReasonOfItsOwn) {

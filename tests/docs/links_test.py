@@ -5,7 +5,7 @@
 Every .md file that git would commit; without git, all but those in build/, out/ and hidden folders.
 A relative link must name a file or folder of the sources, by its very letters, and an anchor a heading
 there. Links to the web are not followed. A picture must say in words what it shows. docs/README.md must
-have a link to each page beside it.
+have a link to each page beside it, and docs/embedding.md must name each public header.
 """
 
 import pathlib
@@ -70,6 +70,16 @@ def faults_of(page, root):
             yield line, f"there is no heading for {link['to']}"
 
 
+def unnamed_headers(root):
+    """Returns the public headers that the table of docs/embedding.md does not name."""
+    rooms = ("engine", "robot", "control", "solvers", "solvers/nlopt", "adapters", "adapters/urdf", "adapters/ompl", "factory")
+    headers = [header for room in rooms for header in sorted((root / room / "include/keepout").rglob("*.h"))]
+    if len(headers) < 60:
+        sys.exit(f"only {len(headers)} public headers: has something moved?")
+    named = set(re.findall(r"`(?:\w+/)*(\w+\.h)`", (root / "docs/embedding.md").read_text(encoding="utf-8")))
+    return [header.relative_to(root) for header in headers if header.name not in named]
+
+
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     pages = of_tree(root)
@@ -82,6 +92,7 @@ def main():
               for link in LINK.finditer(overview.read_text(encoding="utf-8"))}
     faults += [f"docs/README.md:1: has no link to {page.name}" for page in pages
                if page.parent == overview.parent and page != overview and page not in listed]
+    faults += [f"docs/embedding.md:1: does not say whether {header} is stable" for header in unnamed_headers(root)]
     print("\n".join(faults) or f"{len(pages)} pages: all links lead somewhere")
     sys.exit(1 if faults else 0)
 

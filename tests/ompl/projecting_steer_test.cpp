@@ -12,6 +12,7 @@
 #include "keepout/ompl/straight_way.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
+#include "messages.h"
 #include "trials.h"
 
 namespace keepout::test::projecting_steer {
@@ -103,6 +104,8 @@ TEST(ProjectingSteer, RefusesOptionsOutOfRange) {
   EXPECT_THROW(ProjectingSteer(guard, {.sliding_step = -1.0}), Error);
   EXPECT_THROW(ProjectingSteer(guard, {.least_gain = 1.0}), Error);
   EXPECT_THROW(ProjectingSteer(guard, {.most_steps = 0}), Error);
+  EXPECT_CONTAINS(error_of([&] { ProjectingSteer(guard, {.least_gain = -1.0}); }),
+                  "least_gain: expected a number from 0 to below 1, got -1");
 }
 
 TEST(StraightWay, ASolverThatGivesUpProvesTheSame) {

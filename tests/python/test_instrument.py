@@ -44,6 +44,19 @@ def test_a_work_budget_that_ends_is_reported():
     assert lever_guard().step([0.28], increment=[0.01]).ok
 
 
+def test_an_arm_far_from_everything_is_told_what_limits_it():
+    guard = lever_guard()
+    for asked in ({"increment": [1.0]}, {"linear": (0, 0, 50)}):
+        step = guard.step([0.0], **asked)
+        assert step.status is Status.limited and step.limits == ("joint_velocity",), asked
+        assert "triangle" not in step.reason and "plane" not in step.reason
+    step = guard.step([-1.0], increment=[-0.001])
+    assert step.status is Status.limited and step.limits == ("joint_position",)
+    step = guard.step([-1.2], increment=[0.0])
+    assert step.status is Status.free and step.limits == ("joints_outside",)
+    assert "a joint starts outside its position limits" in step.reason
+
+
 def test_the_shaft_stops_at_the_wall():
     down = {"linear": (0, 0, -0.1)}
     for asked in (down, {**down, "angular": (0, 0.002, 0)}, {"increment": [0.002]}):

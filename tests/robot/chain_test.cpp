@@ -188,7 +188,8 @@ TEST(Chain, WhatIsNoInstrumentIsRefusedAndTheMessageNamesTheBody) {
   expect_refused(body({.points = {{3}}}), "body 2 is on link 3; there are links 0 to 2");
   expect_refused(body({.points = {{1, Vec3(test::nan, 0, 0)}}}),
                  "body 2 has a point that is not finite");
-  expect_refused(body({.points = {{1}}, .radius = -1}), "the radius of body 2 is below zero");
+  expect_refused(body({.points = {{1}}, .radius = -1}),
+                 "the radius of body 2 must be a length from 0 to 1e15, not -1");
   expect_refused(body({.points = triangle}), "only a capsule may reach from one link to another");
 }
 

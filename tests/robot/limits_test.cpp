@@ -172,6 +172,9 @@ TEST(Limits, NameAJointThatStartsOutside) {
   std::vector<double> q{0, 0, 60, 0, 0, 0};
   EXPECT_FALSE(guard.step(q, Twist{}).limits.has(Limit::joints_outside));
   q[2] = guard.instrument().chain().joint(3).limits.upper + 1.0;
+  const InstrumentStep still = guard.step(q, Twist{});
+  EXPECT_EQ(still.status, Status::free);
+  EXPECT_CONTAINS(std::string(still.reason()), "outside its position limits");
   const InstrumentStep step = guard.step(q, {.linear = Vec3(0, 0, -1)});
   EXPECT_TRUE(step.ok());
   EXPECT_TRUE(step.limits.has(Limit::joints_outside));

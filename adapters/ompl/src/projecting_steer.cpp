@@ -5,6 +5,7 @@
 
 #include "keepout/error.h"
 #include "keepout/ompl/straight_way.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -23,13 +24,15 @@ ProjectingSteer::ProjectingSteer(MotionConstraint& guard, const SteerOptions& op
     : guard_(&guard), options_(options) {
   const double radius = guard.options().radius;
   if (options_.sliding_step == 0.0) options_.sliding_step = radius / 8.0;
-  const bool is_step = options_.sliding_step > 0.0 && options_.sliding_step <= radius;
-  const bool is_gain = options_.least_gain >= 0.0 && options_.least_gain < 1.0;
-  if (!is_step || !is_gain || options_.most_steps == 0) {
-    throw Error(
-        "a steer needs a sliding step above zero and not above the radius of its guard, a least "
-        "gain from 0 to below 1, and one step at least");
+  if (!(options_.sliding_step > 0.0 && options_.sliding_step <= radius)) {
+    throw Error("steer: sliding_step: expected a number above 0 and at most the radius " +
+                text_of(radius) + " of its guard, got " + text_of(options_.sliding_step));
   }
+  if (!(options_.least_gain >= 0.0 && options_.least_gain < 1.0)) {
+    throw Error("steer: least_gain: expected a number from 0 to below 1, got " +
+                text_of(options_.least_gain));
+  }
+  if (options_.most_steps == 0) throw Error("steer: most_steps: expected one at least, got 0");
 }
 
 ProjectingSteer::Way ProjectingSteer::steer(const Vec3& from, const Vec3& towards, double longest,

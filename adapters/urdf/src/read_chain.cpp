@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 #include "keepout/registry.h"
 #include "urdf_description.h"
 #include "xml_bounds.h"
@@ -125,8 +126,9 @@ class JointReader {
 
 UrdfChain chain_of(const UrdfDescription& read, std::string_view base, std::string_view tip,
                    double scale) {
-  if (!(scale > 0.0 && std::isfinite(scale)))
-    throw Error("the scale must be finite and above zero");
+  if (!(scale > 0.0 && std::isfinite(scale))) {
+    throw Error("the scale must be finite and above zero, not " + text_of(scale));
+  }
   const auto root = base.empty() ? read.model->getRoot() : link_named(*read.model, base);
   const auto end = tip.empty() ? only_leaf(root) : link_named(*read.model, tip);
   std::vector<const urdf::Joint*> way;

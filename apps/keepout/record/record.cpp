@@ -4,9 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <ostream>
 #include <sstream>
 
+#include "keepout/error.h"
 #include "keepout/version.h"
 #include "record/json_parts.h"
 #include "record/plain_page.h"
@@ -52,6 +54,16 @@ Json new_record(const RecordHead& head) {
           {"date", head.date},           {"command", head.command},   {"complete", head.complete},
           {"subject", head.subject},     {"headline", head.headline}, {"account", head.account},
           {"machine", head.machine},     {"settings", head.settings}};
+}
+
+std::ifstream open_record(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::error_code none;
+  if (std::filesystem::is_directory(path, none)) {
+    throw Error(path.string() + ": is a folder; name a record in it");
+  }
+  if (!file) throw Error(path.string() + ": cannot be read; is it there?");
+  return file;
 }
 
 std::string fault_of(const Json& json) {

@@ -37,6 +37,9 @@ struct RecordHead {
 };
 Json new_record(const RecordHead& head);
 
+/// Opens a record to be read. Throws Error if there is none, or a folder.
+std::ifstream open_record(const std::filesystem::path& path);
+
 /// Why this is no record of the format that is known, as far as its head goes; empty where it is.
 std::string fault_of(const Json& json);
 

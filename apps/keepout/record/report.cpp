@@ -23,8 +23,7 @@ std::filesystem::path page_of(const std::filesystem::path& record) {
 }
 
 Json read_record(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw Error(path.string() + ": cannot be read; is it there?");
+  std::ifstream file = open_record(path);
   constexpr int deepest = 64;  // of what is in what; ours are not deeper than ten
   const auto is_shallow = [](int depth, Json::parse_event_t, const Json&) {
     if (depth > deepest) throw Error("nested too deeply");

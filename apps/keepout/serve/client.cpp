@@ -55,7 +55,8 @@ std::filesystem::path file_of(const Json& request, const char* key) {
 LinkPoint link_point(std::span<const double> numbers) {
   const double link = numbers[0];
   if (!(link >= 0.0 && link <= Chain::most_joints && link == std::floor(link))) {
-    throw Error("a link of 'capsules' is not a number from 0 to that of the last joint");
+    throw Error("a link of 'capsules' must be a number from 0 to that of the last joint, not " +
+                keepout::text_of(link));
   }
   return {static_cast<int>(link), vector(numbers.subspan(1))};
 }
@@ -262,7 +263,8 @@ void place_anatomy(Client& client, const Json& request, std::string& out) {
   const std::size_t count = guarded.mesh_count();
   const double number = request["mesh"].get<double>();
   if (!(number >= 0.0 && number < static_cast<double>(count) && number == std::floor(number))) {
-    throw Error("'mesh' must be the number of a mesh, 0 to " + std::to_string(count - 1));
+    throw Error("'mesh' must be the number of a mesh, 0 to " + std::to_string(count - 1) +
+                ", not " + keepout::text_of(number));
   }
   const Status placed =
       guarded.place(static_cast<std::size_t>(number), frame_of(request), twist_of(request));

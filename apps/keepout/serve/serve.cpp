@@ -210,10 +210,12 @@ int own_file(int file, int mode) {
   return ::fcntl(file, F_DUPFD_CLOEXEC, 0);
 }
 
-/// Otherwise the next file that is opened would be taken for it.
+/// Throws Error if stdin cannot be read or stdout cannot be written to, as if they were closed (see
+/// run_program).
 void require_stdio() {
-  for (const int file : {STDIN_FILENO, STDOUT_FILENO}) {
-    if (::fcntl(file, F_GETFD) < 0) {
+  for (const auto& [file, useless] :
+       {std::pair(STDIN_FILENO, O_WRONLY), std::pair(STDOUT_FILENO, O_RDONLY)}) {
+    if ((::fcntl(file, F_GETFL) & O_ACCMODE) == useless) {
       throw Error(
           "stdin or stdout is closed: 'keepout serve' reads requests from the one and answers on "
           "the other; connect both, or give --socket");

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "shared/program.h"
 
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <exception>
 #include <filesystem>
@@ -29,6 +33,17 @@ constexpr const char* exit_statuses =
     "2 if the command line is wrong; 130 if it was interrupted: bench, compare, plan and verify "
     "then "
     "keep\nwhat was finished.\n";
+
+/// Makes writing beyond a limit on the size of files fail, instead of ending the process. Opens
+/// stdin, stdout and stderr where they are closed, so that reading and writing fail there:
+/// otherwise the next file that is opened would be taken for one of them.
+void prepare_process() {
+  ::signal(SIGXFSZ, SIG_IGN);
+  for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(file, F_GETFD) >= 0) continue;
+    ::open("/dev/null", file == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // gets the lowest number
+  }
+}
 
 /// Throws Error if what was printed could not be written: a full disk shall not look like success.
 void flush_stdout() {
@@ -80,6 +95,7 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
 }  // namespace
 
 int run_program(const std::vector<Command>& commands, int argc, char** argv) {
+  prepare_process();
   try {
     const int status = run(commands, argc, argv);
     flush_stdout();

@@ -77,8 +77,7 @@ bool is_sound(const Json& record) {
 }
 
 Json read(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw Error(path.string() + ": cannot be read; is it there?");
+  std::ifstream file = open_record(path);
   const Error damaged(path.string() + ": is not a whole result of 'keepout verify --json'");
   try {
     const Json record = Json::parse(file);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -37,7 +38,8 @@ void check(const std::vector<Vec3>& points, double radius) {
                 ": leave out those inside of the hull of the others");
   }
   if (!(radius >= 0.0 && radius <= largest_length)) {
-    throw Error("the radius of a convex tool must be a number that is not below 0, nor above 1e30");
+    throw Error("the radius of a convex tool must be a number from 0 to 1e30, not " +
+                text_of(radius));
   }
   for (const Vec3& p : points) {
     if (!(p.array().abs() <= largest_length).all()) {

@@ -2,9 +2,11 @@
 #include "keepout/geometry/region.h"
 
 #include <cmath>
+#include <string_view>
 
 #include "direction_of.h"
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -15,11 +17,10 @@ Vec3 required_direction(const Vec3& given) {
   return n;
 }
 
-double distance(double length) {
-  if (!(length >= shortest_length && length <= longest_length)) {
-    throw Error("the width or radius of a region must be above zero, and a length");
-  }
-  return length;
+/// Returns a width or a radius. Throws Error, naming it, unless it is a length above 0.
+double length(std::string_view name, double value) {
+  OptionText{name, {}, OptionKind::number, "length", positive_length}.accepted(value);
+  return value;
 }
 
 }  // namespace
@@ -41,16 +42,16 @@ Region Region::half_space(const Vec3& point, const Vec3& into) {
 
 Region Region::slab(const Vec3& point, const Vec3& normal, double half_width) {
   const Vec3 n = required_direction(normal);
-  return {point, n * n.transpose(), distance(half_width)};
+  return {point, n * n.transpose(), length("half_width", half_width)};
 }
 
 Region Region::tube(const Vec3& point, const Vec3& direction, double radius) {
   const Vec3 d = required_direction(direction);
-  return {point, Mat3::Identity() - d * d.transpose(), distance(radius)};
+  return {point, Mat3::Identity() - d * d.transpose(), length("radius", radius)};
 }
 
 Region Region::ball(const Vec3& center, double radius) {
-  return {center, Mat3::Identity(), distance(radius)};
+  return {center, Mat3::Identity(), length("radius", radius)};
 }
 
 double Region::excess(const Vec3& point) const noexcept {

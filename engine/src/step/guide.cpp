@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/error.h"
+#include "keepout/option_table.h"
 
 namespace keepout {
 namespace {
@@ -26,7 +27,8 @@ Vec3 unit(const Vec3& direction, const std::string& name) {
 /// The chord of an angle on the unit sphere.
 double chord(double angle, const std::string& name) {
   if (!(angle > 0.0 && angle <= most_angle)) {
-    throw Error("guide '" + name + "' has an angle that is not above 0 and at most 3 rad");
+    throw Error("guide '" + name +
+                "' has an angle that is not above 0 and at most 3 rad: " + text_of(angle));
   }
   return 2.0 * std::sin(0.5 * angle);
 }
@@ -90,7 +92,8 @@ std::vector<Guide> Guide::orientation(const std::string& name, int link, const M
 
 Guide Guide::with_band(double band) const {
   if (!(band >= shortest_length && band <= longest_length)) {
-    throw Error("the band of guide '" + name_ + "' must be above zero");
+    throw Error("the band of guide '" + name_ + "' must be above zero, and a length; got " +
+                text_of(band));
   }
   Guide guide = *this;
   guide.band_ = band;

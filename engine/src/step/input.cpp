@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "input.h"
 
+#include <string>
+
 #include "keepout/error.h"
 #include "keepout/step/solver.h"
 
@@ -28,11 +30,15 @@ bool are_usable(const ExtraRows& rows, Eigen::Index variables) noexcept {
 
 void require_in_range(const StepOptions& options) {
   require_in_range(step_options, options);
-  if (required_clearance(options) > longest_length ||
-      position_rounding(Vec3::Zero(), options) > 1e-3 * options.radius) {
-    throw Error(
-        "tool_radius and margin together must be at most 1e15, and not so large that the radius is "
-        "lost in their rounding");
+  const double clearance = required_clearance(options);
+  if (clearance > longest_length) {
+    throw Error("margin: expected at most 1e15 together with tool_radius, got " +
+                text_of(options.margin) + " beside " + text_of(options.tool_radius));
+  }
+  if (position_rounding(Vec3::Zero(), options) > 1e-3 * options.radius) {
+    throw Error("radius: expected more than 1e-9 of tool_radius and margin together, which are " +
+                text_of(clearance) + " and in whose rounding it is lost, got " +
+                text_of(options.radius));
   }
 }
 

@@ -2,6 +2,7 @@
 #include "keepout/step/motion_constraint.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "cycle.h"
@@ -132,7 +133,9 @@ std::span<const Guide> MotionConstraint::guides() const noexcept {
 void MotionConstraint::require_usable(const StepOptions& options) {
   require_in_range(options);
   if (static_cast<std::size_t>(options.nodes) > capacity_.nodes) {
-    throw Error("more nodes than room was made for: see Capacity::nodes");
+    throw Error("nodes: expected at most " + std::to_string(capacity_.nodes) +
+                ", the capacity made for them (Capacity::nodes), got " +
+                std::to_string(options.nodes));
   }
   // At the tip nearest to the origin, where rounding is least.
   const Box& bounds = mesh().bounds();
@@ -144,9 +147,10 @@ void MotionConstraint::require_usable(const StepOptions& options) {
   if (!rule_->gather(input)) return;
   if (rule_->open(input, memory_->planes).status == Status::margin_too_small) {
     throw Error(
-        "the margin is too small for a mesh and a radius of this size: the distance kept, "
-        "tool radius and margin together, must be well above 1e-9 of the longest edge and "
-        "of the radius");
+        "the margin is too small for a mesh and a radius of this size: margin " +
+        text_of(options.margin) + " and tool_radius " + text_of(options.tool_radius) +
+        " together must be well above 1e-9 of the longest edge and of the radius, which is " +
+        text_of(options.radius));
   }
 }
 

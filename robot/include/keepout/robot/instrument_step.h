@@ -52,8 +52,9 @@ struct InstrumentStep {
 
   /// Returns true if the increment may be executed; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it.
-  std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
+  /// Returns one line on what happened and what to do about it. It also says if a joint of a free
+  /// motion starts outside its position limits.
+  std::string_view reason() const noexcept;
 };
 
 /// The part of a motion that is proved clear.

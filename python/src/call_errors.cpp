@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// pybind11 answers a call that fits no signature with all signatures and all arguments. Each
+// function of the module is called through explained(), which replaces that message.
+#include <pybind11/pybind11.h>
+
+#include "bindings.h"
+
+namespace keepout::python {
+namespace {
+
+PyCFunctionWithKeywords pybind_call = nullptr;  // of all functions that pybind11 has made
+
+/// Replaces the message of the TypeError that is set, if it is pybind11's: see _call_errors.py.
+void explain(PyObject* args, PyObject* kwargs) {
+  py::error_already_set error;  // fetches it
+  try {
+    const py::module_ words = py::module_::import("keepout._call_errors");
+    const py::object text = words.attr("in_our_words")(
+        py::str(error.value()), py::reinterpret_borrow<py::tuple>(args),
+        kwargs != nullptr ? py::reinterpret_borrow<py::dict>(kwargs) : py::dict());
+    if (!text.is_none()) {
+      PyErr_SetObject(PyExc_TypeError, text.ptr());
+      return;
+    }
+  } catch (const py::error_already_set&) {
+    // The message of pybind11 is better than none.
+  }
+  error.restore();
+}
+
+PyObject* explained(PyObject* self, PyObject* args, PyObject* kwargs) {
+  PyObject* const result = pybind_call(self, args, kwargs);
+  if (result == nullptr && PyErr_ExceptionMatches(PyExc_TypeError)) explain(args, kwargs);
+  return result;
+}
+
+/// Calls a function through explained(), if pybind11 has made it.
+void explain_errors_of(py::handle member) {
+  PyObject* function = member.ptr();
+  py::object of_static;
+  if (PyInstanceMethod_Check(function)) {
+    function = PyInstanceMethod_GET_FUNCTION(function);
+  } else if (Py_TYPE(function) == &PyStaticMethod_Type) {
+    of_static = member.attr("__func__");
+    function = of_static.ptr();
+  }
+  if (!PyCFunction_Check(function) || !PyCapsule_CheckExact(PyCFunction_GET_SELF(function))) return;
+  PyMethodDef& method = *reinterpret_cast<PyCFunctionObject*>(function)->m_ml;
+  const auto call =
+      reinterpret_cast<PyCFunctionWithKeywords>(reinterpret_cast<void (*)()>(method.ml_meth));
+  if (call == explained) return;
+  pybind_call = call;
+  method.ml_meth = reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(explained));
+}
+
+}  // namespace
+
+void explain_call_errors(py::module_& module) {
+  for (const auto& [name, member] : module.attr("__dict__").cast<py::dict>()) {
+    if (!PyType_Check(member.ptr())) {
+      explain_errors_of(member);
+      continue;
+    }
+    for (const py::handle item : member.attr("__dict__").attr("values")()) explain_errors_of(item);
+  }
+}
+
+}  // namespace keepout::python
