@@ -136,6 +136,10 @@ TEST_F(Live, AMeshThatWasTurnedIsNamedAsItWas) {
   succeeded(run("ball.stl --untagged RAS --space LPS"));
   EXPECT_EQ(settings().at("meshes").at(0).at("command_name"),
             "ball.stl --space LPS --untagged RAS");
+  succeeded(run("ball.stl --scale 0.5 --flip"));
+  const nlohmann::json& mesh = settings().at("meshes").at(0);
+  EXPECT_EQ(mesh.at("command_name"), "ball.stl --scale 0.5 --flip");
+  EXPECT_EQ(mesh.at("warnings").at(0), "ball.stl: scaled by 0.5");
 }
 
 TEST_F(Live, WarningsOfAMeshAreInThePageToo) {

@@ -123,13 +123,15 @@ TEST_F(NamedMesh, EveryCommandTellsOfMetresHolesAndWindingOnceOnStderr) {
     };
     // Whether or not the command can do something with it.
     const std::string metres = told("metres.stl");
-    EXPECT_EQ(occurrences(metres, "keepout: metres.stl: is 0.1 mm large"), 1u) << command << '\n'
-                                                                               << metres;
+    EXPECT_EQ(occurrences(metres, "keepout: metres.stl: the mesh is 0.1 mm across"), 1u)
+        << command << '\n'
+        << metres;
     const std::string open = told("bad.stl");
-    EXPECT_EQ(occurrences(open, "keepout: bad.stl: is an open surface"), 1u) << command << '\n'
-                                                                             << open;
-    EXPECT_EQ(occurrences(open, "keepout: bad.stl: is wound inconsistently"), 1u) << command << '\n'
-                                                                                  << open;
+    EXPECT_EQ(occurrences(open, "keepout: bad.stl: the surface is open"), 1u) << command << '\n'
+                                                                              << open;
+    EXPECT_EQ(occurrences(open, "keepout: bad.stl: the surface is wound inconsistently"), 1u)
+        << command << '\n'
+        << open;
   }
   // Whose findings they are.
   const std::string findings = run("inspect bad.stl").output;
