@@ -77,7 +77,7 @@ std::string_view TextLines::next_line() {
 std::string_view TextLines::take_bytes(std::uint64_t count) noexcept {
   const std::string_view bytes = text_.substr(position_, static_cast<std::size_t>(count));
   position_ += bytes.size();
-  next_number_ += static_cast<std::size_t>(std::ranges::count(bytes, '\n'));
+  next_number_ += static_cast<std::size_t>(std::count(bytes.begin(), bytes.end(), '\n'));
   return bytes;
 }
 

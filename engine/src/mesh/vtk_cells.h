@@ -31,7 +31,9 @@ class VtkCells {
                    std::to_string(end) + " of " + std::to_string(corners.size()) +
                    "; the file is damaged");
       }
-      add_cell(kind, corners.subspan(begin, end - begin), first, vertices, place);
+      const auto size = static_cast<std::size_t>(end - begin);
+      add_cell(kind, corners.subspan(static_cast<std::size_t>(begin), size), first, vertices,
+               place);
       begin = end;
     }
     if (begin != corners.size()) {

@@ -137,7 +137,7 @@ TEST_F(Live, AMeshThatWasTurnedIsNamedAsItWas) {
   EXPECT_EQ(settings().at("meshes").at(0).at("command_name"),
             "ball.stl --space LPS --untagged RAS");
   succeeded(run("ball.stl --scale 0.5 --flip"));
-  const nlohmann::json& mesh = settings().at("meshes").at(0);
+  const nlohmann::json mesh = settings().at("meshes").at(0);
   EXPECT_EQ(mesh.at("command_name"), "ball.stl --scale 0.5 --flip");
   EXPECT_EQ(mesh.at("warnings").at(0), "ball.stl: scaled by 0.5");
 }
