@@ -52,7 +52,7 @@ struct LoadedMesh {
   std::shared_ptr<const Mesh> mesh;                    // welded; never null
   AnatomicalSpace space = AnatomicalSpace::unstated;   // that the coordinates are in now
   AnatomicalSpace stated = AnatomicalSpace::unstated;  // that the file states: SPACE=...
-  double scale = 1.0;  // that the lengths of the file were multiplied by
+  double scale = 1.0;    // that the lengths of the file were multiplied by
   bool flipped = false;  // true if each triangle was wound the other way
   /// What was left out of the mesh, looks odd in the file, or must be known before the mesh guards
   /// anything: sentences that begin with the name of the file.
