@@ -80,6 +80,7 @@ typos = [
     ("--simd AVX22 inspect cube", "--simd: there is no 'AVX22'; "),
     ("inspect cube --space lsp", "--space: there is no 'lsp'; did you mean 'lps'?"),
     ("register f.csv --measured-in cm", "--measured-in: there is no 'cm'; there are: mm, m"),
+    ("inspect cube.off --unit mn", "--unit: there is no 'mn'; "),
     ("simulate cube --index wide_bhv", "--index: there is no 'wide_bhv'; did you mean 'wide_bvh'? There are: "),
     ("simulate cube --solver activeset", "--solver: there is no 'activeset'; did you mean 'active_set'?"),
     ("simulate cube --activation certifed,paper", "--activation: there is no 'certifed'; did you mean 'certified'?"),
@@ -122,6 +123,8 @@ values = [
     ("simulate cube --strokes 0", "--strokes: expected a whole number from 1 to 100000"),
     ("simulate cube --cycles 9", "--cycles: expected a whole number from 10 to 1000000"),
     ("simulate cube --robot psm --speed 0", "--speed: expected a multiple from 0.001 to 1000, not '0'"),
+    ("inspect cube.off --scale -1", "--scale: "),
+    ("inspect cube.off --scale nan", "--scale: "),
     ("inspect cube --json=many", "--json: "),
     ("register f.csv --target 1 2 x", "--target: expected a number from -1e6 to 1e6, not 'x'"),
     ("register f.csv --confidence 1", "--confidence: expected a probability from 0.01 to 0.9999, not '1'"),
@@ -212,12 +215,15 @@ def binary_ply(points, faces):
     return (head + "end_header\n").encode() + struct.pack("<9f", *points) + faces
 
 
+formats = "stl", "ply", "obj", "off", "vtk", "vtp"
 facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
 stl = f"solid a\n{facet}endsolid a\n"
 ply = ("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
 obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 off = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
+vtk = ("# vtk DataFile Version 3.0\na\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n0 0 0\n1 0 0\n0 1 0\n"
+       "POLYGONS 1 4\n3 0 1 2\n")
 nan, infinity = float("nan"), float("inf")
 flat = (0, 0, 0, 1, 0, 0, 0, 1, 0)
 garbage = random.Random(1).randbytes(3000)
@@ -275,10 +281,18 @@ meshes = {
     "words.off": (off.replace("3 1 0", "three one"), "found 'three'"),
     "binary.off": (off.replace("OFF", "OFF BINARY"), "binary OFF is not read"),
     "head.off": (off.replace("OFF", "OF"), "expected 'OFF', found 'OF'"),
-    **{f"empty.{kind}": ("", "is empty") for kind in ("stl", "ply", "obj", "off")},
-    **{f"zipped.{kind}": (gzip.compress(stl.encode()), "is compressed; unpack it first") for kind in ("stl", "ply", "obj", "off")},
-    **{f"garbage.{kind}": (garbage, f"garbage.{kind}") for kind in ("stl", "ply", "obj", "off")},
-    **{f"zeros.{kind}": (bytes(1000), f"zeros.{kind}") for kind in ("stl", "ply", "obj", "off")},
+    "cut.vtk": (vtk[:80], cut_short),
+    "more.vtk": (vtk.replace("POINTS 3", "POINTS 5"), "has only 9"),
+    "huge.vtk": (vtk.replace("POINTS 3", "POINTS 4000000000"), cut_short),
+    "beyond.vtk": (vtk.replace("3 0 1 2", "3 0 1 7"), "names vertex 7"),
+    "nan.vtk": (vtk.replace("1 0 0", "nan 0 0"), not_finite),
+    "volume.vtk": (vtk.replace("POLYDATA", "STRUCTURED_POINTS"), "only POLYDATA is a surface"),
+    "cut.vtp": ('<VTKFile type="PolyData"><PolyData>', cut_short),
+    "page.vtp": ("<html/>", "expected 'VTKFile'"),
+    **{f"empty.{kind}": ("", "is empty") for kind in formats},
+    **{f"zipped.{kind}": (gzip.compress(stl.encode()), "is compressed; unpack it first") for kind in formats},
+    **{f"garbage.{kind}": (garbage, f"garbage.{kind}") for kind in formats},
+    **{f"zeros.{kind}": (bytes(1000), f"zeros.{kind}") for kind in formats},
     "part.step": ("ISO-10303-21;", "its extension is none of .stl, .ply, .obj, .off"),
     "no_extension": (stl, "its extension is none of .stl, .ply, .obj, .off"),
 }

@@ -375,7 +375,7 @@ TEST(HapticProxy, OptionsOutOfRangeAreRefused) {
   expect_refused({.period = std::numeric_limits<double>::denorm_min()});
   expect_refused({.largest_brake = -1.0});
   EXPECT_EQ(error_of([] { HapticProxy(guard_of(cube()), {.period = 5.0}); }),
-            "haptic proxy: period, in seconds: expected a number from 1e-6 to 1, got 5");
+            "haptic proxy: period, in seconds: expected a number from 1e-06 to 1, got 5");
   EXPECT_EQ(error_of([] { check(SpringDamper{.damping = -1.0}); }),
             "haptic spring: damping: expected a number from 0 to 1e9, got -1");
 }
