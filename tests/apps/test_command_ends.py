@@ -3,6 +3,7 @@
 
 import json
 import os
+import shutil
 import signal
 import stat
 import subprocess
@@ -41,11 +42,18 @@ def seconds_until_read(process, text):
     return time.monotonic() - begin
 
 
+def rest_of(process):
+    """Returns stdout and the rest of stderr; communicate() would lose what is read already but not yet returned."""
+    out, err = process.stdout.read(), process.stderr.read()
+    process.wait(timeout=patience)
+    return out, err
+
+
 def stopped(process, number):
     """Sends a signal to the command alone; returns its exit status, stdout and the rest of stderr."""
     process.send_signal(number)
     assert seconds_until_read(process, stopping) < soon
-    out, err = process.communicate(timeout=patience)
+    out, err = rest_of(process)
     return process.returncode, out, err
 
 
@@ -120,7 +128,7 @@ def test_a_signal_ends_the_preparation_of_a_sample_mesh(tmp_path, command, numbe
     seconds_until_read(process, "preparing")
     process.send_signal(number)
     begin = time.monotonic()
-    out, err = process.communicate(timeout=patience)
+    _, err = rest_of(process)
     assert time.monotonic() - begin < soon
     assert process.returncode == 130, err
     assert err.count("interrupted") == 1
@@ -145,6 +153,24 @@ def test_a_reader_that_is_gone_does_not_keep_bench_from_its_report(tmp_path):
     assert json.loads((tmp_path / "b.json").read_text())["complete"]
     assert (tmp_path / "b.html").exists()
     assert "full" not in done.stderr
+
+
+def test_bench_fails_if_an_index_misses_triangles(tmp_path):
+    _, parts, _ = run(tmp_path, "bench", "--list")
+    compiler = shutil.which("cc")
+    if "embree is not in this build" in parts or not compiler:
+        pytest.skip("needs Embree and a compiler")
+    (tmp_path / "wrong.c").write_text("_Bool rtcPointQuery(void) { return 0; }  // and finds nothing\n")
+    subprocess.run([compiler, "-shared", "-fPIC", "-o", "wrong.so", "wrong.c"], cwd=tmp_path, check=True)
+    arguments = ["bench", "--mesh", "cube", "--index", "embree,wide_bvh", "--activation", "paper", "--radius", "1",
+                 "--queries", "20", "--seconds", "0.1", "--json", "b.json"]
+    for library, status, wrong in (("", 0, []), (str(tmp_path / "wrong.so"), 1, ["embree"])):
+        ended, out, err = run(tmp_path, *arguments, LD_PRELOAD=library)
+        benchmark = json.loads((tmp_path / "b.json").read_text())["benchmark"]
+        assert ended == status, out + err
+        assert [row["index"] for row in benchmark["rows"] if row["wrong"]] == wrong
+        assert ("keepout: the answers of 1 of 2 rows are wrong" in err) == bool(wrong)
+        assert ("The answers of 1 of 2 rows are wrong." in benchmark["headline"]) == bool(wrong)
 
 
 long_commands = {
