@@ -209,7 +209,7 @@ def test_quiet_keeps_warnings_and_goes_before_and_behind_the_command(tmp_path):
         process.stdout.close()
         process.stdout = None
         _, err = process.communicate(timeout=patience)
-        assert "m.off: is 0.1" in err and "serving" not in err
+        assert "m.off: the surface is open" in err and "serving" not in err
     status, out, err = run(tmp_path, "simulate", "cube", "--strokes", "1", "--cycles", "10", "--quiet")
     assert (status, err) == (0, "")
     assert "Try next" not in out and "keepout-report.html" in out
