@@ -1,7 +1,9 @@
 # Sourced by ./run and ./test: installs what is missing, configures and builds.
 # SPDX-License-Identifier: BSD-3-Clause
 
+# KEEPOUT_QUIET: no notices, only errors.
 say() {
+  [ -z "${KEEPOUT_QUIET:-}" ] || return 0
   if [ -t 2 ] && [ -z "${NO_COLOR:-}" ]; then
     printf '\033[1m==> %s\033[0m\n' "$*" >&2
   else
@@ -60,9 +62,9 @@ build() {
   shift
   if [ ! -f "$root/build/$preset/build.ninja" ]; then
     say "configuring ($preset)"
-    (cd "$root" && cmake --preset "$preset" >&2) || fail "configuring failed: see above"
+    (cd "$root" && cmake --preset "$preset" ${KEEPOUT_QUIET:+--log-level=WARNING} >&2) || fail "configuring failed: see above"
   fi
   say "building ($preset)"
-  (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"} >&2) ||
+  (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"} ${KEEPOUT_QUIET:+-- --quiet} >&2) ||
     fail "building failed: see above; to start afresh, remove build/$preset"
 }

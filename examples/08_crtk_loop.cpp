@@ -61,8 +61,10 @@ int main(int argc, char** argv) try {
                   .largest_brake = 0.01},
        .motion_scale = 0.5});
 
-  // The robot waits 5 mm above the mesh.
-  const keepout::Vec3 start(middle.x(), middle.y(), mesh->bounds().high.z() + 5.0);
+  // The robot waits 5 mm above the highest vertex, so that the hand pushes the tool into the mesh.
+  const keepout::Vec3 highest = *std::ranges::max_element(
+      mesh->vertices(), {}, [](const keepout::Vec3& vertex) { return vertex.z(); });
+  const keepout::Vec3 start = highest + keepout::Vec3(0, 0, 5);
   Robot robot{{registration.point_to_robot(start), keepout::Mat3::Identity()}};
   Hand hand;
   const keepout::Pose begin = robot.setpoint_cp();
@@ -101,7 +103,10 @@ int main(int argc, char** argv) try {
       "energy [mJ]: to the hand %.12f, stored %.12f, dissipated %.12f, from the proxy %.12f, "
       "active %.12f\n",
       energy.to_hand, energy.stored, energy.dissipated, energy.from_proxy, energy.active);
-  return 0;
+  if (held > 0) return 0;
+  std::fprintf(stderr,
+               "The tool never touched the mesh: see what `keepout inspect` says about it.\n");
+  return 1;
 } catch (const keepout::Error& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

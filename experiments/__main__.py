@@ -32,15 +32,24 @@ def parser() -> argparse.ArgumentParser:
     of.add_argument("--full", action="store_true", help="all shapes and sizes, more repetitions: about an hour")
     of.add_argument("--seed", type=int, default=1, help="of all random numbers (default: 1)")
     of.add_argument("--only", metavar="E1,E3", default="", help=f"some of {names}")
-    of.add_argument("--out", type=Path, metavar="FOLDER", help="where to write (default: out/experiments "
+    of.add_argument("--out", type=_folder, metavar="FOLDER", help="where to write (default: out/experiments "
                     "beside run, with --full out/experiments_full)")
     of.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: one a processor)")
+    of.add_argument("-q", "--quiet", action="store_true", help="print no progress: only results, warnings and errors")
     of.add_argument("--fresh", action="store_true", help="begin anew, and forget what is kept")
     return of
 
 
+def _folder(text: str) -> Path:
+    if not text:
+        raise argparse.ArgumentTypeError("expected the name of a folder, not ''")
+    return Path(text)
+
+
 def main(arguments: list[str]) -> int:
     told = parser().parse_args(arguments)
+    if told.quiet:
+        os.environ["KEEPOUT_QUIET"] = "1"  # programs that this one starts obey it as well
     chosen = {name.strip().lower() for name in told.only.split(",") if name.strip()}
     known = {e.NAME.split("_")[0]: e for e in EXPERIMENTS}
     wrong = sorted(chosen - set(known))

@@ -13,6 +13,7 @@ import hashlib
 import importlib
 import json
 import multiprocessing
+import os
 import signal
 import sys
 import time
@@ -96,13 +97,19 @@ class Kept:
 
 
 class Progress:
-    """A line on the terminal, or a line a minute in a file: what is done, and how long the rest may take."""
+    """A line on the terminal, or a line every 10 seconds in a file: what is done, and how long the rest may take.
+
+    Nothing if KEEPOUT_QUIET is set.
+    """
+
+    INTERVAL = 10.0  # between lines in a file [s]
 
     def __init__(self, units: int) -> None:
         self._units = units
         self._done = self._ran = 0
         self._begun = self._shown = time.monotonic()
         self._alone = True
+        self._name = "nothing is finished yet"
 
     def begin(self, *, alone: bool) -> None:
         """From now on units run that are `alone` or not; what is left is told of those that are not."""
@@ -111,18 +118,21 @@ class Progress:
     def count(self, name: str, *, kept: bool) -> None:
         self._done += 1
         self._ran += not kept
-        now = time.monotonic()
-        last = self._done == self._units
-        on_terminal = sys.stderr.isatty()
-        if not (on_terminal or last or now - self._shown >= 60.0):
+        self._name = name
+        self.show(now=sys.stderr.isatty() or self._done == self._units)
+
+    def show(self, *, now: bool = False) -> None:
+        """Prints the line if it is due, or at once."""
+        if os.environ.get("KEEPOUT_QUIET") or not (now or time.monotonic() - self._shown >= self.INTERVAL):
             return
-        self._shown = now
+        self._shown = time.monotonic()
         told = self._ran and not self._alone
-        left = (now - self._begun) / self._ran * (self._units - self._done) if told else 0.0
+        left = (self._shown - self._begun) / self._ran * (self._units - self._done) if told else 0.0
         rest = f", {left / 60:.0f} min left" if left >= 60 else f", {left:.0f} s left" if left else ""
-        line = f"{self._done} of {self._units} units{rest}: {name}"
-        print(f"\r\033[K{line}" if on_terminal else line, end="" if on_terminal and not last else "\n",
-              file=sys.stderr, flush=True)
+        line = f"{self._done} of {self._units} units{rest}: {self._name}"
+        on_terminal = sys.stderr.isatty()
+        print(f"\r\033[K{line}" if on_terminal else line,
+              end="" if on_terminal and self._done < self._units else "\n", file=sys.stderr, flush=True)
 
 
 def run_units(
@@ -158,7 +168,8 @@ def run_units(
             try:
                 running = {pool.submit(_run, e.__name__, u): (e, u) for e, u in batch}
                 while running:
-                    finished, _ = wait(running, return_when=FIRST_COMPLETED)
+                    finished, _ = wait(running, timeout=Progress.INTERVAL, return_when=FIRST_COMPLETED)
+                    progress.show()
                     for future in sorted(finished, key=lambda one: one.exception() is not None):
                         experiment, unit = running.pop(future)
                         if fault := future.exception():

@@ -14,6 +14,9 @@ cp "$source/cmake/set_up.sh" "$work/cmake"
 said=$(. "$source/cmake/set_up.sh"; say building 2>&1)
 [ "$said" = "==> building" ] || fault "in a pipe it says: $(printf %q "$said")"
 
+said=$(. "$source/cmake/set_up.sh"; KEEPOUT_QUIET=1; say building 2>&1)
+[ -z "$said" ] || fault "although it is told to be quiet it says: $said"
+
 # Nobody, when the test is run by root, who may write everywhere.
 chmod -R a+rX,go-w "$work"
 if [ "$(id -u)" -eq 0 ]; then
@@ -23,9 +26,14 @@ else
   as_other=()
   chmod a-w "$work/build/release"
 fi
+# Through a symbolic link to the file as well.
+mkdir "$work/links"
 for program in run test; do
-  told=$("${as_other[@]}" bash "$work/$program" 2>&1) && fault "$program goes on in what is not its user's"
-  [[ $told == *"may not write to $work"*"belongs to $(id -un)"*"chown -R"* ]] ||
-    fault "$program says: $told"
+  ln -s "../$program" "$work/links/$program"
+  for called in "$work/$program" "$work/links/$program"; do
+    told=$("${as_other[@]}" bash "$called" 2>&1) && fault "$called goes on in what is not its user's"
+    [[ $told == *"may not write to $work"*"belongs to $(id -un)"*"chown -R"* ]] ||
+      fault "$called says: $told"
+  done
 done
 chmod -R u+w "$work"

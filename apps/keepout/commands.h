@@ -35,12 +35,14 @@ struct RegisterOptions {
   std::optional<double> fle = {};                  // fiducial localisation error [mm]
   double confidence = 0.99;                        // of the margin
   std::optional<std::filesystem::path> json = {};  // to be written
+  bool trusted_anyway = false;                     // doubts do not change the exit status
 };
 
 /// Fits the points of a file and prints the matrix, what is left between the pairs, and by how much
-/// the registration is expected to be off at the targets. Throws Error, also when the file for JSON
-/// would overwrite the other.
-void register_fiducials(const RegisterOptions& options, std::ostream& out);
+/// the registration is expected to be off at the targets. Prints a doubt about the fit on stderr
+/// first. Returns the exit status: failure if there is a doubt, unless it is trusted anyway. Throws
+/// Error, also when the file for JSON would overwrite the other.
+int register_fiducials(const RegisterOptions& options, std::ostream& out);
 
 enum class Loop : std::uint8_t {
   open,   // each line is a tip and a desired increment
@@ -59,8 +61,9 @@ struct ReplayOptions {
   double max_step = 1.0;  // longest increment asked for in a closed loop [mm]
 };
 
-/// Runs one step for each line of a pose file and writes what came out. A summary goes to `out`.
+/// Runs one step for each line of a pose file and writes what came out. A summary goes to `out`. A
+/// StopSignal ends it early, and the steps that are finished are written. Returns the exit status.
 /// Throws Error, also when one file would overwrite another; then neither is written.
-void replay(const ReplayOptions& options, std::ostream& out);
+int replay(const ReplayOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <cstdlib>
+#include <iostream>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -63,11 +65,12 @@ RigidFit fit_of(const FiducialPairs& pairs, const RegisterOptions& options) {
 
 }  // namespace
 
-void register_fiducials(const RegisterOptions& options, std::ostream& out) {
+int register_fiducials(const RegisterOptions& options, std::ostream& out) {
   const std::vector<NamedPath> inputs{{"FILE", options.fiducials}};
   OutputFiles outputs(inputs, {{"--json", options.json}});
   const FiducialPairs pairs = read_fiducials(options.fiducials);
   const RigidFit fit = fit_of(pairs, options);
+  if (!fit.doubt.empty()) std::cerr << "keepout: do not trust it: " << fit.doubt << '\n';
   const double largest = std::ranges::max(fit.residuals);
   std::vector<PairRow> rows;
   for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
@@ -118,9 +121,9 @@ void register_fiducials(const RegisterOptions& options, std::ostream& out) {
         json["margin"].get<double>(), places.size() == 1 ? " there" : " at all of them and between",
         options.confidence);
   }
-  if (!fit.doubt.empty()) out << "\nDo not trust it: " << fit.doubt << '\n';
   if (std::ostream* file = outputs.stream("--json")) *file << json.dump(2) << '\n';
   outputs.commit();
+  return fit.doubt.empty() || options.trusted_anyway ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace keepout::app

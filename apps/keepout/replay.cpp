@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <array>
 #include <cinttypes>
+#include <cstdlib>
+#include <iostream>
 #include <map>
 #include <ostream>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "shared/output_file.h"
 #include "shared/pose_file.h"
 #include "shared/progress.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {
@@ -41,19 +44,25 @@ void write_planes(std::ostream& out, std::size_t number, const Step& step) {
 
 }  // namespace
 
-void replay(const ReplayOptions& options, std::ostream& out) {
+int replay(const ReplayOptions& options, std::ostream& out) {
   const bool closed_loop = options.loop == Loop::closed;
   if (closed_loop) require_within_reach(options.max_step, options.constraint.options.radius);
   OutputFiles outputs(std::array{NamedPath{"MESH", file_of_mesh(options.mesh)},
                                  NamedPath{"--poses", options.poses}},
                       {{"--out", options.steps}, {"--planes", options.planes}});
+  const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   std::ostream& steps = *outputs.stream("--out");
   std::ostream* const planes = outputs.stream("--planes");
   steps << "step,status,px,py,pz,dx,dy,dz,ux,uy,uz,triangles,planes,"
            "t_query_ns,t_activate_ns,t_solve_ns,t_total_ns,distance\n";
   if (planes != nullptr) *planes << "step,triangle,nx,ny,nz,offset\n";
-  const std::vector<PoseLine> poses = read_poses(options.poses);
-  const LoadedMesh loaded = load_named_mesh(options.mesh, options.load);
+  std::vector<PoseLine> poses;
+  LoadedMesh loaded;
+  {
+    const Progress reading("replay, reading", 1);
+    poses = read_poses(options.poses);
+    loaded = load_named_mesh(options.mesh, options.load);
+  }
   MotionConstraintSettings settings = options.constraint;
   settings.warn = warn_on_stderr;
   MotionConstraint constraint = make_motion_constraint(loaded.mesh, settings);
@@ -61,10 +70,11 @@ void replay(const ReplayOptions& options, std::ostream& out) {
   std::size_t limited_by_guides = 0;
 
   std::map<std::string_view, std::size_t> counts;
+  std::size_t number = 0;
   {
     Progress progress("replay", poses.size());
     Vec3 tip = poses.front().second;
-    for (std::size_t number = 0; number < poses.size(); ++number, progress.advance()) {
+    for (; number < poses.size() && !stop.has_come(); ++number, progress.advance()) {
       const PoseLine& line = poses[number];
       const Motion motion =
           closed_loop ? Motion{.tip = tip, .desired = clipped(line.first - tip, options.max_step)}
@@ -76,13 +86,18 @@ void replay(const ReplayOptions& options, std::ostream& out) {
       if (planes != nullptr) write_planes(*planes, number, step);
       tip += step.motion;
       ++counts[name(step.status)];
+      stop.keep_from_now_on();
     }
   }
   outputs.commit();
 
-  out << counted(poses.size(), "step") << " -> " << options.steps.string() << '\n';
+  out << counted(number, "step") << " -> " << options.steps.string() << '\n';
   for (const auto& [status, count] : counts) out << "  " << status << ": " << count << '\n';
   if (!options.guides.empty()) out << "  limited by guides: " << limited_by_guides << '\n';
+  if (number == poses.size()) return EXIT_SUCCESS;
+  std::cerr << "keepout: stopped; " << grouped(number) << " of " << counted(poses.size(), "step")
+            << " were finished, and are kept in " << options.steps.string() << '\n';
+  return exit_interrupted;
 }
 
 }  // namespace keepout::app

@@ -69,6 +69,9 @@ void add_register(CLI::App& app, RegisterOptions& options) {
       ->capture_default_str();
   command.add_option("--json", options.json, "Where to write the results as JSON")
       ->type_name("FILE.json");
+  command.add_flag(
+      "--anyway", options.trusted_anyway,
+      "End with exit status 0 even if the points say that the fit is not to be trusted");
 }
 
 void add_replay(CLI::App& app, ReplayOptions& options) {
@@ -106,7 +109,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
            "step; "
            "empty "
            "where\nthe step is invalid_input. PLANES.csv: allowed are all u with normal . u >= "
-           "offset.\n\n" +
+           "offset.\nCtrl-C ends it early and keeps the steps that are finished.\n\n" +
            listing("Rules", activation_rules()) + listing("Indices", index_backends()) +
            listing("Solvers", solver_backends());
   });
@@ -164,6 +167,7 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
   for (const auto& option : step_options) {
     if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
   }
+  command.footer("Ctrl-C ends it early and keeps the strokes that are finished.");
   command.final_callback([&options] {
     if (!options.robot.empty()) return;
     if (options.meshes.empty()) throw CLI::RequiredError("MESH");

@@ -122,7 +122,7 @@ void add_speed_options(CLI::App& command, BenchOptions& options) {
   command
       .add_option("--steps", speed_options.histogram_steps, "Of --speed: steps of the histogram")
       ->type_name("NUMBER")
-      ->transform(large_count())
+      ->transform(whole_number(1, most_steps))
       ->needs(speed)
       ->capture_default_str();
   command
@@ -202,6 +202,10 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
 }
 
+bool is_right(const Benchmark& benchmark, const Comparison& comparison) {
+  return wrong_rows(benchmark) == 0 && agree(comparison);
+}
+
 int bench(const BenchOptions& options, std::ostream& out) {
   if (options.list) {
     list_parts(out);
@@ -224,7 +228,7 @@ int bench(const BenchOptions& options, std::ostream& out) {
   // Also refuses a mesh that does not exist, before the first row.
   std::optional outputs(files.open(meshes, "--mesh"));
 
-  const StopSignal stop;
+  const StopSignal stop(keeps_what_is_finished);
   Benchmark benchmark;
   std::exception_ptr failure;  // of a mesh, after the rows of others
   try {
@@ -243,15 +247,24 @@ int bench(const BenchOptions& options, std::ostream& out) {
   if (auto* const json = outputs->stream("--json")) print_json(*json, record);
   if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);
   outputs->commit();
+  Comparison comparison;
   if (!failure && !stop.has_come()) {
-    record = record_of(benchmark, comparison_for(options, plan.subjects.front(), stop, out));
+    comparison = comparison_for(options, plan.subjects.front(), stop, out);
+    record = record_of(benchmark, comparison);
   }
   outputs.reset();
   outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
-  write_record(*outputs, record, files, std::cerr);
+  write_record(*outputs, record, files);
   print_headline(out, benchmark);
   out << "report: " << files.page->string() << '\n';
-  if (!failure && !stop.has_come()) return EXIT_SUCCESS;
+  const std::size_t wrong = wrong_rows(benchmark);
+  if (wrong > 0) {
+    std::cerr << "keepout: the answers of " << grouped(wrong) << " of "
+              << counted(benchmark.rows.size(), "row") << " are wrong: see what the rows say\n";
+  }
+  if (!failure && !stop.has_come()) {
+    return is_right(benchmark, comparison) ? EXIT_SUCCESS : EXIT_FAILURE;
+  }
   std::vector<std::string> kept{files.page->string()};
   for (const auto& path : {files.kept_json(), files.csv}) {
     if (path) kept.push_back(path->string());
@@ -264,8 +277,7 @@ int bench(const BenchOptions& options, std::ostream& out) {
 }
 
 PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
-                       std::ostream& out) {
-  const StopSignal stop;
+                       const StopSignal& stop, std::ostream& out) {
   Benchmark benchmark;
   run_benchmark({.command = options.command,
                  .subjects = {{.mesh = options.meshes.front().string()}},
@@ -291,7 +303,8 @@ PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<con
   return {.benchmark = rows == 0 ? Json() : json_of(benchmark),
           .comparison = json_of(comparison),
           .combinations = rows,
-          .complete = rows >= benchmark.planned && comparison.complete};
+          .complete = rows >= benchmark.planned && comparison.complete,
+          .is_wrong = !is_right(benchmark, comparison)};
 }
 
 }  // namespace keepout::app

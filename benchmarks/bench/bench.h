@@ -220,7 +220,16 @@ Ranking ranking_of(const Benchmark& benchmark);
 /// their motions are the same, and how many rows are not compared.
 Json step_groups_of(const Benchmark& benchmark);
 
-/// Returns a sentence with the times of the fastest and of the slowest row.
+/// Returns how many rows have wrong answers.
+std::size_t wrong_rows(const Benchmark& benchmark);
+
+struct Comparison;  // compare/compare.h
+
+/// Returns true if no row has wrong answers and no parts disagree; `bench` fails otherwise.
+bool is_right(const Benchmark& benchmark, const Comparison& comparison);
+
+/// Returns a sentence with the times of the fastest and of the slowest row, and another if answers
+/// are wrong.
 std::string headline(const Benchmark& benchmark);
 
 /// The record of it, as docs/records.md describes it.
@@ -260,10 +269,11 @@ void add_bench(CLI::App& app, BenchOptions& options);
 /// the parts' answers on the first mesh, and writes a report and files. Throws Error before any
 /// work when one could not be written, or there is no mesh of a name.
 ///
-/// Gives the exit status: 0, or exit_interrupted when a signal stopped it. The rows that were
-/// finished are then written all the same, marked as incomplete, and stderr tells what was kept and
-/// where; where there is none, nothing is written. The same goes for a mesh that turns out to
-/// be broken: its error is thrown after the rows of those before it are written.
+/// Gives the exit status: 0; failure if the answers of a row are wrong, or if the parts disagree;
+/// or exit_interrupted when a signal stopped it. The rows that were finished are then written all
+/// the same, marked as incomplete, and stderr tells what was kept and where; where there is none,
+/// nothing is written. The same goes for a mesh that turns out to be broken: its error is thrown
+/// after the rows of those before it are written.
 int bench(const BenchOptions& options, std::ostream& out);
 
 /// Measures the table of ratios that the engine is held to, prints it as it goes, and writes a
@@ -275,6 +285,6 @@ int bench_speed(const BenchOptions& options, std::ostream& out);
 /// Times all indices, rules and solvers on the mesh of a simulation, quickly, and compares their
 /// answers. A signal stops it, and it keeps what is finished.
 PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
-                       std::ostream& out);
+                       const StopSignal& stop, std::ostream& out);
 
 }  // namespace keepout::app

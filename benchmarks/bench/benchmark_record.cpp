@@ -101,7 +101,7 @@ BenchmarkRow new_row() {
     "planes_mean": 0.0, "unsolved_share": 0.0, "worse_share": 0.0,
     "collect_us": null, "query_us": null, "step_us": null, "step_query_us": null,
     "activate_us": null, "solve_us": null, "rate_khz": null,
-    "hash": "0000000000000000", "hashes_of_first": {}, "verified": false, "remark": ""})");
+    "hash": "0000000000000000", "hashes_of_first": {}, "verified": false, "wrong": false, "remark": ""})");
 }
 
 Ranking ranking_of(const Benchmark& benchmark) {
@@ -165,9 +165,18 @@ Json step_groups_of(const Benchmark& benchmark) {
           {"not_verified", not_verified}};
 }
 
+std::size_t wrong_rows(const Benchmark& benchmark) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      benchmark.rows, [](const BenchmarkRow& row) { return row["wrong"].get<bool>(); }));
+}
+
 std::string headline(const Benchmark& benchmark) {
   const auto [fastest, slowest] = ranking_of(benchmark);
-  if (fastest == nullptr) return "No combination was timed that can be ranked.";
+  const std::size_t wrong = wrong_rows(benchmark);
+  const std::string fault = wrong == 0 ? ""
+                                       : " The answers of " + grouped(wrong) + " of " +
+                                             counted(benchmark.rows.size(), "row") + " are wrong.";
+  if (fastest == nullptr) return "No combination was timed that can be ranked." + fault;
   const auto time = [](const BenchmarkRow* row) {
     return time_text(median(row)) + " with " + plain((*row)["index"]) + " and " +
            plain((*row)["solver"]);
@@ -177,7 +186,8 @@ std::string headline(const Benchmark& benchmark) {
          (fastest == slowest
               ? "."
               : ", " + time(slowest) + ": " + rounded(median(slowest) / median(fastest), 2) +
-                    " times as long.");
+                    " times as long.") +
+         fault;
 }
 
 void print_machine(std::ostream& out, const Machine& machine) {
@@ -194,7 +204,7 @@ void print_headline(std::ostream& out, const Benchmark& benchmark) {
   for (const auto& [name, remark] : benchmark.remarks) {
     out << '\n' << name << ": " << remark;
   }
-  out << '\n' << headline(benchmark) << '\n';
+  out << '\n' << for_terminal(headline(benchmark)) << '\n';
   if (benchmark.others_cores) {
     out << "cores that other processes kept busy: " << rounded(*benchmark.others_cores, 2) << " of "
         << benchmark.machine.cores << '\n';

@@ -212,6 +212,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
              Reference& reference, double seconds, const StopSignal& stop, BenchmarkRow& row) {
   if (!reference.is_found_by(constraint.index())) {
     row["remark"] = "not timed: the triangles are not those of brute force";
+    row["wrong"] = true;
     return;
   }
   Times times;
@@ -236,7 +237,8 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
     row["remark"] = "not timed: " + grouped(wrong) + " of " + counted(asked.size(), "step") +
                     " are not those of the reference";
   }
-  if (wrong + missed > 0) return;
+  row["wrong"] = wrong + missed > 0;
+  if (row["wrong"]) return;
   row["verified"] = true;
   row["collect_us"] = timing_of(times.collect);
   row["query_us"] = timing_of(times.query);

@@ -219,7 +219,7 @@ int compare(const CompareOptions& options, std::ostream& out) {
   OutputFiles outputs = options.files.open({options.mesh});
   const Subject subject{.mesh = options.mesh};
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
-  const StopSignal stop;
+  const StopSignal stop(keeps_what_is_finished);
   const Comparison comparison =
       compare_parts(label_of(subject), mesh, options.extent, [&stop] { return stop.has_come(); });
   print(out, comparison);
@@ -243,7 +243,7 @@ int compare(const CompareOptions& options, std::ostream& out) {
   record["asked_for"] = {
       {"poses", extent.poses}, {"problems", extent.problems}, {"pairs", extent.pairs}};
   record["comparison"] = json_of(comparison);
-  write_record(outputs, record, options.files, std::cerr);
+  write_record(outputs, record, options.files);
   if (!comparison.complete) return exit_interrupted;
   return agree(comparison) ? EXIT_SUCCESS : EXIT_FAILURE;
 }

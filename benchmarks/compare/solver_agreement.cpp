@@ -205,8 +205,13 @@ std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& 
                                              const Stopped& stopped) {
   std::vector<SolverAgreement> rows;
   for (const std::string& rule : comparison.rules) {
-    const std::vector<RecordedProblem> problems = problems_of(mesh, rule, comparison);
-    const std::vector<Expected> references = references_of(problems);
+    std::vector<RecordedProblem> problems;
+    std::vector<Expected> references;
+    {
+      const Progress progress("recording problems, " + rule, 1);
+      problems = problems_of(mesh, rule, comparison);
+      references = references_of(problems);
+    }
     for (const std::string& name : comparison.solvers) {
       const SolverBackend& backend = solver_backends().named(name);
       const auto solver = backend.make();

@@ -235,7 +235,7 @@ void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
 
 int plan(const PlanOptions& options, std::ostream& out) {
   OutputFiles outputs = options.files.open(options.meshes);
-  const StopSignal stop;  // after the files, which a second signal removes
+  const StopSignal stop(keeps_what_is_finished);  // after the files, which a second signal removes
   std::vector<std::filesystem::path> meshes = options.meshes;
   if (meshes.empty()) meshes = {"airway", "skull"};
   std::vector<std::unique_ptr<Planning>> plannings;
@@ -257,7 +257,7 @@ int plan(const PlanOptions& options, std::ostream& out) {
   const Json record = record_of(options, plannings, std::move(runs), is_complete);
   const Json& all = record["runs"];
   if (auto* const csv = outputs.stream("--csv")) print_csv(*csv, flat(all));
-  write_record(outputs, record, options.files, std::cerr);
+  write_record(outputs, record, options.files);
   print_wrapped(out, record["subject"]);
   out << '\n';
   print_summaries(out, all);

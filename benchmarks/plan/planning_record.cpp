@@ -59,6 +59,11 @@ Json valid(const Group& runs) {
       runs, [](const Json* run) { return run->at("solved") && is_valid(*run); }));
 }
 
+/// A duration in the unit that suits it; "-" for null.
+std::string duration_text(const Json& seconds) {
+  return seconds.is_null() ? "-" : in_ascii(time_text(1e6 * seconds.get<double>()));
+}
+
 bool is_of_an_instrument(const Json& run) { return run.contains("motions"); }
 
 Columns<Group> summary_columns(bool is_instrument) {
@@ -81,9 +86,9 @@ Columns<Group> summary_columns(bool is_instrument) {
          {"least_clearance_mm", figure("clearance_mm", least), "clearance mm", 12,
           figure_text<4>}});
   }
-  add({{"median_seconds", figure("seconds", median), "median s", 9, figure_text<3>},
-       {"median_checking_seconds", figure("checking_seconds", median), "checking s", 10,
-        figure_text<3>},
+  add({{"median_seconds", figure("seconds", median), "median", 9, duration_text},
+       {"median_checking_seconds", figure("checking_seconds", median), "checking", 10,
+        duration_text},
        {"median_checks", figure("checks", median), "checks", 8, count_text},
        {"median_length_mm", figure("length_mm", median), "length mm", 9, figure_text<3>}});
   return columns;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 
 #include "keepout/error.h"
@@ -87,7 +88,15 @@ OptionValue OptionText::parsed(const std::string& text) const {
   double number = 0.0;
   std::int64_t whole = 0;
   if (kind == OptionKind::number && read(text, number)) value = number;
-  if (kind == OptionKind::whole_number && read(text, whole)) value = whole;
+  if (kind == OptionKind::whole_number) {
+    constexpr double most = 9007199254740992.0;  // 2^53: above it, doubles leave numbers out
+    const bool has_exponent = text.find_first_of("eE") != std::string::npos;
+    if (read(text, whole)) value = whole;
+    if (has_exponent && read(text, number) && number == std::floor(number) &&
+        std::abs(number) <= most) {
+      value = static_cast<std::int64_t>(number);  // 1e3
+    }
+  }
   if (kind == OptionKind::flag && (text == "true" || text == "false")) value = text == "true";
   return accepted(std::move(value));
 }

@@ -25,6 +25,9 @@ class Guard:
         return answer
 
 
+if len(sys.argv) != 3:
+    print(__doc__, file=sys.stderr)
+    sys.exit(2)
 guard = Guard(sys.argv[1], sys.argv[2], "--margin", "0.5")
 box = guard.ask(do="info")["mesh"]
 goal = [(low + high) / 2 for low, high in zip(box["low"], box["high"])]

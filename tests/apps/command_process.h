@@ -35,7 +35,7 @@ class CommandFolder : public TemporaryFolder {
 
   /// `environment`: assignments that precede the command.
   ProcessOutcome run(const std::string& arguments, const std::string& environment = {}) const {
-    const std::string line = "cd '" + path().string() + "' && " + environment +
+    const std::string line = "cd '" + path().string() + "' && LC_ALL=C.UTF-8 " + environment +
                              " '" KEEPOUT_COMMAND "' " + arguments + " 2>&1";
     FILE* pipe = ::popen(line.c_str(), "r");
     ProcessOutcome outcome{-1, {}};

@@ -256,7 +256,7 @@ TEST_F(Command, ASignalLeavesNoPartialFile) {
           "for i in $(seq 1000); do ls p.csv.partial-* >/dev/null 2>&1 && break; sleep 0.01; done; "
           "ls; kill -TERM $!; wait $!; echo \"ended with $?\"");
   EXPECT_CONTAINS(outcome.output, "p.csv.partial-");
-  EXPECT_CONTAINS(outcome.output, "ended with 143");
+  EXPECT_CONTAINS(outcome.output, "ended with 130");
   for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
     EXPECT_LACKS(entry.path().string(), "partial") << entry.path();
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -14,10 +15,14 @@ class Register : public testing::Test {
   std::string text(RegisterOptions options) {
     options.fiducials = file;
     std::ostringstream out;
-    register_fiducials(options, out);
+    testing::internal::CaptureStderr();
+    status = register_fiducials(options, out);
+    doubt = testing::internal::GetCapturedStderr();
     return out.str();
   }
 
+  int status = -1;
+  std::string doubt;  // that the last registration printed on stderr
   TemporaryFolder folder;
   // A quarter of a turn about z, and (10, 20, 30); the last is off by 0.4 mm along x.
   std::filesystem::path file = folder.write("pairs.csv",
@@ -50,11 +55,19 @@ TEST_F(Register, TellsMatrixWorstPairErrorAndMarginAndWritesThem) {
   EXPECT_GT(json["targets"][0]["margin"], json["targets"][0]["tre"]);
 }
 
-TEST_F(Register, DoubtsAWrongUnitAndAsksForTargets) {
+TEST_F(Register, DoubtsAWrongUnitOnStderrAndFailsUnlessItIsTrustedAnyway) {
   const std::string printed = text({.unit = LengthUnit::metre});
-  EXPECT_CONTAINS(printed, "Do not trust it: the model's points are spread 0.001 times");
+  EXPECT_TRUE(
+      doubt.starts_with("keepout: do not trust it: the model's points are spread 0.001 times"))
+      << doubt;
+  EXPECT_EQ(status, EXIT_FAILURE);
   EXPECT_CONTAINS(printed, "--target X Y Z");
-  EXPECT_LACKS(text({}), "Do not trust");
+  EXPECT_EQ(text({.unit = LengthUnit::metre, .trusted_anyway = true}), printed);
+  EXPECT_CONTAINS(doubt, "do not trust it");
+  EXPECT_EQ(status, EXIT_SUCCESS);
+  text({});
+  EXPECT_EQ(doubt, "");
+  EXPECT_EQ(status, EXIT_SUCCESS);
 }
 
 TEST_F(Register, NamesTheFileOfPointsThatFixNoRotation) {

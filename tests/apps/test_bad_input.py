@@ -110,7 +110,12 @@ values = [
     (f"{to_s} --deepest -1", f"--deepest: {zero_or_length}'-1'"),
     (f"{to_s} --damping -1", "--damping: expected a number from 0 to 1e30, not '-1'"),
     (f"{to_s} --refine some", "--refine: expected a whole number from 0 to 1000, not 'some'"),
-    (f"{to_s} --refine 1e2", "--refine: expected a whole number from 0 to 1000, not '1e2'"),
+    (f"{to_s} --refine 1e4", "--refine: expected a whole number from 0 to 1000, not '1e4'"),
+    (f"{to_s} --refine 1.5e0", "--refine: expected a whole number from 0 to 1000, not '1.5e0'"),
+    *((line, f"{option}: expected a value, not ''") for line, option in (
+        ("inspect ''", "MESH"), ("simulate cube --out ''", "--out"), ("replay cube --poses '' --out s", "--poses"),
+        ("bench --csv ''", "--csv"), ("serve cube --socket ''", "--socket"))),
+    ("simulate cube --strokes 1.5e0", "--strokes: expected a whole number from 1 to 100000, not '1.5e0'"),
     (f"{to_s} --branches 99999999", "--branches: expected a whole number from 0 to 65536, not '99999999'"),
     (f"{to_s} --closed-loop --max-step nan", f"--max-step: {above_0}'nan'"),
     (f"{to_s} --tool ball:1", "--tool: the tool 'ball': there is no such form; write sphere:R or"),

@@ -24,9 +24,44 @@ TEST(Usage, TheExitStatusSaysWhatKindOfEndItWas) {
   EXPECT_EQ(folder.run("inspect no_such_mesh").status, 1);
   EXPECT_EQ(folder.run("inspect").status, 2);  // 130: verify_command_test.cpp
   for (const char* status : {"0 if all went well", "1 if something failed",
-                             "2 if the command line is wrong", "130 if it was interrupted"}) {
+                             "2 if the command line is wrong", "130 if it was interrupted",
+                             "bench, compare, plan, replay, simulate\nand verify then keep"}) {
     EXPECT_CONTAINS(folder.run("--help").output, status) << status;
   }
+}
+
+TEST(Usage, HelpIsACommandAsWell) {
+  const test::CommandFolder folder;
+  EXPECT_EQ(succeeded(folder.run("help")).output, folder.run("--help").output);
+  EXPECT_EQ(succeeded(folder.run("help verify")).output, folder.run("verify --help").output);
+  EXPECT_EQ(succeeded(folder.run("help bench")).output, folder.run("bench --help").output);
+  EXPECT_EQ(succeeded(folder.run("-V")).output, folder.run("--version").output);
+  for (const char* mistyped : {"help verfy", "verfy --help", "verfy -V"}) {
+    const Outcome outcome = folder.run(mistyped);
+    EXPECT_EQ(outcome.status, 2) << mistyped;
+    EXPECT_EQ(outcome.output,
+              "keepout: there is no command 'verfy'; did you mean 'verify'?\nSee 'keepout --help'.\n");
+  }
+}
+
+TEST(Usage, CountsMayHaveAnExponent) {
+  const test::CommandFolder folder;
+  for (const char* arguments :
+       {"simulate cube --strokes 1e0 --cycles 2e1 --activation certified --branches 1e1 --seed 1E3",
+        "verify cube --steps 1.5e3"}) {
+    test::succeeded(folder.run(arguments));
+  }
+}
+
+TEST(Usage, RunSuggestsItsOwnCommands) {
+  const test::CommandFolder folder;
+  const std::string as_run = R"(bash -c 'exec -a ./run "$0" "$@"' )";
+  for (const char* arguments : {"expirements", "expirements --help", "help expirements"}) {
+    const Outcome outcome = folder.run(arguments, as_run);
+    EXPECT_EQ(outcome.status, 2) << outcome.output;
+    EXPECT_CONTAINS(outcome.output, "did you mean 'experiments'?\nSee './run --help'.");
+  }
+  EXPECT_LACKS(folder.run("expirements").output, "experiments'");
 }
 
 TEST(Usage, HelpCallsTheCommandWhatTheUserHasCalledIt) {

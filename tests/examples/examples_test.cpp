@@ -2,6 +2,7 @@
 // The examples do what they say: on a sphere, whose top they come down upon.
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "keepout/fixtures/shapes.h"
@@ -132,6 +133,20 @@ TEST(Example08, TheProxyKeepsTheMarginTheForceSaturatesAndTheEnergiesAddUp) {
   EXPECT_NEAR(to_hand + stored + dissipated, from_proxy, 1e-9);
   EXPECT_LT(to_hand, 0.0);
   EXPECT_GE(active, 0.0);
+}
+
+TEST(Example08, PushesIntoAMeshThatIsHollowBelowItsMiddle) {
+  const TemporaryFolder folder;
+  const auto mesh = folder.path() / "bowl.stl";
+  Surface bowl = make_sphere(3.0);
+  std::erase_if(bowl.triangles, [&](const Corners& corners) {
+    return std::ranges::any_of(corners, [&](VertexId v) { return bowl.vertices[v].z() > 10.0; });
+  });
+  write_binary_stl(mesh, bowl);
+  int held = 0;
+  const std::string text = said("08_crtk_loop", "'" + mesh.string() + "'", 0);
+  ASSERT_EQ(std::sscanf(text.c_str(), "held back in %d of", &held), 1) << text;
+  EXPECT_GT(held, 100);
 }
 
 TEST(Example02, TheJointsKeepTheTipOut) {

@@ -79,6 +79,13 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:
     assert "file" in done.stderr and "Traceback" not in done.stderr
 
 
+def test_an_empty_folder_name_is_refused() -> None:
+    done = subprocess.run([sys.executable, "-m", "experiments", "--out", ""], capture_output=True, text=True, cwd=ROOT,
+                          check=False)
+    assert done.returncode == 2
+    assert "argument --out: expected the name of a folder, not ''" in done.stderr
+
+
 def test_the_page_has_the_values_that_are_simulated() -> None:
     """Each row of the table of values in docs/experiments.md: names, and their values in their order."""
     page = (ROOT / "docs" / "experiments.md").read_text()

@@ -2,6 +2,7 @@
 """What is done is kept and used again, tables are the same bytes, and times stand apart."""
 import shutil
 import sys
+import time
 import types
 from pathlib import Path
 
@@ -77,6 +78,24 @@ def test_rows_depend_on_their_own_experiment_and_not_on_how_they_are_shown(
     before = runner.source_digest("e1_validation")
     (copy / "rules" / "vector_field_inequality.py").write_text("# another rule\n")
     assert runner.source_digest("e1_validation") != before
+
+
+@pytest.mark.parametrize("quiet", [False, True])
+def test_without_a_terminal_lines_come_while_a_unit_runs_unless_it_is_quiet(
+    counted: types.ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str],
+    quiet: bool,
+) -> None:
+    def run_slowly(unit: Unit) -> list[dict]:
+        time.sleep(0.5)
+        return [{"number": 1}]
+
+    counted.run = run_slowly
+    monkeypatch.setattr(runner.Progress, "INTERVAL", 0.1)
+    monkeypatch.setenv("KEEPOUT_QUIET", "1" if quiet else "")
+    runner.run_units([counted], units(1), tmp_path, 1)
+    lines = capfd.readouterr().err.splitlines()
+    assert not lines if quiet else lines.count("0 of 1 units: nothing is finished yet") >= 2
+    assert quiet or lines[-1] == "1 of 1 units: counted unit-0"
 
 
 def test_a_torn_file_is_done_again(counted: types.ModuleType, tmp_path: Path) -> None:

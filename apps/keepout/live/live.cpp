@@ -232,8 +232,13 @@ void live(const LiveOptions& options, std::ostream& out) {
   }
   OutputFiles outputs(inputs, {{"--out", options.page}});
   std::vector<Anatomy> anatomy;
-  for (const std::filesystem::path& mesh : options.meshes) {
-    anatomy.push_back(anatomy_of(mesh, options));
+  {
+    Progress progress("live", options.meshes.size());
+    for (const std::filesystem::path& mesh : options.meshes) {
+      progress.show(mesh.filename().string());
+      anatomy.push_back(anatomy_of(mesh, options));
+      progress.advance();
+    }
   }
   std::ostream& page = *outputs.stream("--out");
   page << parts.before;

@@ -110,6 +110,9 @@ void print_plain_page(std::ostream& out, const Json& record) {
       << "</title>\n<style>" << style << "</style>\n</head>\n<body>\n<p>"
       << escaped(record.at("subject").get<std::string>()) << "</p>\n<h1>" << headline << "</h1>\n";
   for (const Json& text : record.at("account")) print_paragraph(out, text);
+  if (!record.at("complete").get<bool>()) {
+    out << "<p><strong>It was stopped: this is what was finished.</strong></p>\n";
+  }
   out << "<p>Made again by: <code>" << escaped(record.at("command").get<std::string>())
       << "</code></p>\n";
   if (record.contains("experiments")) print_experiments(out, record["experiments"]);

@@ -13,6 +13,8 @@
 #include "record/json_parts.h"
 #include "record/plain_page.h"
 #include "record/report_page.h"
+#include "shared/number_text.h"
+#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {
@@ -104,8 +106,8 @@ std::optional<std::filesystem::path> RecordFiles::kept_json() const {
   return page->string() + ".json";
 }
 
-void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files,
-                  std::ostream& notes) {
+void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files) {
+  Progress progress("writing", 1);
   if (std::ostream* const json = outputs.stream("--json")) print_json(*json, record);
   if (std::ostream* const page = outputs.stream("--out")) {
     const std::string missing = missing_template(record);
@@ -113,11 +115,12 @@ void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& f
       print_report(*page, record);
     } else {
       print_plain_page(*page, record);
-      notes << "keepout: " << files.page->string()
-            << " is a plain page of tables, without pictures and plots: " << missing << ".\n";
+      progress.interrupt();
+      notices() << "keepout: " << files.page->string()
+                << " is a plain page of tables, without pictures and plots: " << missing << ".\n";
       if (const auto kept = files.kept_json()) {
-        notes << "Once that is there, the command 'report " << kept->string()
-              << "' makes the whole page.\n";
+        notices() << "Once that is there, the command 'report " << kept->string()
+                  << "' makes the whole page.\n";
       }
     }
   }
@@ -135,7 +138,7 @@ void print_wrapped(std::ostream& out, const Json& text) {
     for (const Json& one : text) print_wrapped(out, one);
     return;
   }
-  std::istringstream words(text.get<std::string>());
+  std::istringstream words(for_terminal(text.get<std::string>()));
   std::size_t width = 0;
   for (std::string word; words >> word;) {
     const std::size_t more = characters_in(word);

@@ -66,9 +66,8 @@ struct RecordFiles {
 
 /// Writes a record to the stream "--json" and its report to "--out", as far as these are among the
 /// outputs, and commits them. Without the front end of pages (see page_template.h) the report is a
-/// plain page of tables, which `notes` is told.
-void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files,
-                  std::ostream& notes);
+/// plain page of tables, and a notice says so.
+void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files);
 
 /// The record itself, in lines that can be read and compared.
 void print_json(std::ostream& out, const Json& record);

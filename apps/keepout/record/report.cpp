@@ -10,7 +10,9 @@
 #include "record/plain_page.h"
 #include "record/record.h"
 #include "record/report_page.h"
+#include "shared/number_text.h"
 #include "shared/output_file.h"
+#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {
@@ -52,7 +54,9 @@ void add_report(CLI::App& app, ReportOptions& options) {
 }
 
 void report(const ReportOptions& options, std::ostream& out) {
+  Progress progress("report", 2);
   const Json record = read_record(options.record);
+  progress.advance();
   const std::filesystem::path page = options.page.value_or(page_of(options.record));
   OutputFiles outputs(std::array{NamedPath{"FILE", options.record}}, {{"--out", page}});
   // What another command has kept has a plain page already; of experiments there is none yet.
@@ -65,7 +69,9 @@ void report(const ReportOptions& options, std::ostream& out) {
     out << "a plain page of tables and pictures: " << missing << '\n';
   }
   outputs.commit();
-  out << record.at("headline").get<std::string>() << "\nreport: " << page.string() << '\n';
+  progress.interrupt();
+  out << for_terminal(record.at("headline").get<std::string>()) << "\nreport: " << page.string()
+      << '\n';
 }
 
 }  // namespace keepout::app

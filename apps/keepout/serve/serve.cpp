@@ -261,9 +261,11 @@ int serve(const ServeOptions& options, std::ostream& log) {
   stopped.async_wait(Descriptor::wait_read, [&](std::error_code) { io.stop(); });
   std::optional<UnixSocket> socket;
   if (options.socket) socket.emplace(io, *options.socket);
-  log << "keepout: serving " << options.service.mesh.string() << " ("
-      << counted(loaded.mesh->triangle_count(), "triangle") << ") on "
-      << (socket ? options.socket->string() : "stdin and stdout") << std::endl;
+  std::ostream nowhere(nullptr);
+  (is_quiet() ? nowhere : log) << "keepout: serving " << options.service.mesh.string() << " ("
+                               << counted(loaded.mesh->triangle_count(), "triangle") << ") on "
+                               << (socket ? options.socket->string() : "stdin and stdout")
+                               << std::endl;
   if (!socket) {
     const std::string trouble = serve_stdio(service, io);
     if (!trouble.empty()) log << "keepout: " << trouble << '\n';

@@ -39,6 +39,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
     names.push_back(command->get_name());
   }
+  if (app.get_name() == "./run") names.emplace_back(run_command);
   return names;
 }
 
@@ -52,7 +53,10 @@ std::vector<std::string> option_names(const CLI::App& command) {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
 
-std::string unknown_command(const CLI::App& app, const std::string& word) {
+std::string no_such_command(const CLI::App& app, const std::string& word) {
+  if (word == run_command && app.get_name() == "./run") {
+    return "'" + word + "' must be the first word: './run " + word + " ...'";
+  }
   const std::vector<std::string> commands = command_names(app);
   const std::string hint = did_you_mean(word, commands);
   return "there is no command '" + word + "'" +
@@ -76,7 +80,7 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
   const std::vector<std::string> extra = app.remaining(true);
   const auto option = std::find_if(extra.begin(), extra.end(), is_option);
   if (option != extra.end()) return unknown_option(app, command, *option);
-  if (&command == &app && !extra.empty()) return unknown_command(app, extra.front());
+  if (&command == &app && !extra.empty()) return no_such_command(app, extra.front());
   if (&command == &app && kind == "RequiredError") {
     return "a command is missing; there are " + enumerated(command_names(app));
   }
@@ -149,7 +153,16 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
     std::uint64_t value = 0;
     const char* const last = text.data() + text.size();
     const auto [end, error] = std::from_chars(text.data(), last, value);
-    if (error != std::errc{} || end != last || value < low || value > high) {
+    bool is_whole = error == std::errc{} && end == last;
+    if (!is_whole) {                               // 1e6
+      constexpr double most = 9007199254740992.0;  // 2^53: above it, doubles leave numbers out
+      double number = 0.0;
+      const auto [stop, fault] = std::from_chars(text.data(), last, number);
+      is_whole = fault == std::errc{} && stop == last && number >= 0.0 && number <= most &&
+                 number == std::floor(number) && text.find_first_of("eE") != std::string::npos;
+      if (is_whole) value = static_cast<std::uint64_t>(number);
+    }
+    if (!is_whole || value < low || value > high) {
       return "expected a whole number from " + std::to_string(low) + " to " + std::to_string(high) +
              ", not '" + text + "'";
     }
@@ -159,17 +172,9 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
   return {check, ""};
 }
 
-CLI::Validator large_count() {
-  const auto check = [](std::string& text) -> std::string {
-    double value = 0.0;
-    const char* const last = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), last, value);
-    if (error != std::errc{} || end != last || !(value >= 1.0 && value <= 1e12) ||
-        value != std::floor(value)) {
-      return "expected a whole number from 1 to 1e12, not '" + text + "'";
-    }
-    text = std::to_string(static_cast<std::uint64_t>(value));
-    return {};
+CLI::Validator not_empty() {
+  const auto check = [](const std::string& text) -> std::string {
+    return text.empty() ? "expected a value, not ''" : "";
   };
   return {check, ""};
 }
@@ -276,6 +281,10 @@ void add_guides(CLI::App& command, std::vector<Guide>& guides) {
               std::string(region_forms))
       ->type_name("GUIDE")
       ->expected(1, static_cast<int>(Guide::most));
+}
+
+std::string unknown_command(const CLI::App& app, const std::string& word) {
+  return no_such_command(app, word) + "\nSee '" + app.get_name() + " --help'.";
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {

@@ -82,12 +82,19 @@ CLI::Validator number_within(double low, double high, std::string expected, std:
 /// of a double's range.
 CLI::Validator length(Zero zero);
 
-/// A whole number in decimal digits. For transform(), which hands on what was read: CLI11 alone
-/// would take '-1' for 2^64 - 1, too many digits for the largest number, and '010' for 8.
+/// A whole number in decimal digits, or with an exponent, such as 20000, 2e4 or 1.5e3. For
+/// transform(), which hands on its digits: CLI11 alone would take '-1' for 2^64 - 1, too many
+/// digits for the largest number, and '010' for 8.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 
-/// A count such as 20000 or 1e8. For transform(), which hands on its digits.
-CLI::Validator large_count();
+/// The most that a count of steps may be.
+inline constexpr std::uint64_t most_steps = 1'000'000'000'000;
+
+/// Any text but an empty one.
+CLI::Validator not_empty();
+
+/// A command of ./run that is no command of this program.
+inline constexpr const char* run_command = "experiments";
 
 // Options of one kind; the value as it is stands in the help.
 
@@ -161,6 +168,9 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
 
 /// Of a command that guards one tip: regions that it is to stay in. Precondition: its
 void add_guides(CLI::App& command, std::vector<Guide>& guides);
+
+/// Says that there is no command of that name, with a hint at what was meant and at the help.
+std::string unknown_command(const CLI::App& app, const std::string& word);
 
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <utility>
 
 namespace keepout::app {
 
@@ -44,15 +46,37 @@ std::string trimmed(double value, int digits) {
 
 std::string length_text(double mm) {
   const double size = std::abs(mm);
-  if (size == 0.0) return "0\u00a0mm";
-  if (size >= 0.01) return rounded(mm) + "\u00a0mm";
-  if (size >= 1e-5) return rounded(1e3 * mm) + "\u00a0µm";
-  if (size >= 1e-6) return rounded(1e6 * mm) + "\u00a0nm";
-  return "under 1\u00a0nm";
+  if (size == 0.0) return "0 mm";
+  if (size >= 0.01) return rounded(mm) + " mm";
+  if (size >= 1e-5) return rounded(1e3 * mm) + " µm";
+  if (size >= 1e-6) return rounded(1e6 * mm) + " nm";
+  return "under 1 nm";
 }
 
 std::string time_text(double us) {
-  return us >= 1e4 ? rounded(1e-3 * us) + "\u00a0ms" : rounded(us) + "\u00a0µs";
+  if (us >= 1e7) return rounded(1e-6 * us) + " s";
+  return us >= 1e4 ? rounded(1e-3 * us) + " ms" : rounded(us) + " µs";
+}
+
+std::string in_ascii(std::string text) {
+  constexpr std::string_view micro = "µ";
+  for (std::size_t at = 0; (at = text.find(micro, at)) != std::string::npos;) {
+    text.replace(at, micro.size(), "u");
+  }
+  return text;
+}
+
+std::string for_terminal(std::string text) {
+  for (const char* variable : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    const char* const value = std::getenv(variable);
+    if (value == nullptr || *value == '\0') continue;
+    std::string locale = value;
+    std::ranges::transform(locale, locale.begin(), [](char c) { return c | ' '; });  // lower case
+    const bool is_utf8 =
+        locale.find("utf-8") != std::string::npos || locale.find("utf8") != std::string::npos;
+    return is_utf8 ? text : in_ascii(std::move(text));
+  }
+  return in_ascii(std::move(text));
 }
 
 }  // namespace keepout::app

@@ -32,10 +32,16 @@ std::string rounded(double value, int digits = 3);
 /// The same without zeros at the end: 12, 0.5.
 std::string trimmed(double value, int digits = 6);
 
-/// A length in the unit that suits it, mm, um or nm, joined by a space that does not break.
+/// A length in the unit that suits it: mm, µm or nm.
 std::string length_text(double mm);
 
-/// A time in the unit that suits it, µs or ms, joined in the same way.
+/// A time in the unit that suits it: µs, ms or s.
 std::string time_text(double us);
+
+/// The text with "u" for the "µ" of our units: in ASCII, for tables whose columns count bytes.
+std::string in_ascii(std::string text);
+
+/// The text as a terminal can show it: in_ascii(), unless LC_ALL, LC_CTYPE or LANG names UTF-8.
+std::string for_terminal(std::string text);
 
 }  // namespace keepout::app

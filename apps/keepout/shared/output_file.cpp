@@ -26,11 +26,8 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 // A command has three at most. One that found no room would merely outlive a signal.
 std::array<PartialFile, 8> partial_files;
 
-/// Calls nothing but what POSIX calls async-signal-safe.
 void remove_partial_files_and_end(int signal) {
-  for (const PartialFile& file : partial_files) {
-    if (file.exists) ::unlink(file.path.data());
-  }
+  remove_partial_files();
   ::signal(signal, SIG_DFL);
   ::raise(signal);  // delivered when this returns
 }
@@ -83,6 +80,12 @@ void refuse_if_same(const NamedPath& output, const NamedPath& other) {
 }
 
 }  // namespace
+
+void remove_partial_files() noexcept {
+  for (const PartialFile& file : partial_files) {
+    if (file.exists) ::unlink(file.path.data());
+  }
+}
 
 RemovedBySignals::RemovedBySignals(std::filesystem::path path) : path_(std::move(path)) {
   handle_signals();

@@ -14,6 +14,9 @@
 
 namespace keepout::app {
 
+/// Removes all partial files. For signal handlers: calls only what POSIX names async-signal-safe.
+void remove_partial_files() noexcept;
+
 /// The name of a partial file, which SIGHUP, SIGINT, SIGPIPE and SIGTERM remove when they end the
 /// process. Not thread-safe.
 class RemovedBySignals {

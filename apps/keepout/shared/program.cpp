@@ -6,16 +6,20 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <filesystem>
 #include <new>
 
 #include "keepout/error.h"
+#include "keepout/fixtures/real_mesh.h"
 #include "keepout/simd_target.h"
 #include "keepout/version.h"
 #include "shared/command_line.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
+#include "shared/progress.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {
@@ -23,16 +27,14 @@ namespace {
 // The exit status after a wrong command line. `keepout --help` names it.
 constexpr int exit_usage = 2;
 
-/// A command of ./run that is no command of this program.
-constexpr const char* also_run =
+constexpr const char* run_help =
     "\nThe experiments of the paper, done again: ./run experiments, and with --full all of them.\n";
 
 constexpr const char* exit_statuses =
     "Exit status: 0 if all went well; 1 if something failed, or what was to be checked does not "
     "hold;\n"
-    "2 if the command line is wrong; 130 if it was interrupted: bench, compare, plan and verify "
-    "then "
-    "keep\nwhat was finished.\n";
+    "2 if the command line is wrong; 130 if it was interrupted: bench, compare, plan, replay, "
+    "simulate\nand verify then keep what was finished.\n";
 
 /// Makes writing beyond a limit on the size of files fail, instead of ending the process. Opens
 /// stdin, stdout and stderr where they are closed, so that reading and writing fail there:
@@ -45,10 +47,25 @@ void prepare_process() {
   }
 }
 
-/// Throws Error if what was printed could not be written: a full disk shall not look like success.
-void flush_stdout() {
+/// True once a write to a pipe failed because nobody reads it any more.
+volatile std::sig_atomic_t reader_is_gone = 0;
+
+/// Lets a command finish its files if the reader of its output ends early, as `head` does.
+void outlive_readers() {
+  struct sigaction action = {};
+  if (::sigaction(SIGPIPE, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) return;
+  action.sa_handler = [](int) { reader_is_gone = 1; };
+  action.sa_flags = SA_RESTART;
+  ::sigaction(SIGPIPE, &action, nullptr);
+}
+
+/// Returns the exit status, or failure if the output has lost its reader. Throws Error if what was
+/// printed could not be written: a full disk must not look like success.
+int flushed(int status) {
   std::cout.flush();
-  if (!std::cout) throw Error("stdout: could not be written to the end; is the disk full?");
+  if (std::cout) return status;
+  if (reader_is_gone != 0) return status == EXIT_SUCCESS ? EXIT_FAILURE : status;
+  throw Error("stdout: could not be written to the end; is the disk full?");
 }
 
 /// Returns the name by which the user calls the program: ./run puts its own in the place of ours.
@@ -56,13 +73,16 @@ std::string called_as(const char* path) {
   return std::filesystem::path(path).filename() == "run" ? "./run" : "keepout";
 }
 
-int run(const std::vector<Command>& commands, int argc, char** argv) {
-  CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
-               called_as(argv[0]));
+std::vector<CLI::App*> subcommands(CLI::App& app) {
+  return app.get_subcommands([](CLI::App*) { return true; });
+}
+
+/// Adds the options of the program, all commands, and the options that every command has.
+void set_up(CLI::App& app, const std::vector<Command>& commands) {
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
   const bool is_run = app.get_name() == "./run";
-  app.footer(mesh_names_help() + (is_run ? also_run : "") + '\n' + exit_statuses);
-  app.set_version_flag("--version", KEEPOUT_VERSION);
+  app.footer(mesh_names_help() + (is_run ? run_help : "") + '\n' + exit_statuses);
+  app.set_version_flag("-V,--version", KEEPOUT_VERSION);
   app.set_help_all_flag("--help-all", "Help on every command");
   app.require_subcommand(1);
   const std::vector<std::string_view> targets = simd_targets();
@@ -73,17 +93,63 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
       ->default_str(std::string(simd_target()))
       ->type_name("TARGET");
   for (const Command& command : commands) command.add(app);
-  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+  const auto add_quiet = [](CLI::App& to) {
+    to.add_flag_callback("-q,--quiet", be_quiet,
+                         "Print no progress and no notices: only results, warnings and errors");
+  };
+  add_quiet(app);
+  for (CLI::App* command : subcommands(app)) {
     command->group("Commands");
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_items_expected_max() > 0) option->check(not_empty());
+    }
+    add_quiet(*command);
   }
+  app.add_subcommand("help", "Print this help, or that of a command")
+      ->group("Commands")
+      ->add_option("COMMAND", "The command")
+      ->type_name("");
+}
+
+/// Runs `help`. Returns the exit status.
+int help(CLI::App& app) {
+  const CLI::Option& named = *app.get_subcommand("help")->get_option("COMMAND");
+  const std::string name = named.empty() ? "" : named.as<std::string>();
+  CLI::App* command = &app;
+  if (!name.empty()) {
+    const std::vector<CLI::App*> all = subcommands(app);
+    const auto found = std::ranges::find(all, name, [](CLI::App* one) { return one->get_name(); });
+    if (found == all.end()) {
+      std::cerr << "keepout: " << unknown_command(app, name) << '\n';
+      return exit_usage;
+    }
+    command = *found;
+  }
+  const std::string prefix = command == &app ? "" : app.get_name() + " ";
+  std::cout << app.get_formatter()->make_help(command, prefix + command->get_name(),
+                                              CLI::AppFormatMode::Normal);
+  return EXIT_SUCCESS;
+}
+
+int run(const std::vector<Command>& commands, int argc, char** argv) {
+  CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
+               called_as(argv[0]));
+  set_up(app, commands);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& call_for_help) {
+    // CLI11 prints the help of the program although the command is mistyped.
+    const std::vector<std::string> extra = app.remaining();
+    if (app.get_subcommands().empty() && !extra.empty() && !extra.front().starts_with('-')) {
+      std::cerr << "keepout: " << unknown_command(app, extra.front()) << '\n';
+      return exit_usage;
+    }
     return app.exit(call_for_help);
   } catch (const CLI::ParseError& error) {
     std::cerr << "keepout: " << usage_error(app, error) << '\n';
     return exit_usage;
   }
+  if (app.got_subcommand("help")) return help(app);
   Call call{app.get_name(), "keepout"};
   for (int i = 1; i < argc; ++i) call.command += " " + shell_word(argv[i]);
   const auto chosen = std::ranges::find_if(commands, [&](const Command& command) {
@@ -96,10 +162,11 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
 
 int run_program(const std::vector<Command>& commands, int argc, char** argv) {
   prepare_process();
+  outlive_readers();
   try {
-    const int status = run(commands, argc, argv);
-    flush_stdout();
-    return status;
+    return flushed(run(commands, argc, argv));
+  } catch (const PreparationInterrupted&) {
+    return exit_interrupted;  // fixture_path() has said so
   } catch (const Error& error) {
     std::cerr << "keepout: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {

@@ -13,6 +13,8 @@
 #include <string>
 
 #include "keepout/error.h"
+#include "shared/output_file.h"
+#include "shared/progress.h"
 
 namespace keepout::app {
 namespace {
@@ -22,11 +24,23 @@ constexpr std::array stopping{SIGHUP, SIGINT, SIGTERM};
 // Signals come to the process, on whatever thread: those of an index's library among them.
 std::atomic<int> event_file{-1};
 std::atomic<bool> noted{false};
+std::atomic<bool> ends_process{false};
+std::string_view said_at_once;
+
+/// Writes to stderr from a signal handler.
+void say(std::string_view text) {
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+}
 std::array<struct sigaction, stopping.size()> earlier_actions;
 
 void note(int signal) {
   const int error = errno;
-  noted = true;
+  if (ends_process) {
+    say("keepout: stopped before anything was finished: nothing was written\n");
+    remove_partial_files();
+    ::_exit(exit_interrupted);
+  }
+  if (!noted.exchange(true)) say(said_at_once);
   // A second one is not waited for: it does what it did before.
   for (std::size_t i = 0; i < stopping.size(); ++i) {
     if (stopping[i] == signal) ::sigaction(signal, &earlier_actions[i], nullptr);
@@ -39,8 +53,10 @@ void note(int signal) {
 
 }  // namespace
 
-StopSignal::StopSignal() {
+StopSignal::StopSignal(std::string_view said, BeforeWork before) {
   noted = false;
+  ends_process = before == BeforeWork::ends_process;
+  said_at_once = is_quiet() ? std::string_view() : said;
   event_file = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (event_file < 0) throw Error(std::string("no event file: ") + std::strerror(errno));
   struct sigaction action = {};
@@ -61,6 +77,8 @@ StopSignal::~StopSignal() {
   }
   ::close(event_file.exchange(-1));
 }
+
+void StopSignal::keep_from_now_on() const noexcept { ends_process = false; }
 
 int StopSignal::file() const noexcept { return event_file.load(); }
 

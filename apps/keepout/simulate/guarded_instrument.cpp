@@ -11,6 +11,8 @@
 #include "record/drawn_mesh.h"
 #include "record/json_parts.h"
 #include "shared/clip.h"
+#include "shared/names.h"
+#include "shared/number_text.h"
 #include "simulate/simulated_tool.h"
 #include "verify/campaign.h"
 
@@ -100,7 +102,7 @@ class GuardedInstrument final : public SimulatedTool {
 
   /// The step of all modes is the same, and differs in its meshes: it has none where only the tip
   /// is guarded, or nothing is. Then it is damped least squares within the limits of the joints.
-  double start(const Stroke& stroke, std::size_t guard) override {
+  StrokeStart start(const Stroke& stroke, std::size_t guard) override {
     const auto mode = static_cast<Mode>(guard);
     const Scene& scene = on_->scene;
     const Instrument instrument = on_->robot.make(stroke.start.base);
@@ -121,7 +123,8 @@ class GuardedInstrument final : public SimulatedTool {
     q_ = stroke.start.positions;
     judge_.emplace(oracle::JudgedScene{on_->robot.judged(), stroke.start.base, {{scene.tree()}}},
                    joints_->instrument().chain(), random_, q_, step, joints_->tolerance());
-    return margin_ - step.band - 3.0 * joints_->tolerance();
+    // All starts are drawn farther away than the margin.
+    return {.required = margin_ - step.band - 3.0 * joints_->tolerance()};
   }
 
   Cycle follow(const Pose& goal) override {
@@ -170,11 +173,17 @@ class GuardedInstrument final : public SimulatedTool {
 
   SimulationResult result(const std::vector<RunTally>& runs) override {
     std::size_t cycles = 0, broken = 0;  // certified
+    std::vector<std::string> still;      // runs in which the instrument did not move
     for (const RunTally& run : runs) {
+      if (run.stood_still()) {
+        still.push_back("'" + run.guard + "' on " + run.mesh + " at speed " + trimmed(run.speed));
+      }
       if (run.guard != mode_names.front()) continue;
       cycles += run.cycles;
       broken += run.any.below + run.breaches;
     }
+    // A mesh without a stroke that is finished.
+    if (meshes_.back()["strokes"].empty()) meshes_.erase(meshes_.size() - 1);
     Json record =
         new_record({.kind = "simulate_robot",
                     .command = options_.command,
@@ -183,7 +192,10 @@ class GuardedInstrument final : public SimulatedTool {
                     .headline = std::string("The certified step ") +
                                 (broken == 0 ? "kept shaft, wrist and jaw off the anatomy in all "
                                              : "broke its promise in some of ") +
-                                counted(cycles, "cycle") + ".",
+                                counted(cycles, "cycle") + "." +
+                                (still.empty() ? ""
+                                               : " The instrument stood still in all cycles of " +
+                                                     listed(still) + ": nothing was tested there."),
                     .machine = this_machine(),
                     .settings = {{"robot", options_.robot},
                                  {"strokes", grouped(options_.strokes.count)},

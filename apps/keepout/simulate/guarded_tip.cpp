@@ -36,11 +36,11 @@ class GuardedTip final : public SimulatedTool {
 
   Stroke draw(std::uint64_t, double) override { return strokes_(); }
 
-  double start(const Stroke& stroke, std::size_t guard) override {
+  StrokeStart start(const Stroke& stroke, std::size_t guard) override {
     constraint_ = constraints_[guard] ? &*constraints_[guard] : nullptr;
     tip_ = stroke.goals.front().position;
     path_.emplace(*audit_, tip_);
-    return required_clearance(options_.constraint.options);
+    return {required_clearance(options_.constraint.options), path_->clearance()};
   }
 
   Cycle follow(const Pose& goal) override {

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <iterator>
 #include <span>
 #include <utility>
 
 #include "keepout/error.h"
+#include "record/report_page.h"
 #include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
@@ -19,53 +21,77 @@ namespace {
 
 /// All strokes on all meshes, at all speeds, under all guards.
 struct Runs {
-  std::vector<RunTally> runs = {};
+  std::vector<RunTally> runs = {};        // only those with a stroke that is finished
   std::shared_ptr<const Mesh> mesh = {};  // the last
-  bool is_complete = true;                // false if a signal came
+  std::size_t finished = 0, planned = 0;  // strokes
+
+  bool is_complete() const noexcept { return finished == planned; }
 };
 
-/// Runs the closed loops. Stops after the stroke in which a signal came.
+/// Follows a stroke under all guards, and adds it to their runs. Returns false if a signal came
+/// before it was finished: then nothing is added.
+bool follow_stroke(SimulatedTool& tool, Stroke stroke, std::span<RunTally> runs,
+                   const StopSignal& stop) {
+  FollowedStroke followed{.stroke = std::move(stroke)};
+  std::vector<StrokeStart> starts;
+  for (std::size_t guard = 0; guard < runs.size(); ++guard) {
+    starts.push_back(tool.start(followed.stroke, guard));
+    auto& cycles = followed.runs.emplace_back();
+    for (const Pose& goal : followed.stroke.goals) {
+      if (stop.has_come()) return false;
+      cycles.push_back(tool.follow(goal));
+    }
+  }
+  for (std::size_t guard = 0; guard < runs.size(); ++guard) {
+    runs[guard].add(followed.runs[guard], starts[guard]);
+  }
+  tool.keep(std::move(followed));
+  return true;
+}
+
+/// Runs the closed loops until a signal comes.
 Runs run_strokes(SimulatedTool& tool, const std::vector<std::filesystem::path>& meshes,
-                 const std::vector<double>& speeds, std::size_t count) {
-  const StopSignal stop;
-  Progress progress("simulate", meshes.size() * speeds.size() * count);
-  Runs all;
+                 const std::vector<double>& speeds, std::size_t count, const StopSignal& stop) {
+  Runs all{.planned = meshes.size() * speeds.size() * count};
+  Progress progress("simulate", all.planned);
   for (const auto& mesh : meshes) {
-    if (!all.is_complete) break;
+    progress.show(mesh.stem().string());
     all.mesh = tool.open(mesh);
     const std::vector<std::string> guards = tool.guards();
     for (const double speed : speeds) {
+      std::vector<RunTally> runs;
       for (const std::string& guard : guards) {
-        all.runs.push_back({.mesh = mesh.stem().string(), .speed = speed, .guard = guard});
+        runs.push_back({.mesh = mesh.stem().string(), .speed = speed, .guard = guard});
       }
-      const auto runs = std::span(all.runs).last(guards.size());
-      for (std::uint64_t number = 0; number < count && all.is_complete; ++number) {
-        FollowedStroke followed;
+      for (std::uint64_t number = 0; number < count && !stop.has_come(); ++number) {
+        Stroke stroke;
         try {
-          followed.stroke = tool.draw(number, speed);
+          stroke = tool.draw(number, speed);
         } catch (const Error& error) {
           throw Error(mesh.string() + ": " + error.what());
         }
-        for (std::size_t guard = 0; guard < guards.size(); ++guard) {
-          const double required = tool.start(followed.stroke, guard);
-          auto& cycles = followed.runs.emplace_back();
-          for (const Pose& goal : followed.stroke.goals) cycles.push_back(tool.follow(goal));
-          runs[guard].add(cycles, required);
-        }
-        tool.keep(std::move(followed));
+        if (!follow_stroke(tool, std::move(stroke), runs, stop)) break;
+        ++all.finished;
+        stop.keep_from_now_on();
         progress.advance();
-        all.is_complete = !stop.has_come();
       }
+      if (runs.front().strokes > 0) std::ranges::move(runs, std::back_inserter(all.runs));
+      if (stop.has_come()) return all;
     }
   }
   return all;
 }
 
 /// The last lines on the terminal.
-void print_next(const SimulateOptions& options, const std::string& mesh, std::ostream& out) {
+void print_next(const SimulateOptions& options, const Json& record, std::ostream& out) {
+  out << (missing_template(record).empty() ? "\nReport, with pictures, tables and settings: "
+                                           : "\nReport, with tables and settings, no pictures: ")
+      << options.files.page->string() << '\n';
+  if (is_quiet()) return;
   const std::string robot = options.robot.empty() ? "" : " --robot " + options.robot;
-  out << "\nReport, with pictures, tables and settings: " << options.files.page->string()
-      << "\n\nTry next:\n";
+  const std::string mesh =
+      shell_word(options.meshes.empty() ? "skull" : options.meshes.front().string());
+  out << "\nTry next:\n";
   for (auto [arguments, what] : std::initializer_list<std::pair<std::string, const char*>>{
            {"inspect " + mesh, "what the mesh is made of, and what is wrong with it"},
            {"verify " + mesh + (robot.empty() ? " --steps 1e5" : robot + " --cycles 1e4"),
@@ -87,8 +113,9 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   std::vector<std::filesystem::path> meshes = options.meshes;
   if (meshes.empty()) meshes = {"skull", "airway", "brain"};
   OutputFiles outputs = options.files.open(meshes);
+  const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   const Runs done = run_strokes(*tool, meshes, has_tip ? std::vector{1.0} : options.speeds,
-                                options.strokes.count);
+                                options.strokes.count, stop);
   auto [record, columns, legend, is_broken] = tool->result(done.runs);
   print_rows(out, columns, done.runs);
   out << legend << '\n';
@@ -96,25 +123,35 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   try {
     // The tables of the benchmark are many, and mean little to a reader who does not know it.
     std::ostream tables(options.is_verbose ? out.rdbuf() : nullptr);
-    if (options.is_timing_parts && done.is_complete) {
-      timings = options.time_parts(options, done.mesh, tables);
+    if (options.is_timing_parts && done.is_complete()) {
+      timings = options.time_parts(options, done.mesh, stop, tables);
       record["benchmark"] = timings.benchmark;
       record["comparison"] = timings.comparison;
     }
   } catch (const std::exception& error) {  // the simulation is complete, and kept
     std::cerr << "keepout: the benchmark is left out: " << error.what() << '\n';
   }
-  const bool is_complete = done.is_complete && timings.complete;
+  const bool is_complete = done.is_complete() && timings.complete;
   record["complete"] = is_complete;
-  write_record(outputs, record, options.files, std::cerr);
+  write_record(outputs, record, options.files);
   print_wrapped(out, record["subject"].get<std::string>() + ".");
   print_wrapped(out, record["headline"]);
   if (timings.combinations > 0) {
     out << "Timed as well, in the report: " << counted(timings.combinations, "combination")
         << " of index, rule, solver and radius.\n";
   }
-  print_next(options, shell_word(meshes.front().string()), out);
-  return is_broken ? EXIT_FAILURE : is_complete ? EXIT_SUCCESS : exit_interrupted;
+  print_next(options, record, out);
+  if (!done.is_complete()) {
+    out.flush();
+    std::cerr << "keepout: stopped; " << grouped(done.finished) << " of "
+              << counted(done.planned, "stroke") << " were finished, and are kept in "
+              << options.files.page->string() << '\n';
+  }
+  if (timings.is_wrong) {
+    std::cerr << "keepout: parts give wrong answers: see the benchmark in the report\n";
+  }
+  if (is_broken || timings.is_wrong) return EXIT_FAILURE;
+  return is_complete ? EXIT_SUCCESS : exit_interrupted;
 }
 
 }  // namespace keepout::app

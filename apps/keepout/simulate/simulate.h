@@ -12,6 +12,7 @@
 #include "keepout/mesh/load_mesh.h"
 #include "operators/strokes.h"
 #include "record/record.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 
@@ -22,11 +23,13 @@ struct PartTimings {
   Json benchmark, comparison;    // for the record; null if there are none
   std::size_t combinations = 0;  // rows of the benchmark
   bool complete = true;          // false if a signal stopped it
+  bool is_wrong = false;         // some part gave a wrong answer
 };
 
-/// Times all parts on a mesh; prints tables to `out`.
-using TimeParts = std::function<PartTimings(
-    const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh, std::ostream& out)>;
+/// Times all parts on a mesh until a signal comes; prints tables to `out`.
+using TimeParts = std::function<PartTimings(const SimulateOptions& options,
+                                            const std::shared_ptr<const Mesh>& mesh,
+                                            const StopSignal& stop, std::ostream& out)>;
 
 struct SimulateOptions {
   std::vector<std::filesystem::path> meshes;  // one; with a robot any number, by default real ones
@@ -50,9 +53,10 @@ struct SimulateOptions {
 /// simulate_robot (docs/records.md) and its report, and prints the outcome and what to try next. A
 /// rule that is named twice runs once.
 ///
-/// A StopSignal ends it early, after one stroke at least; what is finished is kept. Returns the
-/// exit status: failure if a certified cycle of an instrument broke what docs/joint-space-step.md
-/// promises, exit_interrupted if a signal stopped it. Throws Error, also if the report would
+/// A StopSignal ends it within a cycle. The strokes that are finished are kept; without one,
+/// nothing is written. Returns the exit status: failure if a certified cycle of an instrument broke
+/// what docs/joint-space-step.md promises, or if a part that was timed gave a wrong answer;
+/// exit_interrupted if a signal stopped it. Throws Error, also if the report would
 /// overwrite the mesh; then there is no report.
 int simulate(const SimulateOptions& options, std::ostream& out);
 

@@ -41,8 +41,8 @@ class SimulatedTool {
   /// Draws the next stroke. Throws Error if there is no place for it.
   virtual Stroke draw(std::uint64_t number, double speed) = 0;
 
-  /// Places the tool where a stroke begins, under a guard. Returns the required clearance. [mm]
-  virtual double start(const Stroke& stroke, std::size_t guard) = 0;
+  /// Places the tool where a stroke begins, under a guard.
+  virtual StrokeStart start(const Stroke& stroke, std::size_t guard) = 0;
   /// Makes one cycle: steps towards the goal, applies the motion and judges it.
   virtual Cycle follow(const Pose& goal) = 0;
 

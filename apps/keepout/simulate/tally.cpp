@@ -10,7 +10,8 @@ void BodyTally::add(double clearance, double required) {
   deepest = std::max(deepest, -clearance);
 }
 
-void RunTally::add(const std::vector<Cycle>& stroke, double required) {
+void RunTally::add(const std::vector<Cycle>& stroke, const StrokeStart& start) {
+  const double required = start.required;
   const std::size_t inside_before = any.in_mesh, breaches_before = breaches;
   for (const Cycle& cycle : stroke) {
     ++outcomes[static_cast<std::size_t>(cycle.outcome)];
@@ -23,6 +24,7 @@ void RunTally::add(const std::vector<Cycle>& stroke, double required) {
   const bool is_inside = any.in_mesh > inside_before;
   ++strokes;
   cycles += stroke.size();
+  starts_too_close += start.actual >= required ? 0 : 1;
   strokes_inside += is_inside ? 1 : 0;
   strokes_breached += is_inside || breaches > breaches_before ? 1 : 0;
 }

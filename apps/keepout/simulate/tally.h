@@ -43,6 +43,12 @@ struct Cycle {
   }
 };
 
+/// The clearances at the start of a stroke. [mm]
+struct StrokeStart {
+  double required = 0.0;       // that the guard must keep
+  double actual = Cycle::far;  // of the body that is nearest
+};
+
 /// The cycles in which a body was too close.
 struct BodyTally {
   std::size_t below = 0;    // closer than is required
@@ -62,16 +68,18 @@ struct RunTally {
   std::size_t breaches = 0;                  // cycles
   std::size_t strokes_inside = 0;            // with at least one cycle inside
   std::size_t strokes_breached = 0;          // with a cycle inside, or with a breach
+  std::size_t starts_too_close = 0;          // strokes that began nearer than is required
   BodyTally any = {};                        // of the bodies together
   std::array<BodyTally, 3> bodies = {};
   double least = Cycle::far;  // clearance [mm]
   std::vector<double> times_us = {};
 
-  /// Adds a stroke, whose bodies are required to keep a clearance. [mm]
-  void add(const std::vector<Cycle>& stroke, double required);
+  void add(const std::vector<Cycle>& stroke, const StrokeStart& start);
 
   std::size_t with(Outcome outcome) const { return outcomes[static_cast<std::size_t>(outcome)]; }
   bool kept_out() const noexcept { return strokes_breached == 0; }
+  /// Returns true if the tool moved in no cycle, so the guard was not tested.
+  bool stood_still() const { return cycles > 0 && with(Outcome::stopped) == cycles; }
 };
 
 }  // namespace keepout::app

@@ -59,6 +59,7 @@ Columns<RunTally> columns_of(SurfaceKind surface) {
       {"strokes_inside", inside([](const RunTally& run) { return run.strokes_inside; })},
       {"crossings", &RunTally::breaches, "crossings", 10},
       {"strokes_breached", &RunTally::strokes_breached, "breached", 9},
+      {"starts_too_close", &RunTally::starts_too_close, "near starts", 11},
       {"moved_freely", with(Outcome::moved_freely)},
       {"limited", with(Outcome::limited)},
       {"stopped", with(Outcome::stopped), "stopped", 9}};
@@ -66,6 +67,13 @@ Columns<RunTally> columns_of(SurfaceKind surface) {
 
 /// Returns the outcome of a run in a few words: "went up to 1.2 mm deep, in 3 of 24 strokes".
 std::string words(const RunTally& run, SurfaceKind surface) {
+  if (run.stood_still()) {
+    return "stood still in all " + counted(run.cycles, "cycle") +
+           (run.starts_too_close == 0
+                ? ""
+                : "; " + grouped(run.starts_too_close) + " of " + counted(run.strokes, "stroke") +
+                      " began nearer than the required clearance");
+  }
   if (run.kept_out()) {
     const std::string near = closest(run) == 0.0
                                  ? " but touched the surface"
@@ -82,29 +90,49 @@ std::string words(const RunTally& run, SurfaceKind surface) {
          counted(run.strokes, "stroke");
 }
 
-/// Returns which rules kept the tool out, and which did not.
-std::string headline(const std::vector<RunTally>& runs, SurfaceKind surface) {
+/// "Rule 'a'", "Rules 'a' and 'b'".
+std::string rules_text(const std::vector<std::string>& rules) {
+  return (rules.size() == 1 ? "Rule " : "Rules ") + listed(rules);
+}
+
+/// Returns which rules kept the tool out, which did not, and which were not tested, as the tool did
+/// not move. `required`: the clearance that rules keep. [mm]
+std::string headline(const std::vector<RunTally>& runs, SurfaceKind surface, double required) {
   if (runs.size() == 1) return "The tool moved without any fixture.";
-  std::vector<std::string> kept_out, let_in;
+  std::vector<std::string> kept_out, let_in, still;
   for (std::size_t r = 1; r < runs.size(); ++r) {
     // Names of rules are odd words in a sentence: they get quotation marks.
-    (runs[r].kept_out() ? kept_out : let_in).push_back("“" + runs[r].guard + "”");
+    (runs[r].stood_still() ? still
+     : runs[r].kept_out()  ? kept_out
+                           : let_in)
+        .push_back("'" + runs[r].guard + "'");
   }
   const bool is_closed = surface == SurfaceKind::closed;
-  const std::vector<std::string>& named = let_in.empty() ? kept_out : let_in;
-  std::string text = (named.size() == 1 ? "Rule " : "Rules ") + listed(named);
-  if (let_in.empty()) {
-    text += is_closed ? " kept the tool out of the anatomy"
-                      : " kept the tool from passing through the surface";
-  } else {
-    text += is_closed ? " let the tool into the anatomy" : " let the tool through the surface";
+  std::string text;
+  if (!let_in.empty()) {
+    text = rules_text(let_in) +
+           (is_closed ? " let the tool into the anatomy" : " let the tool through the surface");
     if (!kept_out.empty()) {
       text += "; " + listed(kept_out) + (is_closed ? " kept it out" : " did not");
     }
+    text += ".";
+  } else if (!kept_out.empty()) {
+    text = rules_text(kept_out) + (is_closed ? " kept the tool out of the anatomy."
+                                             : " kept the tool from passing through the surface.");
   }
-  const bool is_test = !runs.front().kept_out();
-  return text +
-         (is_test ? "." : ". Without a fixture it stayed out too: these strokes test no rule.");
+  if (!still.empty()) {
+    text += (text.empty() ? "" : " ") + rules_text(still) +
+            " tested nothing: the tool stood still in all " + counted(runs.back().cycles, "cycle") +
+            ".";
+  }
+  const RunTally& free = runs.front();
+  if (free.starts_too_close > 0) {
+    text += " " + grouped(free.starts_too_close) + " of " + counted(free.strokes, "stroke") +
+            " began nearer to the surface than the required clearance, " + length_text(required) +
+            ": is the mesh in millimeters?";
+  }
+  if (free.kept_out()) text += " Without a fixture it stayed out too: these strokes test no rule.";
+  return text;
 }
 
 /// One cycle of a run.
@@ -216,7 +244,7 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
                   "): " + counted(free.strokes, "stroke") + ", " + counted(free.cycles, "cycle") +
                   " of 1 ms, without a fixture and under " + counted(runs.size() - 1, "rule") +
                   ", margin " + length_text(margin),
-       .headline = headline(runs, audit.surface()),
+       .headline = headline(runs, audit.surface(), margin),
        .machine = this_machine(),
        .settings = settings_of(options)});
   std::vector<Moments> moments;

@@ -53,7 +53,7 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   std::vector<std::string> missing;
   const std::vector<Arena> arenas = arenas_of(options, missing);
   for (const std::string& mesh : missing) out << "note: " << mesh << '\n';
-  const StopSignal stop;
+  const StopSignal stop(keeps_what_is_finished);
   Progress progress("verify", campaign.length(arenas.size()));
   Findings findings =
       run_campaign(campaign, arenas,
@@ -103,7 +103,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   const std::array of_joints{
       command.add_option("--cycles", campaign.cycles, "Cycles for each mesh, scenario and speed")
           ->type_name("NUMBER")
-          ->transform(large_count())
+          ->transform(whole_number(1, most_steps))
           ->capture_default_str(),
       command
           .add_option("--speed", campaign.speeds,
@@ -124,7 +124,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   });
   command.add_option("--steps", campaign.steps, "Steps of the whole campaign")
       ->type_name("NUMBER")
-      ->transform(large_count())
+      ->transform(whole_number(1, most_steps))
       ->capture_default_str()
       ->excludes(named)
       ->excludes(chosen);
@@ -168,7 +168,7 @@ int verify(const VerifyOptions& options, std::ostream& out) {
                       {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
   const CampaignResult result =
       options.merge.empty() ? run(options, out) : merged(options.merge, options.command);
-  write_record(outputs, result.record, options.files, std::cerr);
+  write_record(outputs, result.record, options.files);
   result.print(out);
   if (result.is_broken) return EXIT_FAILURE;
   return result.is_interrupted ? exit_interrupted : EXIT_SUCCESS;

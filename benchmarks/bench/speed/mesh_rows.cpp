@@ -135,7 +135,8 @@ void add_large_steps(SpeedRun& run, const IndexedMesh& on, std::size_t triangles
       .compared = "median",
       .demand = at_most(20.0),
       .unit = "us",
-      .remark = side.refusal};
+      .remark = side.refusal,
+      .is_wrong = side.is_wrong};
   if (side.refusal.empty()) {
     row.figure = side.us.p50;
     row.sides = {side};

@@ -146,6 +146,7 @@ QueryFigures measure(SpeedRun& run, const std::string& name, const IndexedMesh& 
       if (searcher.sorted_answer(question.balls[i], test) == question.answers[i]) continue;
       figures.answer.refusal = figures.lean_answer.refusal =
           "not timed: its triangles are not those of wide_bvh";
+      run.wrong.push_back(name + ", sphere queries of " + trimmed(question.radius) + " mm");
       return figures;
     }
   }

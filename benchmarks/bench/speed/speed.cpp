@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "keepout/fixtures/real_mesh.h"
+#include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/stop_signal.h"
 
@@ -79,6 +80,7 @@ SpeedRow ratio(std::string work, std::string compared, const Json& demand,
   for (const MeasuredSide* side : {&numerator, &denominator}) {
     if (side->refusal.empty()) row.sides.push_back(*side);
     if (row.remark.empty()) row.remark = side->refusal;
+    row.is_wrong = row.is_wrong || side->is_wrong;
   }
   if (row.sides.size() == 2) row.figure = row.sides[0].us.p50 / row.sides[1].us.p50;
   return row;
@@ -87,7 +89,7 @@ SpeedRow ratio(std::string work, std::string compared, const Json& demand,
 MeasuredSide time_steps(std::string name, MotionConstraint& one, MotionConstraint& other,
                         std::span<const Motion> motions, int passes, double accuracy) {
   if (std::string refusal = disagreement(one, other, motions, accuracy); !refusal.empty()) {
-    return {.refusal = std::move(refusal)};
+    return {.refusal = std::move(refusal), .is_wrong = true};
   }
   return timed(std::move(name), motions.size(), passes,
                [&](std::size_t i) { one.step(motions[i]); });
@@ -126,7 +128,7 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   print_head(run);
   out.flush();
   if (!one.holds()) out << "The system does not let this process stay on one core.\n";
-  const StopSignal stop;
+  const StopSignal stop(keeps_what_is_finished);
   run.bunny = with_index(bunny_of(triangles));
   for (const auto measure : families) {
     run.complete = !stop.has_come();
@@ -136,9 +138,13 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   }
   progress.interrupt();
   print_summary(run);
-  write_record(outputs, record_of(run), options.files, std::cerr);
+  write_record(outputs, record_of(run), options.files);
   out << "report: " << options.files.page->string() << '\n';
-  return run.complete ? EXIT_SUCCESS : exit_interrupted;
+  if (!run.wrong.empty()) {
+    std::cerr << "keepout: wrong answers of " << enumerated(run.wrong, "; ") << '\n';
+  }
+  if (!run.complete) return exit_interrupted;
+  return run.wrong.empty() ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace keepout::app

@@ -61,6 +61,7 @@ struct MeasuredSide {
   Timing us = {};
   std::size_t batch = 1;     // how many were timed at once, for the median
   std::string refusal = {};  // empty: it was timed
+  bool is_wrong = false;     // refused because of a wrong answer
 };
 
 /// The lesser of each percentile of two passes over the same work: what else the machine did
@@ -130,6 +131,7 @@ struct SpeedRow {
   std::optional<double> figure = {};  // none: not measured, and the remark says why
   std::vector<MeasuredSide> sides = {};
   std::string remark = {};
+  bool is_wrong = false;  // a side gave a wrong answer
 
   bool is_met() const {
     return figure && (demand.contains("at_least") ? *figure >= demand["at_least"]
@@ -179,6 +181,7 @@ struct SpeedRun {
   Json histogram = nullptr;  // the times of a great many steps, beside those of an empty loop
   std::string histogram_words = {};  // how long these steps took
   bool complete = true;  // or interrupted: the rows are those that were measured until then
+  std::vector<std::string> wrong = {};  // what gave wrong answers
 
   // Figures that other rows are set against.
   MeasuredSide libraries = {};     // FCL's tree and SLSQP, the paper's rule at 5 mm

@@ -132,6 +132,7 @@ void SpeedRun::add(SpeedRow row) {
   }
   if (!row.remark.empty()) out << "    " << row.remark << '\n';
   out.flush();
+  if (row.is_wrong) wrong.push_back(name_of(row));
   rows.push_back(std::move(row));
 }
 
@@ -176,7 +177,7 @@ void print_summary(const SpeedRun& run) {
       short_ones.push_back(name_of(row) + ": " + figure_of(row) + ", demanded " + demand_text(row));
     }
   }
-  if (!run.histogram.is_null()) out << '\n' << run.histogram_words << '\n';
+  if (!run.histogram.is_null()) out << '\n' << for_terminal(run.histogram_words) << '\n';
   out << '\n' << headline(run) << '\n';
   list(out, "Short of what is demanded:", short_ones);
   list(out, "Not measured:", missing);

@@ -213,6 +213,7 @@ TEST_F(BenchCommand, SaysWhenMoreTrianglesAreInReachThanItHasRoomFor) {
   ASSERT_EQ(benchmark["rows"].size(), 2u);
   EXPECT_FALSE(benchmark["rows"][0]["verified"]);
   EXPECT_CONTAINS(benchmark["rows"][0]["remark"].get<std::string>(), "in reach");
+  EXPECT_FALSE(benchmark["rows"][0]["wrong"]);
   EXPECT_TRUE(benchmark["rows"][1]["verified"]) << "the others are measured all the same";
 }
 

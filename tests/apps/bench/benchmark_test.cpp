@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bench/bench.h"
+#include "compare/compare.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/solvers/registry.h"
@@ -75,6 +76,18 @@ TEST(BenchmarkRanking, LeavesOutRowsThatAreNotTimedOrHaveARemark) {
     EXPECT_TRUE(json_of(benchmark)["slowest"].is_null());
     EXPECT_LACKS(headline(benchmark), "times as long");
   }
+}
+
+TEST(BenchmarkStatus, IsAFailureIfAnswersAreWrongOrPartsDisagree) {
+  Benchmark benchmark = duel();
+  EXPECT_TRUE(is_right(benchmark, {}));
+  EXPECT_LACKS(headline(benchmark), "wrong");
+  Comparison disagreeing;
+  disagreeing.indices.push_back({.missed = 1});
+  EXPECT_FALSE(is_right(benchmark, disagreeing));
+  benchmark.rows[2]["wrong"] = true;
+  EXPECT_FALSE(is_right(benchmark, {}));
+  EXPECT_CONTAINS(headline(benchmark), " The answers of 1 of 8 rows are wrong.");
 }
 
 TEST(BenchmarkStepGroups, CountTheGroupsInWhichAllIndicesMadeTheSameSteps) {

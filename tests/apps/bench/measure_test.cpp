@@ -111,6 +111,7 @@ class Measure : public testing::TestWithParam<const char*> {
 TEST_P(Measure, TimesWhatIsRight) {
   const BenchmarkRow row = measured(tree, std::make_unique<ActiveSet>(), 0.0);
   EXPECT_TRUE(row["verified"]);
+  EXPECT_FALSE(row["wrong"]);
   EXPECT_EQ(row["remark"], "");
   EXPECT_EQ(row["queries"], motions.size());
   for (const char* stage : {"collect_us", "query_us", "activate_us", "solve_us", "step_us"}) {
@@ -147,6 +148,7 @@ TEST_P(Measure, DoesNotTimeAnIndexThatForgetsATriangle) {
   const BenchmarkRow row =
       measured(std::make_shared<Spoiled>(mesh, forget), std::make_unique<ActiveSet>(), 0.0);
   EXPECT_FALSE(row["verified"]);
+  EXPECT_TRUE(row["wrong"]);
   EXPECT_TRUE(row["step_us"].is_null() && row["collect_us"].is_null());
   EXPECT_CONTAINS(plain(row["remark"]), "not timed");
 }
@@ -156,6 +158,7 @@ TEST_P(Measure, DoesNotTimeASolverThatErrsNowAndThen) {
   EXPECT_GT(row["worse_share"], 0.005);
   // Under a rule that proves each motion they are right all the same.
   EXPECT_EQ(row["verified"], reference->proves_motions());
+  EXPECT_NE(row["wrong"], row["verified"]);
   if (row["verified"]) return;
   EXPECT_TRUE(row["step_us"].is_null());
   EXPECT_CONTAINS(plain(row["remark"]), "not those of the reference");
@@ -224,6 +227,7 @@ TEST_P(Measure, HoldsEveryQueryThatItTimesToTheReference) {
   left = strength - left - 50;
   const BenchmarkRow row = measured(tiring, std::make_unique<ActiveSet>(), 0.0);
   EXPECT_FALSE(row["verified"]);
+  EXPECT_TRUE(row["wrong"]);
   EXPECT_TRUE(row["query_us"].is_null() && row["step_us"].is_null());
   EXPECT_CONTAINS(plain(row["remark"]), "queries do not find");
 }

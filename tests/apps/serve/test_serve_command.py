@@ -223,8 +223,7 @@ def test_a_socket_that_is_left_behind_is_replaced_and_a_live_one_is_not(servers)
     ("cube.off", "something else than a socket is there"),
     (".", "something else than a socket is there"),
     ("no/such/s", "its folder no/such cannot be used"),
-    (108 * "x", "the path has 108 bytes; a Unix socket's has at most 107"),
-    ("''", "give the path of a file")])
+    (108 * "x", "the path has 108 bytes; a Unix socket's has at most 107")])
 def test_where_no_socket_can_be_it_says_so(servers, path, words):
     status, output = servers.run(f"serve cube.off --socket {path}")
     assert status == 1 and words in output

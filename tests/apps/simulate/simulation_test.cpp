@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Figures, sentences and moments of the record of a tip, and the strokes of its operator.
 
+#include <cstdlib>
+
 #include "meshes.h"
 #include "messages.h"
 #include "record/record.h"
@@ -53,7 +55,7 @@ Json record_of(const std::vector<FollowedStroke>& strokes, const char* mesh = "c
   std::vector<RunTally> runs;
   for (const std::string& rule : tool->guards()) runs.push_back({.guard = rule});
   for (const FollowedStroke& followed : strokes) {
-    for (std::size_t r = 0; r < runs.size(); ++r) runs[r].add(followed.runs[r], 0.05);
+    for (std::size_t r = 0; r < runs.size(); ++r) runs[r].add(followed.runs[r], {.required = 0.05});
     tool->keep(followed);
   }
   return tool->result(runs).record;
@@ -91,6 +93,7 @@ TEST(Summary, FiguresAreThoseCountedByHand) {
                                   {"strokes_inside", 1},
                                   {"crossings", 1},
                                   {"strokes_breached", 1},
+                                  {"starts_too_close", 0},
                                   {"moved_freely", 1},
                                   {"limited", 8},
                                   {"stopped", 1}}));
@@ -109,7 +112,7 @@ TEST(Summary, AClearanceThatIsNotANumberCountsAgainstTheRule) {
     one.clearances[2] = 0.5;
     one.clearances[body] = test::nan;
     RunTally run;
-    run.add({one}, 0.0);
+    run.add({one}, {});
     EXPECT_EQ(run.any.in_mesh, 1U) << body;
     EXPECT_EQ(run.bodies[body].in_mesh, 1U) << body;
     EXPECT_FALSE(run.kept_out()) << body;
@@ -126,7 +129,23 @@ TEST(Summary, ARunThatCrossedAnOpenSurfaceCameAsNearAsCanBe) {
   EXPECT_EQ(closest(), 0.0);
 }
 
+TEST(Text, IsAsciiForATerminalUnlessTheLocaleIsUtf8) {
+  const std::string text = time_text(1.5) + ", " + length_text(0.0012345);
+  EXPECT_EQ(text, "1.50 µs, 1.23 µm");
+  EXPECT_EQ(in_ascii(text), "1.50 us, 1.23 um");
+  const char* const set = std::getenv("LC_ALL");
+  const std::string before = set == nullptr ? "" : set;  // an empty one is none
+  for (const auto& [locale, shown] : {std::pair("C", in_ascii(text)), std::pair("de_DE.utf8", text),
+                                      std::pair("C.UTF-8", text)}) {
+    ::setenv("LC_ALL", locale, 1);
+    EXPECT_EQ(for_terminal(text), shown) << locale;
+  }
+  ::setenv("LC_ALL", before.c_str(), 1);
+}
+
 TEST(Text, NumbersReadWell) {
+  EXPECT_EQ(time_text(12'345.0), "12.3 ms");
+  EXPECT_EQ(time_text(2.5e7), "25.0 s");
   EXPECT_EQ(grouped(24000), "24,000");
   EXPECT_EQ(grouped(999), "999");
   EXPECT_EQ(rounded(0.0012345), "0.00123");
@@ -140,17 +159,17 @@ TEST(Text, NumbersReadWell) {
   EXPECT_EQ(how_often(1), "once");
   EXPECT_EQ(how_often(2), "twice");
   EXPECT_EQ(how_often(1200), "1,200 times");
-  EXPECT_EQ(length_text(1.2345), "1.23\u00a0mm");
-  EXPECT_EQ(length_text(0.0012345), "1.23\u00a0µm");
+  EXPECT_EQ(length_text(1.2345), "1.23 mm");
+  EXPECT_EQ(length_text(0.0012345), "1.23 µm");
   EXPECT_EQ(listed({"a", "b", "c"}), "a, b and c");
 }
 
 TEST(Verdict, NamesTheRulesThatFailAndHowDeep) {
   const Json record = record_of({stroke_of(one_rule_fails)});
-  EXPECT_CONTAINS(record["headline"].get<std::string>(), "“paper” let the tool into");
-  EXPECT_CONTAINS(record["headline"].get<std::string>(), "“certified” kept it out.");
+  EXPECT_CONTAINS(record["headline"].get<std::string>(), "'paper' let the tool into");
+  EXPECT_CONTAINS(record["headline"].get<std::string>(), "'certified' kept it out.");
   EXPECT_CONTAINS(record["runs"][2]["words"].get<std::string>(),
-                  "0.0200\u00a0mm deep, in 1 of 1 stroke");
+                  "0.0200 mm deep, in 1 of 1 stroke");
 }
 
 TEST(Verdict, SaysIfTheStrokesTestNoRule) {
@@ -164,10 +183,28 @@ TEST(Verdict, SaysIfARuleThatKeptTheToolOutTouchedOrCrossed) {
   };
   EXPECT_CONTAINS(words({{cycle(0.0)}}), "touched");
   EXPECT_CONTAINS(words({{cycle(9e-7)}}), "touched");
-  EXPECT_CONTAINS(words({{cycle(2e-6)}}), "2.00\u00a0nm");
+  EXPECT_CONTAINS(words({{cycle(2e-6)}}), "2.00 nm");
   Cycles crossing(5, cycle(1.0));
   crossing[1].is_breach = true;
   EXPECT_CONTAINS(words({crossing, {cycle(1.0)}}), "once, in 1 of 2 strokes");
+}
+
+TEST(Verdict, SaysIfARuleWasNotTestedBecauseTheToolStoodStill) {
+  const Cycles still(5, cycle(0.01, 1.0F, Outcome::stopped));
+  const Json record = record_of({stroke_of({plunge(0.15), still, plunge(-0.05)})});
+  const std::string headline = record["headline"].get<std::string>();
+  EXPECT_CONTAINS(headline,
+                  "Rule 'paper' kept the tool out of the anatomy. Rule 'certified' tested "
+                  "nothing: the tool stood still in all ");
+  EXPECT_EQ(record["runs"][1]["words"], "stood still in all 5 cycles");
+  EXPECT_LACKS(headline, "began nearer");
+}
+
+TEST(Verdict, SaysIfStrokesBeganNearerThanTheRequiredClearance) {
+  RunTally run;
+  run.add({cycle(0.01)}, {.required = 0.2, .actual = 0.01});
+  run.add({cycle(1.0)}, {.required = 0.2, .actual = 0.2});
+  EXPECT_EQ(run.starts_too_close, 1u);
 }
 
 TEST(Moments, AreTheDeepestOrElseTheFirstCrossingOrElseTheNearest) {
