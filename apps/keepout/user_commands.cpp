@@ -16,6 +16,7 @@
 #include "shared/command_line.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
+#include "simulate/simulated_tool.h"
 #include "verify/verify.h"
 
 namespace keepout::app {
@@ -204,6 +205,7 @@ std::vector<Command> user_commands(TimeParts time_parts) {
   SimulateOptions simulation;
   simulation.rules = names(activation_rules());
   simulation.time_parts = std::move(time_parts);
+  simulation.make_instrument = make_guarded_instrument;
   const auto serve_on_stdin = [](const ServeOptions& options, std::ostream&) {
     return serve(options, std::cerr);
   };

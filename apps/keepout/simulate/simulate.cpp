@@ -64,8 +64,9 @@ Runs run_strokes(SimulatedTool& tool, const std::vector<std::filesystem::path>& 
 /// The last lines on the terminal.
 void print_next(const SimulateOptions& options, const std::string& mesh, std::ostream& out) {
   const std::string robot = options.robot.empty() ? "" : " --robot " + options.robot;
-  out << "\nReport, with pictures, tables and settings: " << options.files.page->string()
-      << "\n\nTry next:\n";
+  out << "\nReport, with pictures, tables and settings: " << options.files.page->string() << '\n';
+  if (options.called_as.empty()) return;
+  out << "\nTry next:\n";
   for (auto [arguments, what] : std::initializer_list<std::pair<std::string, const char*>>{
            {"inspect " + mesh, "what the mesh is made of, and what is wrong with it"},
            {"verify " + mesh + (robot.empty() ? " --steps 1e5" : robot + " --cycles 1e4"),
@@ -83,7 +84,7 @@ void print_next(const SimulateOptions& options, const std::string& mesh, std::os
 
 int simulate(const SimulateOptions& options, std::ostream& out) {
   const bool has_tip = options.robot.empty();
-  const auto tool = has_tip ? make_guarded_tip(options) : make_guarded_instrument(options);
+  const auto tool = has_tip ? make_guarded_tip(options) : options.make_instrument(options);
   std::vector<std::filesystem::path> meshes = options.meshes;
   if (meshes.empty()) meshes = {"skull", "airway", "brain"};
   OutputFiles outputs = options.files.open(meshes);
