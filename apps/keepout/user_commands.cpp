@@ -34,6 +34,14 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
                    "Also count the pairs of triangles that cut through each other");
 }
 
+void add_docs(CLI::App& app, DocsOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("docs", "Say where the pages of the documentation are");
+  CLI::Option* page = command.add_option("PAGE", options.page, "The page to find");
+  page->type_name("");
+  if (const auto pages = pages_of_docs(); !pages.empty()) page->check(one_of(pages));
+}
+
 void add_register(CLI::App& app, RegisterOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "register",
@@ -216,7 +224,8 @@ std::vector<Command> user_commands(TimeParts time_parts) {
           command("live", add_live, live),
           command("serve", add_serve, serve_on_stdin),
           command("verify", add_verify, verify),
-          command("report", add_report, report)};
+          command("report", add_report, report),
+          command("docs", add_docs, docs)};
 }
 
 }  // namespace keepout::app

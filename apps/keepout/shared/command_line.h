@@ -162,6 +162,12 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
 /// Of a command that guards one tip: regions that it is to stay in. Precondition: its
 void add_guides(CLI::App& command, std::vector<Guide>& guides);
 
+/// Returns the names of a program's commands.
+std::vector<std::string> command_names(const CLI::App& app);
+
+/// Returns the names of a command's options, with their dashes.
+std::vector<std::string> option_names(const CLI::App& command);
+
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error);

@@ -9,11 +9,16 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <span>
+#include <sstream>
 
 #include "keepout/error.h"
 #include "keepout/simd_target.h"
 #include "keepout/version.h"
 #include "shared/command_line.h"
+#include "shared/completion.h"
+#include "shared/documentation.h"
+#include "shared/manual.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
 
@@ -56,6 +61,22 @@ std::string called_as(const char* path) {
   return std::filesystem::path(path).filename() == "run" ? "./run" : "keepout";
 }
 
+/// Prints what installed files ask for: completions and the manual page. Returns false if the words
+/// ask for neither.
+bool print_for_files(CLI::App& app, const std::vector<std::string>& words) {
+  const std::string first = words.empty() ? "" : words.front();
+  if (first == "--complete") {
+    print_completions(app, std::span(words).subspan(1), std::cout);
+  } else if (first == "--manual") {
+    // The reader's processor has other instruction sets than this one.
+    app.get_option("--simd")->option_text("TARGET");
+    print_manual(app, std::cout);
+  } else {
+    return false;
+  }
+  return true;
+}
+
 int run(const std::vector<Command>& commands, int argc, char** argv) {
   CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
                called_as(argv[0]));
@@ -72,14 +93,18 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
       ->check(one_of({targets.begin(), targets.end()}))
       ->default_str(std::string(simd_target()))
       ->type_name("TARGET");
-  for (const Command& command : commands) command.add(app);
-  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
-    command->group("Commands");
+  for (const Command& command : commands) {
+    command.add(app);
+    app.get_subcommand(std::string(command.name))->group(std::string(command.group));
   }
+  if (print_for_files(app, {argv + 1, argv + argc})) return EXIT_SUCCESS;
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& call_for_help) {
-    return app.exit(call_for_help);
+    std::ostringstream text;
+    const int status = app.exit(call_for_help, text, text);
+    std::cout << with_places_of_pages(text.str());
+    return status;
   } catch (const CLI::ParseError& error) {
     std::cerr << "keepout: " << usage_error(app, error) << '\n';
     return exit_usage;
