@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // keepout-bench: the commands of keepout, and those that compare, which keepout calls here.
+#include <span>
+
 #include "bench/bench.h"
 #include "compare/compare.h"
 #include "plan/plan.h"
@@ -11,5 +13,8 @@ int main(int argc, char** argv) {
   commands.push_back(command("bench", add_bench, bench));
   commands.push_back(command("compare", add_compare, compare));
   commands.push_back(command("plan", add_plan, plan));
+  for (Command& added : std::span(commands).last(3)) {
+    added.group = "Commands of the package keepout-bench";
+  }
   return run_program(commands, argc, argv);
 }

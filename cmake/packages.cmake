@@ -88,3 +88,6 @@ add_custom_target(packages
   COMMAND ${CMAKE_CPACK_COMMAND} --config ${PROJECT_BINARY_DIR}/CPackConfig.cmake
   DEPENDS ${packaged}
   WORKING_DIRECTORY ${PROJECT_BINARY_DIR} VERBATIM USES_TERMINAL)
+if(TARGET keepout_manual)
+  add_dependencies(packages keepout_manual)
+endif()

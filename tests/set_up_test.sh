@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # What ./run and ./test say before they build: no colours in pipes, and a clear word to a second user.
+# The first ./run shows a page before it builds the rest.
 #   set_up_test.sh SOURCE WORK
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
@@ -37,3 +38,40 @@ for program in run test; do
   done
 done
 chmod -R u+w "$work"
+
+# With programs that only say what they are called with: the order of ./run.
+rm -rf "$work"
+mkdir -p "$work"/{cmake,fixtures,apps/web}
+cp "$source/run" "$work"
+printf '#!/bin/sh\nexit "${PAGES_FAIL:-0}"\n' > "$work/apps/web/build"
+printf '#!/bin/sh\n' > "$work/fixtures/prepare"
+cat > "$work/cmake/set_up.sh" <<'STUB'
+say() { printf '==> %s\n' "$*"; }
+fail() { say "$*"; exit 1; }
+require_own_checkout() { :; }
+install_packages() { :; }
+build() {
+  local target programs=$root/build/$1/apps/keepout
+  say "builds ${*:2}"
+  mkdir -p "$programs"
+  for target in "${@:2}"; do
+    printf '#!/bin/sh\necho %s "$@"\n' "$target" > "$programs/${target/keepout_bench/keepout-bench}"
+  done
+  chmod +x "$programs"/*
+}
+STUB
+chmod +x "$work/apps/web/build" "$work/fixtures/prepare"
+said=$("$work/run" | sed "s,$work/,,")
+[[ $said == "==> builds keepout_first_page
+==> simulating on the CT skull
+keepout_first_page skull out/skull.html
+==> open out/skull.html"*"
+==> builds keepout keepout_bench keepout_modules
+"*"
+keepout simulate skull --bench --out out/skull.html" ]] || fault "the first run says: $said"
+said=$("$work/run")
+[[ $said != *first_page* ]] || fault "the second run says: $said"
+rm -r "$work/build"
+said=$(PAGES_FAIL=1 "$work/run")
+[[ $said == *"going on: reports will be plain pages"*keepout_first_page* ]] ||
+  fault "without pages the first run says: $said"

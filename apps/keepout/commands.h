@@ -28,6 +28,17 @@ struct InspectOptions {
 /// Throws Error when the file cannot be read; whatever is found in it is no error.
 void inspect(const InspectOptions& options, std::ostream& out);
 
+struct DocsOptions {
+  std::string page;  // "serve" for serve.md; empty: all of them
+};
+
+/// Returns the names of the pages of documentation, sorted; none where there is no documentation.
+std::vector<std::string> pages_of_docs();
+
+/// Prints where a page of the documentation is, or where all are, with their titles. Throws Error
+/// if there is no documentation.
+void docs(const DocsOptions& options, std::ostream& out);
+
 struct RegisterOptions {
   std::filesystem::path fiducials = {};
   LengthUnit unit = LengthUnit::millimetre;        // of what was measured

@@ -12,8 +12,10 @@
 
 namespace {
 
-/// Returns the first argument that is no option of the program itself; empty if there is none.
+/// Returns the first argument that is no option of the program itself; empty if there is none, or
+/// if words are to be completed.
 std::string_view word_of(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "--complete") return {};
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument = argv[i];
     if (argument == "--simd") ++i;

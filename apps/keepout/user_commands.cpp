@@ -16,6 +16,7 @@
 #include "shared/command_line.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
+#include "simulate/simulated_tool.h"
 #include "verify/verify.h"
 
 namespace keepout::app {
@@ -31,6 +32,14 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
   command.add_flag("--json", options.json, "Print JSON instead of text");
   command.add_flag("--self-intersections", options.self_intersections,
                    "Also count the pairs of triangles that cut through each other");
+}
+
+void add_docs(CLI::App& app, DocsOptions& options) {
+  CLI::App& command =
+      *app.add_subcommand("docs", "Say where the pages of the documentation are");
+  CLI::Option* page = command.add_option("PAGE", options.page, "The page to find");
+  page->type_name("");
+  if (const auto pages = pages_of_docs(); !pages.empty()) page->check(one_of(pages));
 }
 
 void add_register(CLI::App& app, RegisterOptions& options) {
@@ -208,6 +217,7 @@ std::vector<Command> user_commands(TimeParts time_parts) {
   SimulateOptions simulation;
   simulation.rules = names(activation_rules());
   simulation.time_parts = std::move(time_parts);
+  simulation.make_instrument = make_guarded_instrument;
   const auto serve_on_stdin = [](const ServeOptions& options, std::ostream&) {
     return serve(options, std::cerr);
   };
@@ -218,7 +228,8 @@ std::vector<Command> user_commands(TimeParts time_parts) {
           command("live", add_live, live),
           command("serve", add_serve, serve_on_stdin),
           command("verify", add_verify, verify),
-          command("report", add_report, report)};
+          command("report", add_report, report),
+          command("docs", add_docs, docs)};
 }
 
 }  // namespace keepout::app

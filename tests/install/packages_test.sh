@@ -16,6 +16,13 @@ for package in "$work"/packages/*.deb; do
   count=$((count + 1))
 done
 [ $count -eq 5 ] || fail "$count packages instead of 5"
+# What Debian's policy and bash look for, by the names of the programs.
+for package in keepout keepout-bench; do
+  held=$(dpkg -c "$work/packages/${package}"_*.deb)
+  for file in "man/man1/$package.1.gz" "bash-completion/completions/$package"; do
+    grep -q " ./usr/share/$file$" <<< "$held" || fail "$package has no $file"
+  done
+done
 
 cd "$work/unpacked"
 for forbidden in cgal gpl fixtures oracle; do

@@ -34,23 +34,6 @@ CLI::Option* add_space(CLI::App& command, const char* name, AnatomicalSpace& spa
       ->check(one_of({"ras", "lps", "RAS", "LPS"}));
 }
 
-std::vector<std::string> command_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-  }
-  if (app.get_name() == "./run") names.emplace_back(run_command);
-  return names;
-}
-
-std::vector<std::string> option_names(const CLI::App& command) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
-  return names;
-}
-
 bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
 
 std::string no_such_command(const CLI::App& app, const std::string& word) {
@@ -118,6 +101,23 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
 }
 
 }  // namespace
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  if (app.get_name() == "./run") names.emplace_back(run_command);
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
 
 CLI::Validator one_of(std::vector<std::string> names) {
   std::string description = '{' + enumerated(names) + '}';

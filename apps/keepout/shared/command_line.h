@@ -172,6 +172,12 @@ void add_guides(CLI::App& command, std::vector<Guide>& guides);
 /// Says that there is no command of that name, with a hint at what was meant and at the help.
 std::string unknown_command(const CLI::App& app, const std::string& word);
 
+/// Returns the names of a program's commands.
+std::vector<std::string> command_names(const CLI::App& app);
+
+/// Returns the names of a command's options, with their dashes.
+std::vector<std::string> option_names(const CLI::App& command);
+
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error);

@@ -10,12 +10,17 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <span>
+#include <sstream>
 
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/simd_target.h"
 #include "keepout/version.h"
 #include "shared/command_line.h"
+#include "shared/completion.h"
+#include "shared/documentation.h"
+#include "shared/manual.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
 #include "shared/progress.h"
@@ -77,6 +82,22 @@ std::vector<CLI::App*> subcommands(CLI::App& app) {
   return app.get_subcommands([](CLI::App*) { return true; });
 }
 
+/// Prints what installed files ask for: completions and the manual page. Returns false if the words
+/// ask for neither.
+bool print_for_files(CLI::App& app, const std::vector<std::string>& words) {
+  const std::string first = words.empty() ? "" : words.front();
+  if (first == "--complete") {
+    print_completions(app, std::span(words).subspan(1), std::cout);
+  } else if (first == "--manual") {
+    // The reader's processor has other instruction sets than this one.
+    app.get_option("--simd")->option_text("TARGET");
+    print_manual(app, std::cout);
+  } else {
+    return false;
+  }
+  return true;
+}
+
 /// Adds the options of the program, all commands, and the options that every command has.
 void set_up(CLI::App& app, const std::vector<Command>& commands) {
   app.get_formatter()->label("SUBCOMMAND", "COMMAND");
@@ -92,14 +113,16 @@ void set_up(CLI::App& app, const std::vector<Command>& commands) {
       ->check(one_of({targets.begin(), targets.end()}))
       ->default_str(std::string(simd_target()))
       ->type_name("TARGET");
-  for (const Command& command : commands) command.add(app);
+  for (const Command& command : commands) {
+    command.add(app);
+    app.get_subcommand(std::string(command.name))->group(std::string(command.group));
+  }
   const auto add_quiet = [](CLI::App& to) {
     to.add_flag_callback("-q,--quiet", be_quiet,
                          "Print no progress and no notices: only results, warnings and errors");
   };
   add_quiet(app);
   for (CLI::App* command : subcommands(app)) {
-    command->group("Commands");
     for (CLI::Option* option : command->get_options()) {
       if (option->get_items_expected_max() > 0) option->check(not_empty());
     }
@@ -126,8 +149,8 @@ int help(CLI::App& app) {
     command = *found;
   }
   const std::string prefix = command == &app ? "" : app.get_name() + " ";
-  std::cout << app.get_formatter()->make_help(command, prefix + command->get_name(),
-                                              CLI::AppFormatMode::Normal);
+  std::cout << with_places_of_pages(app.get_formatter()->make_help(
+      command, prefix + command->get_name(), CLI::AppFormatMode::Normal));
   return EXIT_SUCCESS;
 }
 
@@ -135,6 +158,7 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
   CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
                called_as(argv[0]));
   set_up(app, commands);
+  if (print_for_files(app, {argv + 1, argv + argc})) return EXIT_SUCCESS;
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& call_for_help) {
@@ -144,7 +168,10 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
       std::cerr << "keepout: " << unknown_command(app, extra.front()) << '\n';
       return exit_usage;
     }
-    return app.exit(call_for_help);
+    std::ostringstream text;
+    const int status = app.exit(call_for_help, text, text);
+    std::cout << with_places_of_pages(text.str());
+    return status;
   } catch (const CLI::ParseError& error) {
     std::cerr << "keepout: " << usage_error(app, error) << '\n';
     return exit_usage;

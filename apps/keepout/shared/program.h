@@ -28,6 +28,7 @@ struct Command {
   std::string_view name;
   std::function<void(CLI::App& app)> add;    // adds the command and its options to a command line
   std::function<int(const Call& call)> run;  // runs it with these options; returns the exit status
+  std::string_view group = "Commands";       // the heading above it in help and manual
 };
 
 /// Returns the command of that name whose options are an Options. `run` takes the options and the
@@ -51,6 +52,9 @@ Command command(std::string_view name, void (*add)(CLI::App&, Options&), Run run
 
 /// Runs the command that the command line names. Returns the exit status: see `--help`. Prints what
 /// failed on stderr.
+///
+/// Two command lines are for installed files, not for users. `--complete WORD...` prints what the
+/// last word may be completed to (completion.bash); `--manual` prints the manual page.
 int run_program(const std::vector<Command>& commands, int argc, char** argv);
 
 }  // namespace keepout::app

@@ -87,7 +87,7 @@ void print_next(const SimulateOptions& options, const Json& record, std::ostream
   out << (missing_template(record).empty() ? "\nReport, with pictures, tables and settings: "
                                            : "\nReport, with tables and settings, no pictures: ")
       << options.files.page->string() << '\n';
-  if (is_quiet()) return;
+  if (is_quiet() || options.called_as.empty()) return;
   const std::string robot = options.robot.empty() ? "" : " --robot " + options.robot;
   const std::string mesh =
       shell_word(options.meshes.empty() ? "skull" : options.meshes.front().string());
@@ -109,7 +109,7 @@ void print_next(const SimulateOptions& options, const Json& record, std::ostream
 
 int simulate(const SimulateOptions& options, std::ostream& out) {
   const bool has_tip = options.robot.empty();
-  const auto tool = has_tip ? make_guarded_tip(options) : make_guarded_instrument(options);
+  const auto tool = has_tip ? make_guarded_tip(options) : options.make_instrument(options);
   std::vector<std::filesystem::path> meshes = options.meshes;
   if (meshes.empty()) meshes = {"skull", "airway", "brain"};
   OutputFiles outputs = options.files.open(meshes);

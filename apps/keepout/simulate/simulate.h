@@ -17,6 +17,7 @@
 namespace keepout::app {
 
 struct SimulateOptions;
+class SimulatedTool;
 
 /// Timings of all indices, rules and solvers on the mesh of a simulation.
 struct PartTimings {
@@ -31,6 +32,10 @@ using TimeParts = std::function<PartTimings(const SimulateOptions& options,
                                             const std::shared_ptr<const Mesh>& mesh,
                                             const StopSignal& stop, std::ostream& out)>;
 
+/// Makes the instrument of options.robot.
+using MakeInstrument =
+    std::function<std::unique_ptr<SimulatedTool>(const SimulateOptions& options)>;
+
 struct SimulateOptions {
   std::vector<std::filesystem::path> meshes;  // one; with a robot any number, by default real ones
   LoadOptions load = {};
@@ -40,11 +45,12 @@ struct SimulateOptions {
   StrokeSettings strokes;
   double max_step = 0.5;                 // longest increment commanded in a cycle [mm]
   TimeParts time_parts = {};             // unset in programs that cannot
+  MakeInstrument make_instrument = {};   // unset in a program that simulates a tip only
   bool is_timing_parts = false;          // whether to do so after the simulation
   bool is_verbose = false;               // prints the tables of these timings
   std::string robot;                     // drives its instrument instead of a tip; empty: a tip
   std::vector<double> speeds{1.0, 5.0};  // of it, in multiples of 0.5 mm and 0.02 rad a cycle
-  std::string called_as = "keepout";     // the name of the command in the suggestions at the end
+  std::string called_as = "keepout";     // in the suggestions at the end; empty: no suggestions
   std::string command;                   // that does it again
 };
 

@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# An installed keepout has its documentation, its manual page and its completion in bash, wherever it
+# lies; each page that its help names is where the help says.
+#   documentation_test.sh PREFIX WORK
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/common.sh"
+prefix=$1 work=$2
+
+rm -rf "$work"
+mkdir -p "$work"
+cp -al "$prefix" "$work/moved"
+cd "$work"
+keepout=$PWD/moved/bin/keepout
+docs=$PWD/moved/share/doc/keepout/docs
+
+[ "$("$keepout" docs serve)" = "$docs/serve.md" ] || fail "docs serve says: $("$keepout" docs serve)"
+said=$("$keepout" docs)
+[ "${said%%$'\n'*}" = "$docs" ] || fail "docs says: $said"
+for page in "$here"/../../docs/*.md; do
+  name=$(basename "$page" .md)
+  cmp "$page" "$docs/$name.md" || fail "$name.md is not installed as it is"
+  grep -q "^  $name  *[A-Z\`k]" <<< "$said" || fail "docs does not list $name: $said"
+done
+! said=$("$keepout" docs sevre 2>&1) || fail "there is a page 'sevre'"
+[[ $said == *"did you mean 'serve'?"* ]] || fail "docs sevre says: $said"
+
+commands=$("$keepout" --help | sed -nE '/^Commands/,/^$/s/^  ([a-z]+) {3,}.*/\1/p' | sort -u)
+[ "$(wc -l <<< "$commands")" -gt 10 ] || fail "help lists few commands: $commands"
+help=$(for command in $commands; do "$keepout" "$command" --help; done)
+named=$(grep -oE '[^ ]*docs/[a-z_-]+\.md' <<< "$help" | sort -u)
+[ "$(wc -l <<< "$named")" -gt 3 ] || fail "help names few pages: $named"
+for page in $named; do
+  [[ $page == "$docs"/* && -s $page ]] || fail "help names $page, which is not there"
+done
+
+# Commands and options: all that help has, the manual page has.
+manual=moved/share/man/man1/keepout.1.gz
+for command in $commands; do
+  zgrep -q "^\.SS keepout $command \[OPTIONS\]" "$manual" || fail "the manual page has no $command"
+done
+for option in $(grep -oE '^ +--[a-z-]+' <<< "$help" | sort -u); do
+  zgrep -qF -- "${option//-/\\-}" "$manual" || fail "the manual page has no $option"
+done
+if command -v man > /dev/null; then
+  for page in keepout keepout-bench; do
+    warnings=$(cd moved/share/man && LC_ALL=C.UTF-8 MANROFFSEQ='' MANWIDTH=80 \
+      man --warnings -E UTF-8 -l -Tutf8 -Z "man1/$page.1.gz" 2>&1 > /dev/null)
+    [ -z "$warnings" ] || fail "man says of $page: $warnings"
+    shown=$(cd moved/share/man && MANWIDTH=80 man -l "man1/$page.1.gz" | col -b)
+    [[ $shown == *"keepout inspect [OPTIONS] MESH"* ]] || fail "man shows of $page: $shown"
+  done
+else
+  echo "there is no man: how it shows the page is not tested"
+fi
+
+# completes WORDS... EXPECTED: the last of the words may become EXPECTED.
+completes() {
+  local expected=${*: -1} words=("${@:1:$#-1}") reply
+  reply=$(bash -c '
+    . "$1"
+    COMP_WORDS=("${@:2}") COMP_CWORD=$(($# - 2)) COMPREPLY=()
+    $(complete -p keepout | sed -E "s/.* -F ([^ ]+) .*/\1/") "$2"
+    echo "${COMPREPLY[*]}"' - moved/share/bash-completion/completions/keepout "$keepout" "${words[@]}")
+  [ "$reply" = "$expected" ] || fail "'${words[*]}' is completed to '$reply' instead of '$expected'"
+}
+cmp moved/share/bash-completion/completions/keepout{,-bench}
+completes insp inspect
+completes ben bench
+completes docs gui guides
+completes inspect --self --self-intersections
+completes replay cube --index wide_ wide_bvh
+completes replay cube --index = wide_ wide_bvh
+completes replay --index wide_bvh --solver act active_set
+completes --simd SSE2 insp inspect
+completes inspect cu ''
+completes simulate --ben --bench
