@@ -41,6 +41,7 @@ export async function inspectionSections(main: HTMLElement, record: ReportRecord
   }));
   const marked = findings.filter(({ places }) => places.length > 0);
   main.append(
+    ...paragraphs("/inspection/notices", "account"),
     ...paragraphs("/inspection/warnings", "account"),
     ...findings.filter(({ places }) => places.length === 0).map(unmarked),
     pictures(anatomy, marked),
