@@ -167,11 +167,12 @@ class Solid {
  public:
   Solid(const Mesh& mesh, const Parts& all, const Part& part) {
     Surface surface;
-    surface.vertices.assign(mesh.vertices().begin(), mesh.vertices().end());
     for (const TriangleId t : part.triangles) {
-      Corners corners = mesh.corners(t);
+      Triangle corners = mesh.triangle(t);
       if (all.is_disagreeing[t] != (part.volume < 0.0)) std::swap(corners[1], corners[2]);
-      surface.triangles.push_back(corners);
+      const auto first = static_cast<VertexId>(surface.vertices.size());
+      surface.vertices.insert(surface.vertices.end(), corners.begin(), corners.end());
+      surface.triangles.push_back({first, first + 1, first + 2});
     }
     const auto own = std::make_shared<const Mesh>(weld(std::move(surface)));
     neighborhood_.emplace(own, std::make_shared<const PdTree>(own), own->triangle_count(), budget_);
