@@ -63,7 +63,7 @@ TEST(Convert, WithoutOrientTheWindingStays) {
   const auto given = load(folder.write("bad.obj", cube_with({{"f 5 6 7", "f 6 5 7"}}))).mesh;
   const auto outcome = succeeded(folder.run("convert bad.obj out.ply"));
   EXPECT_CONTAINS(outcome.output, "turned        none; --orient");
-  EXPECT_CONTAINS(outcome.output, "out.ply: is wound inconsistently");
+  EXPECT_CONTAINS(outcome.output, "out.ply: the surface is wound inconsistently");
   EXPECT_EQ(triangles_of(*load(folder.file("out.ply")).mesh), triangles_of(*given));
 }
 
@@ -85,7 +85,7 @@ TEST(Convert, WhatCannotBeDecidedIsSaid) {
   folder.write("open.obj", cube_with({{"f 5 6 7\n", ""}}));
   const auto outcome = succeeded(folder.run("convert open.obj out.stl --orient"));
   EXPECT_CONTAINS(outcome.output, "undecided     1 open part: neighbors agree");
-  EXPECT_CONTAINS(outcome.output, "out.stl: is an open surface");
+  EXPECT_CONTAINS(outcome.output, "out.stl: the surface is open");
 }
 
 TEST(Convert, SpacesAreTurnedAndStated) {
