@@ -11,6 +11,7 @@
 
 #include "commands.h"
 #include "keepout/error.h"
+#include "keepout/index/orient.h"
 #include "keepout/mesh/binary_ply.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/doctor.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/index/orient.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,11 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "half_edges.h"
+#include "../mesh/half_edges.h"
 #include "keepout/index/budget.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
-#include "keepout/mesh/repair.h"
 
 namespace keepout {
 namespace {
