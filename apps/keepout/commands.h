@@ -22,10 +22,13 @@ struct InspectOptions {
   LoadOptions load = {};
   bool json = false;
   bool self_intersections = false;  // costs seconds where the rest costs a fraction of one
+  std::optional<std::filesystem::path> page = {};  // of the mesh with its faults, to be written
+  std::string command = {};                        // the whole command line, for the page
 };
 
-/// Reads a mesh file and prints what it is made of and what is wrong with it, in words or as JSON.
-/// Throws Error when the file cannot be read; whatever is found in it is no error.
+/// Reads a mesh file and prints what it is made of, what is wrong with it and where, in words or as
+/// JSON. Throws Error if the file cannot be read or the page cannot be written; faults of the mesh
+/// are no error.
 void inspect(const InspectOptions& options, std::ostream& out);
 
 struct DocsOptions {
@@ -38,6 +41,21 @@ std::vector<std::string> pages_of_docs();
 /// Prints where a page of the documentation is, or where all are, with their titles. Throws Error
 /// if there is no documentation.
 void docs(const DocsOptions& options, std::ostream& out);
+
+struct ConvertOptions {
+  std::filesystem::path input;   // a mesh
+  std::filesystem::path output;  // .stl or .ply, to be written
+  LoadOptions load = {};
+  bool orient = false;  // see Orientation
+};
+
+/// Returns why no mesh can be written to a file of this name; empty if one can.
+std::string fault_of_output(const std::filesystem::path& output);
+
+/// Reads a mesh and writes it again: welded, without faulty triangles and, if asked for, oriented.
+/// Prints all that it changed, and what it could not decide. Throws Error, also if the output would
+/// overwrite the input, or if no triangle is left.
+void convert(const ConvertOptions& options, std::ostream& out);
 
 struct RegisterOptions {
   std::filesystem::path fiducials = {};

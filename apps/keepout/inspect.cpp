@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include <iomanip>
+#include <algorithm>
+#include <iostream>
 #include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "commands.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
+#include "record/drawn_mesh.h"
+#include "record/record.h"
 #include "shared/columns.h"
+#include "shared/fact_row.h"
 #include "shared/findings.h"
 #include "shared/named_mesh.h"
 #include "shared/number_text.h"
@@ -19,10 +24,16 @@
 namespace keepout::app {
 namespace {
 
+// Places of each kind of fault, at most.
+constexpr std::size_t places_in_text = 3;
+constexpr std::size_t places_in_json = 10;
+constexpr std::size_t places_on_page = 2000;
+
 struct Inspection {
   LoadedMesh loaded;
   MeshFindings mesh;
-  std::optional<std::size_t> self_intersections;
+  std::optional<SelfIntersections> self_intersections;
+  std::vector<Finding> findings;
 };
 
 Inspection examine_file(const InspectOptions& options) {
@@ -30,11 +41,14 @@ Inspection examine_file(const InspectOptions& options) {
   LoadOptions load = options.load;
   load.check = MeshCheck::none;  // all that it would say, and more, is among the findings
   inspection.loaded = read_named_mesh(options.mesh, load);
-  inspection.mesh = examine(*inspection.loaded.mesh);
+  const Mesh& mesh = *inspection.loaded.mesh;
+  const std::size_t most = options.page ? places_on_page : places_in_json;
+  inspection.mesh = examine(mesh, most);
   if (options.self_intersections) {
     const PdTree tree(inspection.loaded.mesh);
-    inspection.self_intersections = count_self_intersections(*inspection.loaded.mesh, tree);
+    inspection.self_intersections = find_self_intersections(mesh, tree, most);
   }
+  inspection.findings = findings_of(inspection.mesh, inspection.self_intersections);
   return inspection;
 }
 
@@ -58,10 +72,6 @@ std::string unit_text(const LoadOptions& load, double extent) {
   return text;
 }
 
-void print_row(std::ostream& out, std::string_view name, const std::string& value) {
-  out << "  " << std::left << std::setw(14) << name << value << '\n';
-}
-
 /// Which anatomical space, and how it is known.
 std::string space_text(const LoadedMesh& loaded) {
   std::string text(name(loaded.space));
@@ -69,6 +79,18 @@ std::string space_text(const LoadedMesh& loaded) {
   if (loaded.stated == AnatomicalSpace::unstated) return text + ", not stated in the file";
   if (loaded.stated == loaded.space) return text + ", as stated in the file";
   return text + ", turned from " + std::string(name(loaded.stated));
+}
+
+/// Returns one place of each of the first groups of faults, and how many groups there are beside.
+std::string where_text(const FaultPlaces& places) {
+  std::string text;
+  const std::size_t count = std::min({places_in_text, places.groups, places.places.size()});
+  for (std::size_t i = 0; i < count; ++i) {
+    text.append(i == 0 ? "near (" : ", (").append(triple(places.places[i].at, ", ")) += ')';
+  }
+  text += " mm";
+  const std::size_t more = places.groups - count;
+  return more > 0 ? text + ", and in " + counted(more, "more place") : text;
 }
 
 /// As JSON has it: null where nothing is known.
@@ -100,14 +122,16 @@ void print_text(const InspectOptions& options, const Inspection& inspection, std
                                  : "open");
   if (mesh.genus) print_row(out, "handles", grouped(static_cast<std::size_t>(*mesh.genus)));
   if (inspection.self_intersections) {
-    print_row(out, "intersecting", grouped(*inspection.self_intersections) + " pairs of triangles");
+    print_row(out, "intersecting",
+              grouped(inspection.self_intersections->pairs) + " pairs of triangles");
   }
 
   out << "\nFindings\n";
-  const std::vector<Finding> findings = findings_of(mesh, inspection.self_intersections);
-  if (findings.empty() && inspection.loaded.warnings.empty()) out << "  none\n";
-  for (const Finding& finding : findings) {
-    out << "  - " << text_of(finding) << ".\n    What to do: " << finding.advice << ".\n";
+  if (inspection.findings.empty() && inspection.loaded.warnings.empty()) out << "  none\n";
+  for (const Finding& finding : inspection.findings) {
+    out << "  - " << text_of(finding) << ".\n";
+    if (finding.places.groups > 0) out << "    Where: " << where_text(finding.places) << ".\n";
+    out << "    What to do: " << finding.advice << ".\n";
   }
   for (const std::string& warning : inspection.loaded.warnings) {
     out << "  - " << warning << ".\n";
@@ -119,10 +143,23 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-void print_json(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
+/// At most so many places, as JSON has them.
+Json list_of(const FaultPlaces& places, std::size_t most) {
+  Json list = Json::array();
+  for (const FaultPlace& place : places.places) {
+    if (list.size() == most) break;
+    Json corners = Json::array();
+    for (const Vec3& corner : place.corners) corners.push_back(json_of(corner));
+    list.push_back({{"at", json_of(place.at)}, {"corners", std::move(corners)}});
+  }
+  return list;
+}
+
+/// All that was found, with at most so many places of each kind of fault.
+Json members_of(const Inspection& inspection, std::size_t most_places) {
   const MeshFindings& mesh = inspection.mesh;
-  Json json{{"mesh", options.mesh.string()},
-            {"unit", "mm"},
+  const auto& crossings = inspection.self_intersections;
+  Json json{{"unit", "mm"},
             {"other_units", Json::array()},
             {"space", or_null(inspection.loaded.space)},
             {"stated_space", or_null(inspection.loaded.stated)},
@@ -149,34 +186,73 @@ void print_json(const InspectOptions& options, const Inspection& inspection, std
             // Of an open surface it would depend on where the origin is.
             {"signed_volume", mesh.is_watertight() ? Json(mesh.signed_volume) : nullptr},
             {"bounds", {{"low", json_of(mesh.bounds.low)}, {"high", json_of(mesh.bounds.high)}}},
-            {"self_intersections", or_null(inspection.self_intersections)},
+            {"self_intersections", crossings ? Json(crossings->pairs) : Json(nullptr)},
             {"scale", inspection.loaded.scale},
             {"flipped", inspection.loaded.flipped},
             {"warnings", inspection.loaded.warnings},
             {"notices", inspection.loaded.notices},
+            {"most_places", most_places},
             {"findings", Json::array()}};
   for (const UnitGuess& guess : other_units(mesh.bounds.size().maxCoeff())) {
     json["other_units"].push_back({{"unit", guess.unit}, {"scale", guess.millimetres}});
   }
-  for (const Finding& finding : findings_of(mesh, inspection.self_intersections)) {
+  for (const Finding& finding : inspection.findings) {
     json["findings"].push_back({{"key", finding.key},
                                 {"count", finding.count},
+                                {"text", text_of(finding)},
                                 {"meaning", finding.meaning},
-                                {"advice", finding.advice}});
+                                {"advice", finding.advice},
+                                {"groups", finding.places.groups},
+                                {"places", list_of(finding.places, most_places)}});
   }
+  return json;
+}
+
+void print_json(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
+  Json json{{"mesh", options.mesh.string()}};
+  json.update(members_of(inspection, places_in_json));
   // A file name need not be UTF-8, and JSON must.
   out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+/// "2 boundary edges, 1 degenerate triangle, inside out".
+std::string headline_of(const std::string& mesh, const Inspection& inspection) {
+  std::string text;
+  for (const Finding& finding : inspection.findings) {
+    std::string fault(finding.key);
+    std::ranges::replace(fault, '_', ' ');
+    if (!finding.one.empty()) fault = counted(finding.count, finding.one);
+    text += (text.empty() ? "" : ", ") + fault;
+  }
+  return mesh + ": " + (text.empty() ? "no faults were found" : text) + ".";
+}
+
+/// The record of the page: docs/records.md.
+Json record_of(const InspectOptions& options, const Inspection& inspection) {
+  const std::string name = options.mesh.filename().string();
+  Json record = new_record({.kind = "inspect",
+                            .command = options.command,
+                            .subject = "What " + name + " is made of, and what is wrong with it",
+                            .headline = headline_of(name, inspection)});
+  record["mesh"] = drawn_mesh(name, *inspection.loaded.mesh);
+  record["mesh"]["surface"] = inspection.mesh.is_closed() ? "closed" : "open";
+  record["inspection"] = members_of(inspection, places_on_page);
+  return record;
 }
 
 }  // namespace
 
 void inspect(const InspectOptions& options, std::ostream& out) {
+  const RecordFiles files{.json = {}, .page = options.page};
+  OutputFiles outputs = files.open({options.mesh});
   const Inspection inspection = examine_file(options);
+  if (options.page) write_record(outputs, record_of(options, inspection), files, std::cerr);
   if (options.json) {
     print_json(options, inspection, out);
-  } else {
-    print_text(options, inspection, out);
+    return;
   }
+  print_text(options, inspection, out);
+  if (options.page) out << "\nPage with the faults marked: " << options.page->string() << '\n';
 }
 
 }  // namespace keepout::app

@@ -25,13 +25,36 @@ namespace {
 void add_inspect(CLI::App& app, InspectOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "inspect",
-      "Say what a mesh is made of and what is wrong with it: counts, holes, winding, "
+      "Say what a mesh is made of, what is wrong with it and where: counts, holes, winding, "
       "degenerate and duplicate triangles, size, unit and anatomical space");
   add_mesh(command, options.mesh);
   add_load_options(command, options.load);
-  command.add_flag("--json", options.json, "Print JSON instead of text");
+  command.add_flag("--json", options.json, "Print JSON instead of text: see docs/records.md");
   command.add_flag("--self-intersections", options.self_intersections,
-                   "Also count the pairs of triangles that cut through each other");
+                   "Also find the pairs of triangles that cut through each other");
+  command
+      .add_option("--out", options.page,
+                  "Where to write a page that shows the mesh with its faults marked")
+      ->type_name("PAGE.html");
+}
+
+void add_convert(CLI::App& app, ConvertOptions& options) {
+  CLI::App& command = *app.add_subcommand(
+      "convert",
+      "Write a mesh again as binary STL or PLY: welded, without degenerate and duplicate "
+      "triangles, and, if asked for, in another space, unit or orientation; say what changed");
+  command.add_option("IN", options.input, std::string(mesh_help))->type_name("")->required();
+  command
+      .add_option("OUT", options.output,
+                  "Where to write the mesh, in mm: .stl, which rounds coordinates to single "
+                  "precision, or .ply, which keeps all digits")
+      ->type_name("")
+      ->required()
+      ->check(CLI::Validator([](const std::string& path) { return fault_of_output(path); }, ""));
+  add_load_options(command, options.load);
+  command.add_flag("--orient", options.orient,
+                   "Turn triangles so that neighbors agree and closed parts face outward; say "
+                   "where that cannot be decided");
 }
 
 void add_docs(CLI::App& app, DocsOptions& options) {
@@ -222,6 +245,7 @@ std::vector<Command> user_commands(TimeParts time_parts) {
     return serve(options, std::cerr);
   };
   return {command("inspect", add_inspect, inspect),
+          command("convert", add_convert, convert),
           command("register", add_register, register_fiducials),
           command("replay", add_replay, replay),
           command("simulate", add_simulate, simulate, std::move(simulation)),

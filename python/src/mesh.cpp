@@ -100,16 +100,44 @@ py::array normals_of(const py::object& self) {
 /// What the doctor found; the search for self-intersections takes longest and is made when asked
 /// for.
 struct Inspection : MeshFindings {
-  std::optional<std::size_t> self_intersections;
+  std::optional<std::size_t> self_intersections = {};
+  FaultPlaces crossings = {};
 };
 
-Inspection inspect(const MeshHandle& mesh, bool self_intersections) {
+Inspection inspect(const MeshHandle& mesh, bool self_intersections, std::size_t places) {
   const py::gil_scoped_release release;
-  Inspection inspection{examine(*mesh.mesh), std::nullopt};
+  Inspection inspection{examine(*mesh.mesh, places)};
   if (self_intersections) {
-    inspection.self_intersections = count_self_intersections(*mesh.mesh, PdTree(mesh.mesh));
+    SelfIntersections found = find_self_intersections(*mesh.mesh, PdTree(mesh.mesh), places);
+    inspection.self_intersections = found.pairs;
+    inspection.crossings = std::move(found.places);
   }
   return inspection;
+}
+
+/// (n, corners, 3)
+py::array_t<double> corners_of(const FaultPlaces& faults, py::ssize_t corners) {
+  py::array_t<double> array({std::ssize(faults.places), corners, py::ssize_t{3}});
+  double* to = array.mutable_data();
+  for (const FaultPlace& place : faults.places) {
+    for (const Vec3& corner : place.corners) to = std::copy_n(corner.data(), 3, to);
+  }
+  return array;
+}
+
+py::dict places_of(const Inspection& inspection) {
+  const MeshFaultPlaces& places = inspection.places;
+  py::dict all;
+  all["boundary_edges"] = corners_of(places.boundary_edges, 2);
+  all["non_manifold_edges"] = corners_of(places.non_manifold_edges, 2);
+  all["inconsistent_edges"] = corners_of(places.inconsistent_edges, 2);
+  all["pinched_vertices"] = corners_of(places.pinched_vertices, 1);
+  all["degenerate_triangles"] = corners_of(places.degenerate_triangles, 3);
+  all["duplicate_triangles"] = corners_of(places.duplicate_triangles, 3);
+  if (inspection.self_intersections) {
+    all["self_intersections"] = corners_of(inspection.crossings, 6);
+  }
+  return all;
 }
 
 py::tuple tuple_of(const Vec3& v) { return py::make_tuple(v.x(), v.y(), v.z()); }
@@ -205,6 +233,13 @@ void bind_inspection(py::module_& module) {
           "Highest corner of the bounds [length].")
       .def_readonly("self_intersections", &Inspection::self_intersections,
                     "Pairs of triangles that cut through each other; None unless asked for.")
+      .def_property_readonly(
+          "places", &places_of,
+          "Where faults are: (n, k, 3) arrays of the corners of n faults of a kind, by the name "
+          "of\n"
+          "its count ('degenerate_triangles' has both kinds of these). An edge has k = 2 corners, "
+          "a\nvertex 1, a triangle 3; a pair of 'self_intersections' has those of both triangles. "
+          "One\nfault of each group that shares vertices, such as each hole, comes first.")
       .def("__str__", &summary)
       .def("__repr__",
            [](const Inspection& i) { return "<keepout.Inspection: " + summary(i) + ">"; });
@@ -266,7 +301,10 @@ void bind_mesh(py::module_& module) {
           },
           "The anatomical space of the coordinates, 'RAS' or 'LPS', if it is known; or None.")
       .def("inspect", &inspect, py::kw_only(), py::arg("self_intersections") = false,
-           "Examines the mesh; repairs nothing. The search for self-intersections takes longest.")
+           py::arg("places") = 10,
+           "Examines the mesh; repairs nothing. The search for self-intersections takes "
+           "longest.\n\n"
+           "places: at most so many places of each kind of fault are kept, from 0 on.")
       .def("__len__", [](const MeshHandle& self) { return self.mesh->triangle_count(); })
       .def("__repr__", [](const MeshHandle& self) {
         return py::str("<keepout.Mesh of {} triangles, {} vertices>")

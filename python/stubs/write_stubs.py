@@ -41,6 +41,7 @@ ARGUMENTS = {
 }
 RESULTS = {
     "Body.points": "list[tuple[int, tuple[float, float, float]]]",
+    "Inspection.places": "dict[str, NDArray[np.float64]]",
     "InstrumentStep.degraded": "tuple[tuple[int, int, float | None], ...]",
     "activations": "list[Part]",
     "high": "tuple[float, float, float]",

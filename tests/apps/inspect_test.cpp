@@ -151,6 +151,54 @@ TEST_F(Inspect, SelfIntersectionsAreCountedOnRequest) {
   EXPECT_GT(json(true).at("self_intersections"), 0);
 }
 
+TEST_F(Inspect, EachFindingSaysWhere) {
+  Surface open = tetrahedron();
+  open.triangles.pop_back();
+  open = together(open, moved(open, {10, 0, 0}));
+  open = together(open, moved(open, {0, 10, 0}));
+  write(open);
+  EXPECT_CONTAINS(text(),
+                  "Where: near (50, 50, 0), (1050, 50, 0), (50, 1050, 0) mm, and in 1 more place.");
+  const nlohmann::json finding = json().at("findings").at(0);
+  EXPECT_EQ(finding.at("key"), "boundary_edges");
+  EXPECT_EQ(finding.at("groups"), 4);
+  EXPECT_EQ(finding.at("places").size(), 10u);  // of twelve edges
+  EXPECT_EQ(finding.at("places")[0].at("at"), nlohmann::json({50.0, 50.0, 0.0}));
+  EXPECT_EQ(finding.at("places")[0].at("corners"),
+            nlohmann::json({{0.0, 100.0, 0.0}, {100.0, 0.0, 0.0}}));
+}
+
+TEST_F(Inspect, SelfIntersectionsHavePlacesToo) {
+  write(together(tetrahedron(), moved(tetrahedron(), {0.25, 0.25, -0.25})));
+  const nlohmann::json report = json(true);
+  const nlohmann::json& finding = report.at("findings").at(0);
+  EXPECT_EQ(finding.at("key"), "self_intersections");
+  EXPECT_EQ(finding.at("places")[0].at("corners").size(), 6u);
+  EXPECT_CONTAINS(text(true), "Where: near (");
+}
+
+TEST_F(Inspect, APageIsMadeOfTheMeshAndItsFaults) {
+  Surface open = tetrahedron();
+  open.triangles.pop_back();
+  write(open);
+  const std::filesystem::path page = folder.path() / "page.html";
+  std::ostringstream out;
+  inspect({.mesh = file, .page = page, .command = "keepout inspect mesh.stl"}, out);
+  EXPECT_CONTAINS(out.str(), "Page with the faults marked: " + page.string());
+  // Without the front end of pages a plain page, and the record beside it.
+  EXPECT_CONTAINS(folder.contents("page.html"), "boundary_edges");
+  const nlohmann::json record = nlohmann::json::parse(folder.contents("page.html.json"));
+  EXPECT_EQ(record.at("keepout_record"), "inspect");
+  EXPECT_EQ(record.at("headline"), "mesh.stl: 3 boundary edges.");
+  EXPECT_EQ(record.at("mesh").at("surface"), "open");
+  EXPECT_EQ(record.at("inspection").at("findings").at(0).at("places").size(), 3u);
+  std::ostringstream json;
+  inspect({.mesh = file, .json = true, .page = page}, json);
+  EXPECT_EQ(nlohmann::json::parse(json.str()).at("boundary_edges"), 3);
+  EXPECT_CONTAINS(error_of([&] { inspect({.mesh = file, .page = file}, out); }),
+                  "is the same file as MESH");
+}
+
 TEST_F(Inspect, WarningsOfTheReaderAreAmongTheFindings) {
   file = folder.write("mesh.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\nl 1 2\n");
   EXPECT_CONTAINS(text(), "mesh.obj: 1 lines or points are left out");

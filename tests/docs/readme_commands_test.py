@@ -78,7 +78,7 @@ def main():
                        KEEPOUT_WEB=str(web_page(root, folder)), KEEPOUT_COMMAND=str(keepout),
                        PYTHONPATH=f"{keepout.parents[2] / 'python'}:{root}")
     commands = commands_of((root / "README.md").read_text(encoding="utf-8"))
-    missing = [n for n in ("inspect", "replay", "simulate", "serve", "verify", "bench", "compare", "live", "plan",
+    missing = [n for n in ("inspect", "convert", "replay", "simulate", "serve", "verify", "bench", "compare", "live", "plan",
                            "register", "report", "experiments")
                if not any(c.startswith(f"./run {n}") for c in commands)]
     if missing:

@@ -225,6 +225,23 @@ def test_welding_and_inspection():
     assert np.all(np.einsum("ij,ij->i", normals, welded.vertices[welded.triangles[:, 0]]) > 0)
 
 
+def test_an_inspection_says_where_faults_are():
+    vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [3, 2, 2]]
+    found = keepout.Mesh(vertices, triangles).inspect(self_intersections=True)
+    assert found.boundary_edges == 3 and found.repeated_vertex_triangles == 1
+    edges = found.places["boundary_edges"]
+    assert edges.shape == (3, 2, 3)
+    np.testing.assert_array_equal(edges[0], [[1, 0, 0], [0, 1, 0]])
+    np.testing.assert_array_equal(
+        found.places["degenerate_triangles"], [[[0, 0, 1], [0, 1, 0], [0, 1, 0]]])
+    assert found.places["pinched_vertices"].shape == (0, 1, 3)
+    assert found.places["self_intersections"].shape == (0, 6, 3)
+    few = keepout.Mesh(vertices, triangles).inspect(places=1)
+    assert few.boundary_edges == 3 and few.places["boundary_edges"].shape == (1, 2, 3)
+    assert "self_intersections" not in few.places
+
+
 def test_loading_tells_what_is_wrong(tmp_path, sphere_file):
     mesh = keepout.load_mesh(str(sphere_file))
     assert mesh.inspect().watertight and mesh.warnings == [] and len(mesh) > 1000

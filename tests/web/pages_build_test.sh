@@ -87,6 +87,9 @@ touch "$work/apps/web/src/main.ts"
 run well --simd AVX2 bench
 calls_it "npm run"
 calls_no "npm ci"
+touch "$work/apps/web/src/main.ts"
+run well inspect cube --json --out page.html
+calls_it "npm run"
 
 run well live cube
 calls_it "cmake --build --preset wasm"

@@ -51,6 +51,16 @@ function run(name, ...args) {
 const experimentsFile = join(folder, "experiments.json");
 writeFileSync(experimentsFile, JSON.stringify(experimentsRecord));
 
+/** A box without one of its triangles, with another one turned, and a piece of a triangle's edge. */
+const faultyFile = join(folder, "faulty.obj");
+writeFileSync(
+  faultyFile,
+  `v -20 -20 -20\nv 20 -20 -20\nv 20 20 -20\nv -20 20 -20
+v -20 -20 20\nv 20 -20 20\nv 20 20 20\nv -20 20 20
+f 1 3 2\nf 1 4 3\nf 5 7 8\nf 1 6 2\nf 1 6 5\nf 2 3 7
+f 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\nf 4 4 1\n`,
+);
+
 const files = given
   ? readdirSync(given)
       .filter((name) => name.endsWith(".json"))
@@ -83,6 +93,7 @@ const files = given
         ..."simulate gear --robot psm --strokes 3 --cycles 200 --speed 5".split(" "),
       ),
       run("experiments", "report", experimentsFile),
+      run("inspect", "inspect", faultyFile, "--self-intersections"),
       run("verify_robot", ..."verify cube gear --robot psm --cycles 300".split(" ")),
     ];
 
@@ -97,7 +108,7 @@ const pages = files.map((file) => ({
   record: recordOf(file),
 }));
 const showsAnatomy = ({ record }) =>
-  ["simulate", "simulate_robot", "plan"].includes(record.keepout_record);
+  ["simulate", "simulate_robot", "plan", "inspect"].includes(record.keepout_record);
 
 const keysOf = (pointer) =>
   pointer
@@ -469,6 +480,45 @@ test("claims come first; pictures of a record do nothing", { skip: given }, asyn
   assert.equal(await colorNow(), "rgb(91, 155, 255)");
   await tab.emulateMediaType("print");
   assert.equal(await colorNow(), "rgb(24, 100, 220)");
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
+
+const inspected = pages.find(({ record }) => record.inspection);
+test("faults of a mesh are marked where they are", { skip: given || !inspected }, async () => {
+  const { findings } = inspected.record.inspection;
+  assert.deepEqual(
+    findings.map(({ key, count, groups }) => [key, count, groups]),
+    [
+      ["inconsistent_edges", 3, 1],
+      ["boundary_edges", 3, 1],
+      ["degenerate_triangles", 1, 1],
+    ],
+  );
+  const tab = await opened(inspected.file, large);
+  await assertDrawn(tab);
+  // Of each kind a picture, in which a ring is around the first fault, and red around that.
+  const pictures = await tab.$$(".picture");
+  assert.equal(pictures.length, findings.length);
+  for (const picture of pictures) {
+    const { rings, reds } = await picture.evaluate((one) => {
+      const canvas = one.querySelector("canvas");
+      const density = canvas.width / one.clientWidth;
+      const rings = [...one.querySelectorAll(".ring circle")];
+      const pen = canvas.getContext("2d");
+      const reds = rings.map((ring) => {
+        const [x, y] = ["cx", "cy"].map((name) => density * ring.getAttribute(name));
+        const size = 26 * density;
+        const { data } = pen.getImageData(x - size / 2, y - size / 2, size, size);
+        return data.filter(
+          (value, i) => i % 4 === 0 && value > 150 && data[i + 1] < 80 && data[i + 2] < 110,
+        ).length;
+      });
+      return { rings: rings.length, reds };
+    });
+    assert.equal(rings, 1);
+    assert.ok(reds[0] > 5, "nothing red in the ring");
+  }
   assert.deepEqual(tab.faults, []);
   await tab.close();
 });

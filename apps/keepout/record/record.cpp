@@ -69,8 +69,9 @@ std::ifstream open_record(const std::filesystem::path& path) {
 }
 
 std::string fault_of(const Json& json) {
-  constexpr std::array kinds{"simulate", "simulate_robot", "bench",  "speed",        "compare",
-                             "plan",     "plan_robot",     "verify", "verify_robot", "experiments"};
+  constexpr std::array kinds{"simulate",     "simulate_robot", "bench",      "speed",
+                             "compare",      "plan",           "plan_robot", "verify",
+                             "verify_robot", "experiments",    "inspect"};
   const std::string none =
       "is no whole record; 'keepout simulate', 'bench', 'compare', 'plan' and 'verify' write one "
       "where --json says";

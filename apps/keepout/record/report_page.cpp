@@ -17,10 +17,9 @@ constexpr const char* record_mark = "<!-- keepout report: the record goes here -
 /// What shows anatomy comes with what draws it.
 PageTemplate template_for(const Json& record) {
   const std::string kind = record.value("keepout_record", "");
+  const bool shows_anatomy = kind.starts_with("simulate") || kind == "plan" || kind == "inspect";
   return read_page_template(
-      page_template_file(kind.starts_with("simulate") || kind == "plan" ? "report_with_anatomy.html"
-                                                                        : "report.html"),
-      record_mark);
+      page_template_file(shows_anatomy ? "report_with_anatomy.html" : "report.html"), record_mark);
 }
 
 }  // namespace

@@ -6,11 +6,12 @@
 namespace keepout::app {
 
 std::vector<Finding> findings_of(const MeshFindings& mesh,
-                                 std::optional<std::size_t> self_intersections) {
+                                 const std::optional<SelfIntersections>& self_intersections) {
+  const SelfIntersections crossings = self_intersections.value_or(SelfIntersections{});
   const std::vector<Finding> all{
       {"inside_out", mesh.is_inside_out(), "",
        "the normals point into the solid: tissue and free space are swapped",
-       "flip all triangles: --flip, or flip=True in Python"},
+       "flip all triangles: --flip, flip=True in Python, or 'keepout convert --orient'"},
       {"looks_like_metres", mesh.looks_like_metres(), "",
        "smaller than 3 in every direction: in millimetres that is tiny, so these may be metres",
        "give the unit of the file: --unit m, or another that 'unit' above names; in Python "
@@ -21,24 +22,29 @@ std::vector<Finding> findings_of(const MeshFindings& mesh,
        "give the unit of the file if so: --unit um, or in Python unit=\"um\""},
       {"inconsistent_edges", mesh.inconsistent_edges, "inconsistently wound edge",
        "the two triangles there disagree about which side is free",
-       "orient the surface consistently"},
+       "orient the surface consistently: 'keepout convert --orient'",
+       mesh.places.inconsistent_edges},
       {"boundary_edges", mesh.boundary_edges, "boundary edge",
        "the surface is open: nothing guards a hole, and a fixture by the paper's rule can also be "
        "passed at a rim",
-       "close the holes, or keep the tool away from the rims"},
+       "close the holes, or keep the tool away from the rims", mesh.places.boundary_edges},
       {"non_manifold_edges", mesh.non_manifold_edges, "non-manifold edge",
        "three triangles or more meet there, so no rule can tell ridge from valley",
-       "remove inner walls and duplicates, or use a rule that asks no neighbours"},
-      {"self_intersections", self_intersections.value_or(0), "self-intersecting pair",
+       "remove inner walls and duplicates, or use a rule that asks no neighbours",
+       mesh.places.non_manifold_edges},
+      {"self_intersections", crossings.pairs, "self-intersecting pair",
        "triangles cut through or lie on each other; behind such a place a tip may be wedged",
-       "remesh the surface, or take its outer hull"},
+       "remesh the surface, or take its outer hull", crossings.places},
       {"duplicate_triangles", mesh.duplicate_triangles, "duplicate triangle",
-       "the same three vertices again; each calls for its own planes", "remove them"},
+       "the same three vertices again; each calls for its own planes",
+       "remove them: 'keepout convert'", mesh.places.duplicate_triangles},
       {"degenerate_triangles", mesh.degenerate_triangles(), "degenerate triangle",
        "without an area they have no normal, and guard less than a proper triangle or nothing",
-       "remesh, or collapse their short edges"},
+       "remesh, or collapse their short edges; 'keepout convert' drops those that leave no gap",
+       mesh.places.degenerate_triangles},
       {"pinched_vertices", mesh.pinched_vertices, "pinched vertex",
-       "parts of the surface hang together by a point there", "split the vertex, or remesh"},
+       "parts of the surface hang together by a point there", "split the vertex, or remesh",
+       mesh.places.pinched_vertices},
   };
   std::vector<Finding> present;
   for (const Finding& finding : all) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "keepout/index/self_intersection.h"
 #include "keepout/mesh/doctor.h"
 
 namespace keepout::app {
@@ -18,12 +19,12 @@ struct Finding {
   std::string_view one;  // what there are `count` of; empty where there is nothing to count
   std::string_view meaning;
   std::string_view advice;
+  FaultPlaces places = {};  // none where there is nothing to count
 };
 
-/// What there is to know, the worst first. `self_intersections`: pairs of triangles, where they
-/// were counted.
+/// What there is to know, the worst first. `self_intersections`: if they were searched for.
 std::vector<Finding> findings_of(const MeshFindings& mesh,
-                                 std::optional<std::size_t> self_intersections);
+                                 const std::optional<SelfIntersections>& self_intersections);
 
 /// Of what there are how many, and what that means, without a full stop: for people.
 std::string text_of(const Finding& finding);

@@ -78,6 +78,7 @@ LoadedMesh generate(const std::filesystem::path& name, const LoadOptions& option
   }
   LoadedMesh loaded{.mesh = std::make_shared<const Mesh>(make_shape(name.string())),
                     .space = options.untagged};
+  loaded.vertices_in_file = loaded.mesh->vertex_count();
   if (options.check == MeshCheck::quick) {
     for (const std::string& warning : quick_check(*loaded.mesh)) {
       loaded.warnings.push_back(name.string() + ": " + warning);

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
+#include "../mesh/fault_list.h"
 #include "keepout/geometry/orientation.h"
 #include "keepout/geometry/shapes.h"
 
@@ -151,6 +153,25 @@ bool meet(const Mesh& mesh, TriangleId one, TriangleId other) noexcept {
   }
 }
 
+/// Adds the points in which edges of the one triangle pierce the other to `sum`. Returns how many.
+int add_piercings(const Triangle& edges, const Triangle& triangle, Vec3& sum) noexcept {
+  const Vec3 normal = unit_normal(triangle);
+  const Sides sides = sides_of(triangle, edges);
+  int count = 0;
+  for (int e = 0; e < 3; ++e) {
+    const Vec3& p = edges[e];
+    const Vec3& q = edges[next(e)];
+    if (sides[e] * sides[next(e)] >= 0 || !touches(p, sides[e], q, sides[next(e)], triangle)) {
+      continue;
+    }
+    const double from = std::abs(normal.dot(p - triangle[0]));
+    const double to = std::abs(normal.dot(q - triangle[0]));
+    sum += from + to > 0.0 ? Vec3(p + from / (from + to) * (q - p)) : Vec3(0.5 * (p + q));
+    ++count;
+  }
+  return count;
+}
+
 Box box_of(const Triangle& t) noexcept {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
@@ -158,6 +179,17 @@ Box box_of(const Triangle& t) noexcept {
 bool overlap(const Box& one, const Box& other) noexcept {
   return (one.low.array() <= other.high.array()).all() &&
          (other.low.array() <= one.high.array()).all();
+}
+
+/// Returns a point where two triangles that meet do so; the middle of what their boxes have in
+/// common if no edge of the one pierces the other, as of triangles in one plane.
+Vec3 meeting_point(const Triangle& one, const Triangle& other) noexcept {
+  Vec3 sum = Vec3::Zero();
+  const int count = add_piercings(one, other, sum) + add_piercings(other, one, sum);
+  if (count > 0) return sum / count;
+  const Box a = box_of(one);
+  const Box b = box_of(other);
+  return Box{a.low.cwiseMax(b.low), a.high.cwiseMin(b.high)}.center();
 }
 
 /// A ball that holds the triangle, with room for the rounding of its own making.
@@ -175,7 +207,8 @@ bool meet_improperly(const Mesh& mesh, TriangleId one, TriangleId other) noexcep
          meet(mesh, one, other);
 }
 
-std::size_t count_self_intersections(const Mesh& mesh, const SpatialIndex& index) {
+SelfIntersections find_self_intersections(const Mesh& mesh, const SpatialIndex& index,
+                                          std::size_t most_places) {
   const auto count = static_cast<TriangleId>(mesh.triangle_count());
   std::vector<Box> boxes(count);
   std::vector<bool> flat(count);  // without an area
@@ -184,7 +217,7 @@ std::size_t count_self_intersections(const Mesh& mesh, const SpatialIndex& index
     flat[t] = axis_of_sight(mesh.triangle(t)) < 0;
   }
 
-  std::size_t pairs = 0;
+  FaultList pairs(6);
   TriangleBuffer nearby(count);
   for (TriangleId t = 0; t < count; ++t) {
     if (flat[t]) continue;
@@ -192,11 +225,22 @@ std::size_t count_self_intersections(const Mesh& mesh, const SpatialIndex& index
     index.collect(ball_around(mesh.triangle(t), boxes[t]), nearby);
     for (const TriangleId other : nearby) {
       if (other > t && !flat[other] && overlap(boxes[t], boxes[other]) && meet(mesh, t, other)) {
-        ++pairs;
+        const Corners& a = mesh.corners(t);
+        const Corners& b = mesh.corners(other);
+        pairs.add({a[0], a[1], a[2], b[0], b[1], b[2]});
       }
     }
   }
-  return pairs;
+  SelfIntersections found{pairs.size(), pairs.places(mesh, most_places)};
+  for (FaultPlace& place : found.places.places) {
+    const std::vector<Vec3>& c = place.corners;
+    place.at = meeting_point({c[0], c[1], c[2]}, {c[3], c[4], c[5]});
+  }
+  return found;
+}
+
+std::size_t count_self_intersections(const Mesh& mesh, const SpatialIndex& index) {
+  return find_self_intersections(mesh, index, 0).pairs;
 }
 
 }  // namespace keepout

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <ostream>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../huge_pages.h"
@@ -71,51 +73,81 @@ std::optional<Surface> read_binary_stl(const MeshSource& source, unsigned thread
                             make_reader);
 }
 
-void write_binary_stl(const std::filesystem::path& path, const Surface& surface) {
-  write_binary_stl(path, surface.triangles.size(), [&](std::uint64_t t) -> Triangle {
+namespace {
+
+/// How errors name a file: not at all, if it has no name.
+std::string prefix_of(const std::filesystem::path& path) {
+  return path.empty() ? "" : path.string() + ": ";
+}
+
+/// Returns a function that reads triangles of a surface, and throws Error if one has a vertex that
+/// does not exist.
+auto reader_of(const Surface& surface, std::string prefix) {
+  return [&surface, prefix = std::move(prefix)](std::uint64_t t) -> Triangle {
     const Corners& c = surface.triangles[static_cast<std::size_t>(t)];
     for (const VertexId v : c) {
       if (v >= surface.vertices.size()) {
-        throw Error(path.string() + ": triangle " + std::to_string(t) + " names vertex " +
+        throw Error(prefix + "triangle " + std::to_string(t) + " names vertex " +
                     std::to_string(v) + ", but there are only " +
                     std::to_string(surface.vertices.size()) + ": give it all of them");
       }
     }
     return {surface.vertices[c[0]], surface.vertices[c[1]], surface.vertices[c[2]]};
-  });
+  };
 }
 
-void write_binary_stl(const std::filesystem::path& path, std::uint64_t triangles,
+/// Calls write(bytes, size) with one piece of the file after the other.
+template <class Write>
+void print_binary_stl(const Write& write, const std::string& prefix, AnatomicalSpace space,
+                      std::uint64_t triangles,
                       const std::function<Triangle(std::uint64_t)>& triangle) {
-  const auto fail = [&](const std::string& what) { throw Error(path.string() + ": " + what); };
   if (triangles > std::numeric_limits<std::uint32_t>::max()) {
-    fail("more triangles than a binary STL file can hold; split the mesh");
+    throw Error(prefix + "more triangles than a binary STL file can hold; split the mesh");
   }
-  FileReplacement file(path);
-  std::array<char, stl_header_size> header{};
-  constexpr char text[] = "binary STL written by keepout";  // must not begin with "solid"
-  std::memcpy(header.data(), text, sizeof text - 1);
-  file.write(header.data(), header.size());
+  std::string header = "binary STL written by keepout";  // must not begin with "solid"
+  if (space != AnatomicalSpace::unstated) header += ". SPACE=" + std::string(name(space));
+  header.resize(stl_header_size, '\0');
+  write(header.data(), header.size());
   const auto count = static_cast<std::uint32_t>(triangles);
-  file.write(&count, sizeof count);
+  write(&count, sizeof count);
   for (std::uint64_t t = 0; t < triangles; ++t) {
     const Triangle corners = triangle(t);
     std::array<float, 12> values;
     std::size_t n = 0;
     for (const Vec3& v : {unit_normal(corners), corners[0], corners[1], corners[2]}) {
       if (!(v.cwiseAbs().maxCoeff() <= double{std::numeric_limits<float>::max()})) {
-        fail("a coordinate does not fit single precision, so STL cannot hold it");
+        throw Error(prefix + "a coordinate does not fit single precision, so STL cannot hold it");
       }
       for (const double x : v) values[n++] = static_cast<float>(x);
     }
     std::array<char, stl_record_size> record{};
     std::memcpy(record.data(), values.data(), sizeof values);
-    file.write(record.data(), record.size());
+    write(record.data(), record.size());
   }
+}
+
+}  // namespace
+
+void write_binary_stl(const std::filesystem::path& path, const Surface& surface) {
+  write_binary_stl(path, surface.triangles.size(), reader_of(surface, prefix_of(path)));
+}
+
+void write_binary_stl(const std::filesystem::path& path, std::uint64_t triangles,
+                      const std::function<Triangle(std::uint64_t)>& triangle) {
+  FileReplacement file(path);
+  const auto write = [&](const void* bytes, std::size_t size) { file.write(bytes, size); };
+  print_binary_stl(write, prefix_of(path), AnatomicalSpace::unstated, triangles, triangle);
   if (const std::error_code error = file.commit()) {
-    fail("cannot be written (" + error.message() +
-         "); check the directory, its permissions and the space on the disk");
+    throw Error(prefix_of(path) + "cannot be written (" + error.message() +
+                "); check the directory, its permissions and the space on the disk");
   }
+}
+
+void write_binary_stl(std::ostream& out, const Surface& surface, AnatomicalSpace space) {
+  const auto write = [&](const void* bytes, std::size_t size) {
+    out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+  };
+  print_binary_stl(write, "", space, surface.triangles.size(), reader_of(surface, ""));
 }
 
 }  // namespace keepout

@@ -3,10 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <numeric>
-#include <utility>
 #include <vector>
 
+#include "disjoint_sets.h"
+#include "fault_list.h"
 #include "half_edges.h"
 #include "keepout/geometry/orientation.h"
 
@@ -14,25 +14,14 @@ namespace keepout {
 
 namespace {
 
-/// Sets of numbers that grow together (union-find, with path halving).
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-
-  std::size_t find(std::size_t i) noexcept {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
-  void join(std::size_t a, std::size_t b) noexcept {
-    const auto [low, high] = std::minmax({find(a), find(b)});
-    parent_[high] = low;
-  }
-
- private:
-  std::vector<std::size_t> parent_;
+/// All faults, by kind.
+struct Faults {
+  FaultList boundary_edges{2};
+  FaultList non_manifold_edges{2};
+  FaultList inconsistent_edges{2};
+  FaultList pinched_vertices{1};
+  FaultList degenerate_triangles{3};
+  FaultList duplicate_triangles{3};
 };
 
 /// Corner i of triangle t, as one number.
@@ -40,19 +29,26 @@ constexpr std::size_t corner_number(TriangleId t, int i) noexcept {
   return 3 * std::size_t{t} + static_cast<std::size_t>(i);
 }
 
-void count_triangles(const Mesh& mesh, MeshFindings& findings) {
+void count_triangles(const Mesh& mesh, MeshFindings& findings, Faults& faults) {
   std::vector<Corners> sorted(mesh.triangles().begin(), mesh.triangles().end());
   for (Corners& corners : sorted) std::sort(corners.begin(), corners.end());
   std::sort(sorted.begin(), sorted.end());
-  const auto kept = std::unique(sorted.begin(), sorted.end());
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const Corners& c = sorted[i];
+    if (c == sorted[i - 1]) faults.duplicate_triangles.add({c[0], c[1], c[2]});
+  }
   findings.triangles = mesh.triangle_count();
-  findings.duplicate_triangles = static_cast<std::size_t>(sorted.end() - kept);
+  findings.duplicate_triangles = faults.duplicate_triangles.size();
   for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-    if (repeats_a_vertex(mesh.corners(t))) {
+    const Corners& c = mesh.corners(t);
+    if (repeats_a_vertex(c)) {
       ++findings.repeated_vertex_triangles;
     } else if (axis_of_sight(mesh.triangle(t)) < 0) {
       ++findings.collinear_triangles;
+    } else {
+      continue;
     }
+    faults.degenerate_triangles.add({c[0], c[1], c[2]});
   }
 }
 
@@ -69,13 +65,16 @@ void measure(const Mesh& mesh, MeshFindings& findings) {
 }
 
 /// Edges by kind; joins what each edge holds together.
-void count_edges(const Mesh& mesh, MeshFindings& findings, DisjointSets& fans,
+void count_edges(const Mesh& mesh, MeshFindings& findings, Faults& faults, DisjointSets& fans,
                  DisjointSets& patches) {
-  for_each_edge(mesh, [&](VertexId, std::span<const HalfEdge> sides) {
+  for_each_edge(mesh, [&](VertexId lower, std::span<const HalfEdge> sides) {
     ++findings.edges;
-    if (sides.size() == 1) ++findings.boundary_edges;
-    if (sides.size() > 2) ++findings.non_manifold_edges;
-    if (sides.size() == 2 && sides[0].upwards == sides[1].upwards) ++findings.inconsistent_edges;
+    const VertexId higher = sides[0].high;
+    if (sides.size() == 1) faults.boundary_edges.add({lower, higher});
+    if (sides.size() > 2) faults.non_manifold_edges.add({lower, higher});
+    if (sides.size() == 2 && sides[0].upwards == sides[1].upwards) {
+      faults.inconsistent_edges.add({lower, higher});
+    }
     const auto corner_at = [](const HalfEdge& side, bool low) {
       return corner_number(side.triangle, side.upwards == low ? side.edge : (side.edge + 1) % 3);
     };
@@ -85,10 +84,13 @@ void count_edges(const Mesh& mesh, MeshFindings& findings, DisjointSets& fans,
       fans.join(corner_at(side, false), corner_at(sides[0], false));
     }
   });
+  findings.boundary_edges = faults.boundary_edges.size();
+  findings.non_manifold_edges = faults.non_manifold_edges.size();
+  findings.inconsistent_edges = faults.inconsistent_edges.size();
 }
 
 /// Vertices, components, and the numbers that follow from them.
-void count_parts(const Mesh& mesh, MeshFindings& findings, DisjointSets& fans,
+void count_parts(const Mesh& mesh, MeshFindings& findings, Faults& faults, DisjointSets& fans,
                  DisjointSets& patches) {
   DisjointSets islands(mesh.vertex_count());
   std::vector<bool> used(mesh.vertex_count(), false);
@@ -111,9 +113,10 @@ void count_parts(const Mesh& mesh, MeshFindings& findings, DisjointSets& fans,
     if (used[v]) ++findings.vertices;
     if (fans_at[v] == 0) continue;
     ++surface_vertices;
-    if (fans_at[v] > 1) ++findings.pinched_vertices;
+    if (fans_at[v] > 1) faults.pinched_vertices.add({v});
     if (islands.find(v) == v) ++findings.components;
   }
+  findings.pinched_vertices = faults.pinched_vertices.size();
   findings.unused_vertices = mesh.vertex_count() - findings.vertices;
   findings.euler_characteristic = static_cast<std::ptrdiff_t>(surface_vertices) -
                                   static_cast<std::ptrdiff_t>(findings.edges) +
@@ -126,14 +129,22 @@ void count_parts(const Mesh& mesh, MeshFindings& findings, DisjointSets& fans,
 
 }  // namespace
 
-MeshFindings examine(const Mesh& mesh) {
+MeshFindings examine(const Mesh& mesh, std::size_t most_places) {
   MeshFindings findings;
+  Faults faults;
   DisjointSets fans(3 * mesh.triangle_count());  // of corners, around their vertices
   DisjointSets patches(mesh.triangle_count());   // of triangles
-  count_triangles(mesh, findings);
+  count_triangles(mesh, findings, faults);
   measure(mesh, findings);
-  count_edges(mesh, findings, fans, patches);
-  count_parts(mesh, findings, fans, patches);
+  count_edges(mesh, findings, faults, fans, patches);
+  count_parts(mesh, findings, faults, fans, patches);
+  const auto places = [&](const FaultList& list) { return list.places(mesh, most_places); };
+  findings.places = {.boundary_edges = places(faults.boundary_edges),
+                     .non_manifold_edges = places(faults.non_manifold_edges),
+                     .inconsistent_edges = places(faults.inconsistent_edges),
+                     .pinched_vertices = places(faults.pinched_vertices),
+                     .degenerate_triangles = places(faults.degenerate_triangles),
+                     .duplicate_triangles = places(faults.duplicate_triangles)};
   return findings;
 }
 

@@ -78,8 +78,9 @@ constexpr std::array<Format, 6> formats{{{".stl", read_text_stl},
                                          {".vtk", read_vtk},
                                          {".vtp", read_vtp}}};
 
-/// A file's surface, welded.
-MeshFile read_welded(const MeshSource& source, const std::string& extension) {
+/// A file's surface, welded. `vertices_in_file`: as many as there were before.
+MeshFile read_welded(const MeshSource& source, const std::string& extension,
+                     std::size_t& vertices_in_file) {
   const std::string beginning = source.contents(512);
   refuse_compressed(source, beginning);
   const auto format = std::ranges::find(formats, extension, &Format::extension);
@@ -90,6 +91,7 @@ MeshFile read_welded(const MeshSource& source, const std::string& extension) {
   }
   if (extension == ".stl") {
     if (auto surface = read_binary_stl(source)) {
+      vertices_in_file = 3 * surface->triangles.size();
       return {*std::move(surface), {beginning.substr(0, stl_header_size)}};
     }
   }
@@ -99,6 +101,7 @@ MeshFile read_welded(const MeshSource& source, const std::string& extension) {
   }
   if (extension == ".stl" && !looks_like_text_stl(beginning)) refuse_stl(source, beginning);
   MeshFile mesh = format->read(source);
+  vertices_in_file = mesh.surface.vertices.size();
   mesh.surface = weld(std::move(mesh.surface));
   return mesh;
 }
@@ -264,7 +267,7 @@ LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& optio
   LoadedMesh loaded;
   MeshFile read;
   try {
-    read = read_welded(source, lower_extension(path));
+    read = read_welded(source, lower_extension(path), loaded.vertices_in_file);
   } catch (const std::bad_alloc&) {
     source.fail("there is not enough memory to read it; decimate the mesh, or use binary STL");
   }

@@ -144,5 +144,19 @@ TEST(SelfIntersections, OfTheGeneratedSolidsThereAreNone) {
   }
 }
 
+TEST(FindSelfIntersections, PlacesAreWhereTrianglesMeet) {
+  const auto crossing = mesh_of(beside_base({1, 1, -1}, {1, 1, 1}, {1, 9, 0}));
+  const SelfIntersections found = find_self_intersections(*crossing, PdTree(crossing));
+  EXPECT_EQ(found.pairs, 1u);
+  ASSERT_EQ(found.places.places.size(), 1u);
+  const FaultPlace& place = found.places.places[0];
+  EXPECT_EQ(place.corners.size(), 6u);
+  // They meet from (1, 1, 0) to (1, 3, 0).
+  EXPECT_NEAR((place.at - Vec3(1, 2, 0)).norm(), 0.0, 1e-12);
+  const auto flat = mesh_of(beside_base({1, 1, 0}, {9, 1, 0}, {1, 9, 0}));
+  EXPECT_EQ(find_self_intersections(*flat, PdTree(flat)).places.places.at(0).at, Vec3(2.5, 2.5, 0));
+  EXPECT_TRUE(find_self_intersections(*flat, PdTree(flat), 0).places.places.empty());
+}
+
 }  // namespace
 }  // namespace keepout

@@ -207,5 +207,45 @@ TEST(Doctor, FindsTheSameInAnyOrderOfTriangles) {
   }
 }
 
+/// The middles of faults.
+std::vector<Vec3> middles(const FaultPlaces& faults) {
+  std::vector<Vec3> all;
+  for (const FaultPlace& place : faults.places) all.push_back(place.at);
+  return all;
+}
+
+TEST(Doctor, FaultsAreWhereTheyWereMade) {
+  Surface surface = tetrahedron();
+  std::swap(surface.triangles[3][0], surface.triangles[3][1]);
+  const FaultPlaces seams = examine(surface).places.inconsistent_edges;
+  EXPECT_EQ(seams.groups, 1u);
+  EXPECT_EQ(middles(seams), (std::vector<Vec3>{{0.5, 0.5, 0}, {0.5, 0, 0.5}, {0, 0.5, 0.5}}));
+  EXPECT_EQ(seams.places[0].corners, (std::vector<Vec3>{{1, 0, 0}, {0, 1, 0}}));
+
+  surface = tetrahedron();
+  surface.triangles.push_back({1, 1, 2});
+  surface.triangles.push_back({3, 2, 1});
+  const MeshFaultPlaces places = examine(surface).places;
+  EXPECT_EQ(places.degenerate_triangles.places.at(0).corners,
+            (std::vector<Vec3>{{1, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  EXPECT_TRUE(places.duplicate_triangles.places.at(0).at.isApprox(Vec3::Constant(1.0 / 3.0)));
+  EXPECT_EQ(places.non_manifold_edges.groups, 1u);
+  EXPECT_EQ(places.non_manifold_edges.places.size(), 3u);
+
+  EXPECT_EQ(middles(examine(pinched()).places.pinched_vertices), std::vector<Vec3>{Vec3::Zero()});
+}
+
+TEST(Doctor, OnePlaceOfEachHoleComesFirst) {
+  Surface open = tetrahedron();
+  open.triangles.pop_back();
+  const Surface two = together(open, moved(open, {10, 0, 0}));
+  const FaultPlaces holes = keepout::examine(Mesh(two), 2).places.boundary_edges;
+  EXPECT_EQ(holes.groups, 2u);
+  EXPECT_EQ(middles(holes), (std::vector<Vec3>{{0.5, 0.5, 0}, {10.5, 0.5, 0}}));
+  EXPECT_EQ(keepout::examine(Mesh(two), 5).places.boundary_edges.places.size(), 5u);
+  EXPECT_EQ(keepout::examine(Mesh(two), 0).boundary_edges, 6u);
+  EXPECT_TRUE(keepout::examine(Mesh(two), 0).places.boundary_edges.places.empty());
+}
+
 }  // namespace
 }  // namespace keepout

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The reports that show anatomy. */
+import { inspectionSections } from "./inspection.ts";
 import { planningSections } from "./planning.ts";
 import { showReport } from "./report_page.ts";
 import { robotSimulationSections } from "./robot_simulation.ts";
@@ -9,4 +10,5 @@ void showReport({
   simulate: simulationSections,
   simulate_robot: robotSimulationSections,
   plan: planningSections,
+  inspect: inspectionSections,
 });

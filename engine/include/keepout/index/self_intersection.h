@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "keepout/index/spatial_index.h"
+#include "keepout/mesh/fault_places.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
@@ -13,11 +14,22 @@ namespace keepout {
 /// Decided exactly, by signs of orientations: no tolerance. False if either has no area.
 bool meet_improperly(const Mesh& mesh, TriangleId one, TriangleId other) noexcept;
 
-/// The number of pairs of triangles that meet_improperly. Triangles without an area are left out:
-/// they lie on their neighbours wherever they are, and the doctor counts them apart.
+/// The pairs of triangles of a mesh that meet_improperly.
+struct SelfIntersections {
+  std::size_t pairs = 0;    // all of them
+  FaultPlaces places = {};  // of some; each has the corners of both triangles
+};
+
+/// Finds the pairs of triangles that meet_improperly, and where at most `most_places` of them are.
+/// Triangles without an area are left out: they lie on their neighbors wherever they are, and
+/// examine() counts them apart.
 ///
 /// `index` is one over `mesh`, asked for the surroundings of each triangle: a few microseconds
-/// each. Where triangles are long beside their neighbours it takes longer.
+/// each. Where triangles are long beside their neighbors it takes longer.
+SelfIntersections find_self_intersections(const Mesh& mesh, const SpatialIndex& index,
+                                          std::size_t most_places = 10);
+
+/// Returns the number of pairs that find_self_intersections finds.
 std::size_t count_self_intersections(const Mesh& mesh, const SpatialIndex& index);
 
 }  // namespace keepout

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <iosfwd>
 
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
@@ -20,5 +22,9 @@ void write_binary_stl(const std::filesystem::path& path, const Surface& surface)
 /// to `triangles` - 1, in this order. What it throws is passed on, and nothing is left of the file.
 void write_binary_stl(const std::filesystem::path& path, std::uint64_t triangles,
                       const std::function<Triangle(std::uint64_t)>& triangle);
+
+/// Like write_binary_stl(path, surface), but writes to a binary stream, whose state the caller must
+/// check. The header states `space` if it is known, as 3D Slicer writes it.
+void write_binary_stl(std::ostream& out, const Surface& surface, AnatomicalSpace space);
 
 }  // namespace keepout

@@ -9,9 +9,20 @@
 #include <vector>
 
 #include "keepout/geometry/shapes.h"
+#include "keepout/mesh/fault_places.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
+
+/// Where the faults that MeshFindings counts are, by kind.
+struct MeshFaultPlaces {
+  FaultPlaces boundary_edges = {};        // a group is a hole, or a rim
+  FaultPlaces non_manifold_edges = {};    // each place has two corners
+  FaultPlaces inconsistent_edges = {};    // the same
+  FaultPlaces pinched_vertices = {};      // each place has one corner
+  FaultPlaces degenerate_triangles = {};  // of either kind; three corners
+  FaultPlaces duplicate_triangles = {};   // three corners
+};
 
 /// What there is to know about a mesh before it guards anything. Edges are counted once each,
 /// however many triangles they have. Triangles that name a vertex twice are segments, with neither
@@ -42,6 +53,8 @@ struct MeshFindings {
   std::ptrdiff_t euler_characteristic = 0;
   /// Handles, in all components together. Only a watertight mesh without pinched vertices has one.
   std::optional<std::ptrdiff_t> genus;
+
+  MeshFaultPlaces places = {};  // of each kind at most as many as examine() was asked for
 
   /// Those without an area, of either kind.
   std::size_t degenerate_triangles() const noexcept {
@@ -74,9 +87,10 @@ struct MeshFindings {
   static constexpr double micrometres_above = 3000.0;
 };
 
-/// Examines a welded mesh: a pure report, nothing is repaired. Time grows with the size of the
-/// mesh, some 0.2 s for a million triangles.
-MeshFindings examine(const Mesh& mesh);
+/// Examines a welded mesh: a pure report, nothing is repaired. `most_places`: at most so many
+/// places of each kind of fault are reported. Time grows with the size of the mesh, some 0.2 s for
+/// a million triangles.
+MeshFindings examine(const Mesh& mesh, std::size_t most_places = 10);
 
 /// Whether a mesh has edges of two kinds that a guard's user should know of. What doctor.h counts.
 struct EdgeFaults {

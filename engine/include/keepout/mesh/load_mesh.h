@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -50,6 +51,7 @@ struct LoadOptions {
 /// What load_mesh has read.
 struct LoadedMesh {
   std::shared_ptr<const Mesh> mesh;                    // welded; never null
+  std::size_t vertices_in_file = 0;                    // before the weld; of STL three a triangle
   AnatomicalSpace space = AnatomicalSpace::unstated;   // that the coordinates are in now
   AnatomicalSpace stated = AnatomicalSpace::unstated;  // that the file states: SPACE=...
   double scale = 1.0;    // that the lengths of the file were multiplied by

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include "keepout/mesh/mesh.h"
+
+namespace keepout {
+
+/// What orient() did to a surface, and what it could not decide. A part is all triangles that are
+/// held together by edges of exactly two triangles.
+struct Orientation {
+  std::size_t turned = 0;       // triangles whose winding changed
+  std::size_t disagreeing = 0;  // triangles that were wound against most of their part
+  std::size_t parts = 0;        // the sum of the five kinds below
+
+  std::size_t closed_parts = 0;        // wind around a volume
+  std::size_t open_parts = 0;          // end at edges of one triangle: no side is known to be free
+  std::size_t non_manifold_parts = 0;  // end at edges of three triangles or more: neither here
+  std::size_t flat_parts = 0;          // closed around no volume, such as a sheet of two layers
+  std::size_t one_sided_parts = 0;     // no winding agrees, as on a Möbius strip: left as they are
+
+  std::size_t inside_out_parts = 0;  // closed, not nested: turned as a whole
+  std::size_t nested_parts = 0;      // closed, within another closed part: turned if that one was
+};
+
+/// Turns triangles so that the two triangles of each edge agree, and closed parts face outward by
+/// their signed volume. Most triangles of a part keep their winding, unless the part is closed and
+/// inside out. A closed part within another may bound a cavity or a solid: it keeps its winding
+/// relative to the outermost part around it. Precondition: the surface is welded. Throws Error as
+/// Mesh does.
+Orientation orient(Surface& surface);
+
+}  // namespace keepout

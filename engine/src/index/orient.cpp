@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/index/orient.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "../mesh/half_edges.h"
+#include "keepout/index/budget.h"
+#include "keepout/index/pd_tree.h"
+#include "keepout/index/query.h"
+
+namespace keepout {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Triangles that edges hold together, and which of them are wound alike (union-find, with path
+/// halving, that carries the winding along).
+class WoundSets {
+ public:
+  explicit WoundSets(std::size_t size) : up_(size), is_one_sided_(size, 0) {
+    for (TriangleId t = 0; t < size; ++t) up_[t] = {t, false};
+  }
+
+  /// A triangle of the set, the same for all of it, and whether `t` is wound against that one.
+  struct Place {
+    TriangleId first;
+    bool is_opposite;
+  };
+
+  Place find(TriangleId t) noexcept {
+    bool is_opposite = false;
+    while (up_[t].first != t) {
+      const Place above = up_[up_[t].first];
+      up_[t] = {above.first, up_[t].is_opposite != above.is_opposite};
+      is_opposite = is_opposite != up_[t].is_opposite;
+      t = up_[t].first;
+    }
+    return {t, is_opposite};
+  }
+
+  void join(TriangleId a, TriangleId b, bool is_opposite) noexcept {
+    const Place one = find(a);
+    const Place other = find(b);
+    const bool differs = (one.is_opposite != other.is_opposite) != is_opposite;
+    if (one.first == other.first) {
+      if (differs) is_one_sided_[one.first] = 1;
+      return;
+    }
+    const auto [low, high] = std::minmax(one.first, other.first);
+    up_[high] = {low, differs};
+    is_one_sided_[low] |= is_one_sided_[high];
+  }
+
+  bool is_one_sided(TriangleId first) const noexcept { return is_one_sided_[first] != 0; }
+
+ private:
+  std::vector<Place> up_;
+  std::vector<unsigned char> is_one_sided_;
+};
+
+/// A part of a surface: see Orientation.
+struct Part {
+  std::vector<TriangleId> triangles = {};
+  std::size_t opposite = 0;  // triangles that are wound against the first one
+  bool is_one_sided = false;
+  bool is_open = false;
+  bool is_non_manifold = false;
+  double volume = 0.0;       // signed, as most triangles are wound [length^3]
+  double uncertainty = 0.0;  // of the volume [length^3]
+  Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+  bool is_turned = false;  // as a whole
+
+  bool is_closed() const noexcept { return !is_one_sided && !is_open && !is_non_manifold; }
+  bool has_volume() const noexcept { return is_closed() && std::abs(volume) > uncertainty; }
+};
+
+/// A surface in parts.
+struct Parts {
+  std::vector<Part> parts = {};
+  std::vector<std::size_t> part_of = {};  // of each triangle
+  std::vector<bool> is_disagreeing = {};  // of each triangle: wound against most of its part
+};
+
+Parts parts_of(const Mesh& mesh) {
+  WoundSets sets(mesh.triangle_count());
+  for_each_edge(mesh, [&](VertexId, std::span<const HalfEdge> sides) {
+    if (sides.size() != 2) return;
+    sets.join(sides[0].triangle, sides[1].triangle, sides[0].upwards == sides[1].upwards);
+  });
+  Parts all{{},
+            std::vector<std::size_t>(mesh.triangle_count()),
+            std::vector<bool>(mesh.triangle_count(), false)};
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+    const auto [first, is_opposite] = sets.find(t);
+    if (first == t) {
+      all.part_of[t] = all.parts.size();
+      all.parts.emplace_back().is_one_sided = sets.is_one_sided(t);
+    }
+    all.part_of[t] = all.part_of[first];
+    Part& part = all.parts[all.part_of[t]];
+    part.triangles.push_back(t);
+    if (is_opposite) ++part.opposite;
+    all.is_disagreeing[t] = is_opposite;
+  }
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+    const Part& part = all.parts[all.part_of[t]];
+    const bool most_are_opposite = 2 * part.opposite > part.triangles.size();
+    all.is_disagreeing[t] = !part.is_one_sided && all.is_disagreeing[t] != most_are_opposite;
+  }
+  return all;
+}
+
+/// Finds the parts that end at edges. A part does not end at an edge of several triangles if its
+/// own cancel there, as those of two solids that touch along the edge do.
+void find_ends(const Mesh& mesh, Parts& all) {
+  for_each_edge(mesh, [&](VertexId, std::span<const HalfEdge> sides) {
+    if (sides.size() == 2) return;
+    if (sides.size() == 1) {
+      all.parts[all.part_of[sides[0].triangle]].is_open = true;
+      return;
+    }
+    std::vector<std::pair<std::size_t, int>> directions;
+    for (const HalfEdge& side : sides) {
+      const bool is_up = side.upwards != all.is_disagreeing[side.triangle];
+      directions.emplace_back(all.part_of[side.triangle], is_up ? 1 : -1);
+    }
+    std::sort(directions.begin(), directions.end());
+    for (auto own = directions.begin(); own != directions.end();) {
+      int sum = 0;
+      const std::size_t part = own->first;
+      for (; own != directions.end() && own->first == part; ++own) sum += own->second;
+      if (sum != 0) all.parts[part].is_non_manifold = true;
+    }
+  });
+}
+
+void measure(const Mesh& mesh, const Parts& all, Part& part) {
+  const Vec3 origin = mesh.vertex(mesh.corners(part.triangles.front())[0]);
+  double sum_of_sizes = 0.0;
+  for (const TriangleId t : part.triangles) {
+    const Triangle corners = mesh.triangle(t);
+    const Vec3 cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    const double volume = (corners[0] - origin).dot(cross) / 6.0;
+    part.volume += all.is_disagreeing[t] ? -volume : volume;
+    sum_of_sizes += std::abs(volume);
+    for (const Vec3& corner : corners) {
+      part.bounds.low = part.bounds.low.cwiseMin(corner);
+      part.bounds.high = part.bounds.high.cwiseMax(corner);
+    }
+  }
+  // Coordinates far from the origin of the frame lose digits when they are subtracted.
+  const double far =
+      mesh.bounds().low.cwiseAbs().cwiseMax(mesh.bounds().high.cwiseAbs()).maxCoeff();
+  const double size = part.bounds.size().norm();
+  part.uncertainty = 1e-13 * (sum_of_sizes + size * size * far);
+}
+
+/// A closed part as a solid that says whether another part is within it.
+class Solid {
+ public:
+  Solid(const Mesh& mesh, const Parts& all, const Part& part) {
+    Surface surface;
+    for (const TriangleId t : part.triangles) {
+      Triangle corners = mesh.triangle(t);
+      if (all.is_disagreeing[t] != (part.volume < 0.0)) std::swap(corners[1], corners[2]);
+      const auto first = static_cast<VertexId>(surface.vertices.size());
+      surface.vertices.insert(surface.vertices.end(), corners.begin(), corners.end());
+      surface.triangles.push_back({first, first + 1, first + 2});
+    }
+    const auto own = std::make_shared<const Mesh>(weld(std::move(surface)));
+    neighborhood_.emplace(own, std::make_shared<const PdTree>(own), own->triangle_count(), budget_);
+  }
+  Solid(const Solid&) = delete;
+  Solid& operator=(const Solid&) = delete;
+
+  /// Whether the first vertex of the part that is not on the surface of the solid is within it.
+  bool contains(const Mesh& mesh, const Part& part) {
+    const double on_surface = 1e-9 * neighborhood_->mesh().bounds().size().norm();
+    for (const TriangleId t : part.triangles) {
+      for (const Vec3& corner : mesh.triangle(t)) {
+        const std::optional<SideOfSurface> side = find_side(*neighborhood_, corner);
+        if (side && side->distance > on_surface) return !side->is_outside;
+      }
+    }
+    return false;
+  }
+
+ private:
+  Budget budget_;
+  std::optional<Neighborhood> neighborhood_;
+};
+
+bool encloses(const Box& outer, const Box& inner) noexcept {
+  return (outer.low.array() <= inner.low.array()).all() &&
+         (inner.high.array() <= outer.high.array()).all();
+}
+
+/// Decides which of the parts that have a volume are turned, the largest first: only a larger part
+/// can be around another.
+void turn_outward(const Mesh& mesh, Parts& all, Orientation& result) {
+  std::vector<Part*> solid_parts;
+  for (Part& part : all.parts) {
+    if (part.has_volume()) solid_parts.push_back(&part);
+  }
+  std::ranges::stable_sort(solid_parts, [](const Part* a, const Part* b) {
+    return std::abs(a->volume) > std::abs(b->volume);
+  });
+  struct Outermost {
+    Part* part;
+    std::unique_ptr<Solid> solid;  // made when first asked
+  };
+  std::vector<Outermost> outermost;
+  for (Part* const part : solid_parts) {
+    const auto around = std::ranges::find_if(outermost, [&](Outermost& outer) {
+      if (!encloses(outer.part->bounds, part->bounds)) return false;
+      if (!outer.solid) outer.solid = std::make_unique<Solid>(mesh, all, *outer.part);
+      return outer.solid->contains(mesh, *part);
+    });
+    if (around != outermost.end()) {
+      part->is_turned = around->part->is_turned;
+      ++result.nested_parts;
+      continue;
+    }
+    part->is_turned = part->volume < 0.0;
+    if (part->is_turned) ++result.inside_out_parts;
+    outermost.push_back({part, nullptr});
+  }
+}
+
+void count_kinds(const Parts& all, Orientation& result) {
+  result.parts = all.parts.size();
+  for (const Part& part : all.parts) {
+    ++(part.is_one_sided      ? result.one_sided_parts
+       : part.is_non_manifold ? result.non_manifold_parts
+       : part.is_open         ? result.open_parts
+       : !part.has_volume()   ? result.flat_parts
+                              : result.closed_parts);
+  }
+}
+
+}  // namespace
+
+Orientation orient(Surface& surface) {
+  const Mesh mesh(surface);
+  Parts all = parts_of(mesh);
+  find_ends(mesh, all);
+  for (Part& part : all.parts) measure(mesh, all, part);
+  Orientation result;
+  turn_outward(mesh, all, result);
+  count_kinds(all, result);
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+    if (all.is_disagreeing[t]) ++result.disagreeing;
+    if (all.is_disagreeing[t] == all.parts[all.part_of[t]].is_turned) continue;
+    std::swap(surface.triangles[t][1], surface.triangles[t][2]);
+    ++result.turned;
+  }
+  return result;
+}
+
+}  // namespace keepout

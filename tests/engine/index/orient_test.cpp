@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keepout/index/orient.h"
+
+#include <algorithm>
+
+#include "meshes.h"
+
+namespace keepout {
+namespace {
+
+/// The triangles, each begun at its lowest vertex: the same for the same windings.
+std::vector<Corners> windings(const Surface& surface) {
+  std::vector<Corners> all = surface.triangles;
+  for (Corners& c : all) {
+    std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+  }
+  return all;
+}
+
+void turn(Surface& surface, std::initializer_list<std::size_t> triangles) {
+  for (const std::size_t t : triangles) std::swap(surface.triangles[t][0], surface.triangles[t][1]);
+}
+
+/// Five times as large, about the same middle.
+Surface around(Surface surface) {
+  for (Vec3& v : surface.vertices) v = 5.0 * (v - Vec3::Constant(0.2)) + Vec3::Constant(0.2);
+  return surface;
+}
+
+/// A strip of `count` quadrilaterals around the z axis whose end is joined to its beginning after a
+/// half turn.
+Surface moebius_strip(VertexId count) {
+  Surface surface;
+  for (VertexId i = 0; i < count; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / count;
+    const Vec3 outward(std::cos(angle), std::sin(angle), 0.0);
+    const Vec3 across = std::cos(angle / 2) * outward + std::sin(angle / 2) * Vec3::UnitZ();
+    surface.vertices.push_back(5.0 * outward - across);
+    surface.vertices.push_back(5.0 * outward + across);
+  }
+  for (VertexId i = 0; i < count; ++i) {
+    const bool is_last = i + 1 == count;
+    const VertexId a = 2 * i, b = 2 * i + 1;
+    const VertexId c = is_last ? 1 : 2 * i + 2, d = is_last ? 0 : 2 * i + 3;
+    surface.triangles.push_back({a, c, b});
+    surface.triangles.push_back({b, c, d});
+  }
+  return surface;
+}
+
+TEST(Orient, TurnedTrianglesOfACubeAreTurnedBack) {
+  const Surface cube = make_cube(50.0);
+  Surface surface = cube;
+  turn(surface, {0, 3, 7});
+  const Orientation done = orient(surface);
+  EXPECT_EQ(windings(surface), windings(cube));
+  EXPECT_EQ(done.turned, 3u);
+  EXPECT_EQ(done.disagreeing, 3u);
+  EXPECT_EQ(done.parts, 1u);
+  EXPECT_EQ(done.closed_parts, 1u);
+  EXPECT_EQ(done.inside_out_parts, 0u);
+}
+
+TEST(Orient, AClosedPartThatIsInsideOutIsTurnedAsAWhole) {
+  const Surface sound = torus(10);
+  Surface surface = flipped(sound);
+  turn(surface, {5});
+  const Orientation done = orient(surface);
+  EXPECT_EQ(windings(surface), windings(sound));
+  EXPECT_EQ(done.disagreeing, 1u);
+  EXPECT_EQ(done.turned, 199u);
+  EXPECT_EQ(done.inside_out_parts, 1u);
+}
+
+TEST(Orient, EachPartIsDecidedByItself) {
+  const Surface sound = together(tetrahedron(), moved(tetrahedron(), {1e4, 0, 0}));
+  Surface surface = together(tetrahedron(), flipped(moved(tetrahedron(), {1e4, 0, 0})));
+  const Orientation done = orient(surface);
+  EXPECT_EQ(windings(surface), windings(sound));
+  EXPECT_EQ(done.closed_parts, 2u);
+  EXPECT_EQ(done.inside_out_parts, 1u);
+  EXPECT_EQ(done.nested_parts, 0u);
+}
+
+TEST(Orient, APartWithinAnotherKeepsItsWindingRelativeToIt) {
+  const Surface hollow = together(flipped(tetrahedron()), around(tetrahedron()));
+  Surface surface = hollow;
+  EXPECT_EQ(orient(surface).nested_parts, 1u);
+  EXPECT_EQ(windings(surface), windings(hollow));
+  surface = flipped(hollow);
+  turn(surface, {6});
+  const Orientation done = orient(surface);
+  EXPECT_EQ(windings(surface), windings(hollow));
+  EXPECT_EQ(done.inside_out_parts, 1u);
+  EXPECT_EQ(done.nested_parts, 1u);
+  const Surface island = together(tetrahedron(), around(tetrahedron()));
+  surface = island;
+  EXPECT_EQ(orient(surface).turned, 0u);
+}
+
+TEST(Orient, BesideIsNotWithin) {
+  // The small part is in the box of the large one, but behind its slanted face.
+  Surface small = tetrahedron();
+  for (Vec3& v : small.vertices) v = 0.1 * v + Vec3::Constant(0.8);
+  Surface surface = together(tetrahedron(), flipped(small));
+  const Orientation done = orient(surface);
+  EXPECT_EQ(done.nested_parts, 0u);
+  EXPECT_EQ(done.inside_out_parts, 1u);
+  EXPECT_EQ(windings(surface), windings(together(tetrahedron(), small)));
+}
+
+TEST(Orient, AnOpenSurfaceAgreesAndKeepsMostWindings) {
+  Surface surface = flipped(tetrahedron());
+  surface.triangles.pop_back();
+  const Surface expected = surface;
+  turn(surface, {1});
+  const Orientation done = orient(surface);
+  EXPECT_EQ(windings(surface), windings(expected));
+  EXPECT_EQ(done.open_parts, 1u);
+  EXPECT_EQ(done.closed_parts, 0u);
+  EXPECT_EQ(done.turned, 1u);
+}
+
+TEST(Orient, AMoebiusStripIsLeftAsItIs) {
+  const Surface strip = moebius_strip(9);
+  Surface surface = strip;
+  const Orientation done = orient(surface);
+  EXPECT_EQ(done.one_sided_parts, 1u);
+  EXPECT_EQ(done.parts, 1u);
+  EXPECT_EQ(done.turned, 0u);
+  EXPECT_EQ(surface.triangles, strip.triangles);
+}
+
+TEST(Orient, PartsEndAtNonManifoldEdges) {
+  Surface surface = weld(make_non_manifold(10.0));
+  const Orientation done = orient(surface);
+  EXPECT_EQ(done.non_manifold_parts, 5u);
+  EXPECT_EQ(done.parts, 5u);
+}
+
+TEST(Orient, SolidsThatTouchAlongAnEdgeAreClosed) {
+  Surface other = tetrahedron();
+  for (Vec3& v : other.vertices) v = {v.x(), -v.y(), -v.z()};  // half a turn about x
+  const Surface sound = weld(together(tetrahedron(), other));
+  Surface surface = flipped(sound);
+  const Orientation done = orient(surface);
+  EXPECT_EQ(done.closed_parts, 2u);
+  EXPECT_EQ(done.inside_out_parts, 2u);
+  EXPECT_EQ(windings(surface), windings(sound));
+}
+
+TEST(Orient, ASheetOfTwoLayersHasNoOutside) {
+  Surface surface = single_triangle();
+  surface.triangles.push_back({0, 2, 1});
+  EXPECT_EQ(orient(surface).flat_parts, 1u);
+}
+
+}  // namespace
+}  // namespace keepout
