@@ -159,8 +159,16 @@ void add_activation(CLI::App& command, std::string& activation);
 /// place of the ball. Precondition: add_constraint_options.
 void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
 
-/// Of a command that guards one tip: regions that it is to stay in. Precondition: its
-void add_guides(CLI::App& command, std::vector<Guide>& guides);
+/// Adds the guides of a tip, and of links if the command has the option --robot already, as texts.
+/// Each is checked to be one.
+CLI::Option* add_guides(CLI::App& command, std::vector<std::string>& guides);
+
+/// The tool that guides are for.
+enum class Guided : std::uint8_t { tip, instrument };
+
+/// Returns the guides of texts that add_guides has taken. Throws CLI::ValidationError if one is not
+/// of that tool.
+std::vector<Guide> guides_of(std::span<const std::string> texts, Guided guided);
 
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.

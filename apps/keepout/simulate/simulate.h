@@ -34,6 +34,7 @@ struct SimulateOptions {
   RecordFiles files = {.json = {}, .page = "keepout-report.html"};
   std::vector<std::string> rules;       // run beside the tool without a fixture
   MotionConstraintSettings constraint;  // its activation is each of the rules in turn
+  std::vector<std::string> guides;      // texts: of the tip, or with a robot of its links
   StrokeSettings strokes;
   double max_step = 0.5;                 // longest increment commanded in a cycle [mm]
   TimeParts time_parts = {};             // unset in programs that cannot
@@ -52,7 +53,8 @@ struct SimulateOptions {
 ///
 /// A StopSignal ends it early, after one stroke at least; what is finished is kept. Returns the
 /// exit status: failure if a certified cycle of an instrument broke what docs/joint-space-step.md
-/// promises, exit_interrupted if a signal stopped it. Throws Error, also if the report would
+/// promises, if a guarded tip left a guide, or if a guarded convex tool touched the surface;
+/// exit_interrupted if a signal stopped it. Throws Error, also if the report would
 /// overwrite the mesh; then there is no report.
 int simulate(const SimulateOptions& options, std::ostream& out);
 
