@@ -9,6 +9,7 @@
 #include "meshes.h"
 #include "shared/columns.h"
 #include "simulate/guide_audit.h"
+#include "simulate/tally.h"
 #include "simulate/tool_audit.h"
 #include "trials.h"
 
