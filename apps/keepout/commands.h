@@ -85,7 +85,7 @@ struct ReplayOptions {
   std::filesystem::path steps;                  // STEPS.csv, to be written
   std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written: all that were posed
   MotionConstraintSettings constraint{.options = {.distances = Distances::always}};
-  std::vector<Guide> guides = {};  // that the tip keeps as well
+  std::vector<std::string> guides = {};  // texts, of the tip
   Loop loop = Loop::open;
   double max_step = 1.0;  // longest increment asked for in a closed loop [mm]
 };

@@ -10,6 +10,7 @@
 
 #include "commands.h"
 #include "shared/clip.h"
+#include "shared/command_line.h"
 #include "shared/named_mesh.h"
 #include "shared/number_text.h"
 #include "shared/output_file.h"
@@ -66,7 +67,7 @@ int replay(const ReplayOptions& options, std::ostream& out) {
   MotionConstraintSettings settings = options.constraint;
   settings.warn = warn_on_stderr;
   MotionConstraint constraint = make_motion_constraint(loaded.mesh, settings);
-  constraint.set_guides(options.guides);
+  constraint.set_guides(guides_of(options.guides, Guided::tip));
   std::size_t limited_by_guides = 0;
 
   std::map<std::string_view, std::size_t> counts;

@@ -127,6 +127,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   add_constraint_options(command, options.constraint);
   add_convex_tool(command, options.constraint);
   add_guides(command, options.guides);
+  command.final_callback([&options] { guides_of(options.guides, Guided::tip); });
   CLI::Option* closed = command.add_flag_callback(
       "--closed-loop", [&options] { options.loop = Loop::closed; },
       "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at the first line's "
@@ -168,6 +169,7 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
   }
   command.add_flag("--verbose", options.is_verbose, "Print the tables of --bench as well");
   add_constraint_options(command, options.constraint);
+  add_convex_tool(command, options.constraint);
   add_length(command, "--max-step", options.max_step, Zero::refused,
              "Longest increment to desire in a cycle");
   add_number(command, "--seed", options.strokes.seed, 0, largest_seed,
@@ -190,17 +192,24 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->delimiter(',')
       ->capture_default_str()
       ->needs(robot);
+  CLI::Option* const guide = add_guides(command, options.guides);
   for (const char* other : {"--space", "--untagged", "--activation", "--verbose", "--index-cache",
-                            "--solver", "--max-step"}) {
+                            "--solver", "--max-step", "--inside", "--tool"}) {
     command.get_option(other)->excludes(robot);
   }
-  command.get_option("--inside")->excludes(robot);
-  if (options.time_parts) command.get_option("--bench")->excludes(robot);
+  CLI::Option* const tool = command.get_option("--tool");
+  tool->excludes(command.get_option("--activation"));  // it has a rule of its own
+  if (options.time_parts) {
+    CLI::Option* const bench = command.get_option("--bench");  // which times balls without guides
+    for (CLI::Option* const other : {robot, tool, guide}) bench->excludes(other);
+  }
   for (const auto& option : step_options) {
     if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
   }
   command.footer("Ctrl-C ends it early and keeps the strokes that are finished.");
   command.final_callback([&options] {
+    guides_of(options.guides, options.robot.empty() ? Guided::tip : Guided::instrument);
+    if (options.constraint.tool) options.rules = {options.constraint.activation};
     if (!options.robot.empty()) return;
     if (options.meshes.empty()) throw CLI::RequiredError("MESH");
     if (options.meshes.size() > 1) {

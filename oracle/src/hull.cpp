@@ -39,7 +39,7 @@ std::array<double, 2> volumes(std::span<const Vec3> points, const Vec3& a, const
 
 Hull::Hull(std::span<const Vec3> points) {
   if (points.empty() || points.size() > most_points) {
-    throw std::invalid_argument("a hull has 1 to 8 points");
+    throw std::invalid_argument("a hull has 1 to 64 points");
   }
   move_to(points);
   const auto n = static_cast<std::uint8_t>(points.size());

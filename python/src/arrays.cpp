@@ -20,8 +20,6 @@ bool fits(const py::array& array, const Expected& expected) {
       [](py::ssize_t wanted, py::ssize_t got) { return wanted == any || wanted == got; });
 }
 
-std::string type_name(py::handle object) { return Py_TYPE(object.ptr())->tp_name; }
-
 /// Whether it was a list or a tuple of three floats; no number is converted.
 bool read_floats(PyObject* object, Vec3& values) {
   if (!PyTuple_CheckExact(object) && !PyList_CheckExact(object)) return false;
@@ -59,6 +57,13 @@ std::string shape_text(const py::array& array) {
 
 std::string dtype_text(const py::array& array) {
   return py::str(array.dtype()).cast<std::string>();
+}
+
+std::string type_name(py::handle object) {
+  constexpr std::string_view module = "keepout._core.", package = "keepout.";
+  const std::string_view name = Py_TYPE(object.ptr())->tp_name;
+  if (!name.starts_with(module)) return std::string(name);
+  return std::string(package) + std::string(name.substr(module.size()));
 }
 
 void refuse(std::string_view name, const std::string& expected, const std::string& got) {
@@ -99,6 +104,23 @@ Vec3 point(py::handle argument, std::string_view name) {
   if (read_array(argument, values) || read_floats(argument.ptr(), values)) return values;
   const Doubles three = doubles(argument, {name, {3}, "(3,)"});
   return row(three.data(), 0);
+}
+
+LinkPoint link_point(py::handle given, const std::string& name) {
+  const auto no_pair = [&] {
+    refuse(name, "a pair of a link's number and a point of it, (link, (x, y, z))",
+           type_name(given));
+  };
+  if (!PyTuple_Check(given.ptr()) && !PyList_Check(given.ptr())) no_pair();
+  const auto pair = py::reinterpret_borrow<py::sequence>(given);
+  if (py::len(pair) != 2) no_pair();
+  const py::object link = pair[0];
+  if (!PyIndex_Check(link.ptr())) {
+    refuse(name + "[0]", "the number of a link", type_name(link));
+  }
+  const py::ssize_t number = PyNumber_AsSsize_t(link.ptr(), nullptr);  // clipped: refused later
+  return {static_cast<int>(std::clamp<py::ssize_t>(number, -1, 1000)),
+          point(pair[1], name + "[1]")};
 }
 
 std::vector<Vec3> points(py::handle argument, const Expected& expected) {

@@ -41,6 +41,8 @@ struct Expected {
 std::string shape_text(const py::array& array);
 /// "float64"
 std::string dtype_text(const py::array& array);
+/// Returns the type of an object, for messages: "str".
+std::string type_name(py::handle object);
 
 /// Throws Error, naming the argument, what was expected and what came.
 [[noreturn]] void refuse(std::string_view name, const std::string& expected,
@@ -70,6 +72,10 @@ void warn(const std::string& text);
 
 /// Three numbers. Fast for an array, a list or a tuple of floats.
 Vec3 point(py::handle argument, std::string_view name);
+
+/// Returns a point of a link, from a pair of the link's number and a place (3,) in its frame. The
+/// receiver checks that there is such a link.
+LinkPoint link_point(py::handle given, const std::string& name);
 
 /// The points of an array, (n, 3) or, if `expected` allows it, one (3,).
 std::vector<Vec3> points(py::handle argument, const Expected& expected);

@@ -52,6 +52,10 @@ struct IndexHandle {
 std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object& index,
                                         const std::optional<std::filesystem::path>& cache);
 
+/// Returns the guides of a list or tuple of keepout.Guide and texts. Throws Error for anything
+/// else.
+std::vector<Guide> guides_from(const py::object& given);
+
 /// The member of keepout.Status.
 py::object status_object(Status status);
 

@@ -30,7 +30,8 @@ class GuardOf {
     constraint_.forget();
   }
 
-  void set_guides(const std::vector<Guide>& guides) {
+  void set_guides(const py::object& given) {
+    const std::vector<Guide> guides = guides_from(given);
     const InUse no_batch(workers_.in_use());
     const InUse no_step(constraint_in_use_);
     constraint_.set_guides(guides);  // throws for guides out of range
@@ -125,8 +126,9 @@ void bind_guard(py::class_<Guard>& type, const std::string& name, const char* si
            "Forgets where the last step led, for motions that have nothing to do with each other: "
            "the\nside of the next position is found anew.")
       .def("set_guides", &Guard::set_guides, py::arg("guides"),
-           "Replaces the guides: a list of at most 16 Guide, which hold in steps and batches from "
-           "now on.")
+           "Replaces the guides, which hold in steps and batches from now on. guides: a list of at "
+           "most 16;\neach is a Guide or the text of one, such as 'corridor=slab:0,0,50:1,0,0:1': "
+           "see Guide.of_text.\nChanges nothing when it raises Error.")
       .def_property_readonly(
           "mesh", [](const Guard& self) { return self.index()->mesh_object; },
           "The mesh; of several, the first.")

@@ -1,35 +1,59 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
+#include <array>
 #include <string>
-#include <utility>
+#include <string_view>
 #include <vector>
 
 #include "arrays.h"
 #include "bindings.h"
+#include "given.h"
+#include "keepout/factory/guide_text.h"
 #include "keepout/step/guide.h"
 
 namespace keepout::python {
 namespace {
 
+using Name = Given<std::string>;
+using Number = Given<double>;
+using Link = Given<int>;
+
 constexpr const char* region_doc =
-    R"(A convex region that something is to stay in, in the world: made by half_space, slab,
-tube or ball.)";
+    R"(A convex region in the world, which is the frame and the unit of the mesh, in which something is to
+stay. Made by half_space, slab, tube or ball. Directions have any length but 0.)";
 
 constexpr const char* guide_doc =
     R"(A guidance constraint: keeps a tip, or a part of an instrument, in a convex region. Made by
-point, axis, remote_center or orientation, for MotionConstraint.set_guides (of a tip: only
+point, axis, remote_center, orientation or of_text, for MotionConstraint.set_guides (of a tip: only
 point(name, region)) and InstrumentGuard.set_guides. Guides compose; each holds on the whole
-executed motion.)";
+executed motion.
+
+name: for messages. link: a link's number, from 1; 0 is the base. Points and axes of a link are in
+its frame [length]; places, directions and rotations are in the frame of the mesh.)";
+
+constexpr const char* guide_text_doc =
+    R"(A guide from its text, [NAME=]FORM, as 'keepout replay --guide' and 'keepout serve' take it.
+Numbers are separated by commas, fields by colons.
+
+Of a tip, a region: 'half_space:X,Y,Z:INTO', 'slab:X,Y,Z:NORMAL:HALF_WIDTH',
+'tube:X,Y,Z:DIRECTION:RADIUS' or 'ball:X,Y,Z:RADIUS'. Of an instrument: 'point:LINK:X,Y,Z:REGION',
+'axis:LINK:AXIS:DIRECTION:ANGLE' or 'remote_center:LINK:X,Y,Z:LINK:X,Y,Z:CENTER:TOLERANCE'.)";
+
+std::string_view guide_kind(const Guide& guide) {
+  constexpr std::array<std::string_view, 3> names{"point", "axis", "shaft"};
+  return names[static_cast<std::size_t>(guide.kind())];
+}
 
 void bind_states(py::module_& module) {
   py::class_<GuideState>(module, "GuideState", "The state of a guide in a step.")
       .def_readonly("excess", &GuideState::excess,
-                    "How far out of its region as the step began; below 0 in it [length, or all "
-                    "but rad].")
-      .def_readonly("limits", &GuideState::limits, "True if it limits the motion.")
+                    "Distance from the region as the step began; below 0 inside [length, of an "
+                    "axis about rad].")
+      .def_readonly("limits", &GuideState::limits, "True if the guide limits the motion.")
       .def_readonly("relaxed", &GuideState::relaxed,
-                    "True if it does not lead back what is out, because constraints contradict it.")
+                    "True if the guide does not pull its point back, because other constraints "
+                    "contradict it.")
       .def("__repr__", [](const GuideState& self) {
         return py::str("<keepout.GuideState: excess {:g}{}{}>")
             .format(self.excess, self.limits ? ", limits" : "", self.relaxed ? ", relaxed" : "");
@@ -43,89 +67,129 @@ void bind_region(py::module_& module) {
           [](const py::object& at, const py::object& into) {
             return Region::half_space(point(at, "point"), point(into, "into"));
           },
-          py::arg("point"), py::arg("into"), "The side of a plane that `into` (3,) points to.")
+          py::arg("point"), py::arg("into"),
+          "The side of a plane through `point` (3,) that `into` (3,) points to.")
       .def_static(
           "slab",
-          [](const py::object& at, const py::object& normal, double half_width) {
-            return Region::slab(point(at, "point"), point(normal, "normal"), half_width);
+          [](const py::object& at, const py::object& normal, const Number& half_width) {
+            return Region::slab(point(at, "point"), point(normal, "normal"),
+                                taken(half_width, "half_width"));
           },
           py::arg("point"), py::arg("normal"), py::arg("half_width"),
-          "All within half_width of a plane [length].")
+          "All within half_width of the plane through `point` (3,) across `normal` (3,) [length].")
       .def_static(
           "tube",
-          [](const py::object& at, const py::object& direction, double radius) {
-            return Region::tube(point(at, "point"), point(direction, "direction"), radius);
+          [](const py::object& at, const py::object& direction, const Number& radius) {
+            return Region::tube(point(at, "point"), point(direction, "direction"),
+                                taken(radius, "radius"));
           },
           py::arg("point"), py::arg("direction"), py::arg("radius"),
-          "All within a radius of a line [length].")
+          "All within a radius of the line through `point` (3,) along `direction` (3,) [length].")
       .def_static(
           "ball",
-          [](const py::object& center, double radius) {
-            return Region::ball(point(center, "center"), radius);
+          [](const py::object& center, const Number& radius) {
+            return Region::ball(point(center, "center"), taken(radius, "radius"));
           },
-          py::arg("center"), py::arg("radius"), "All within a radius of a point [length].")
+          py::arg("center"), py::arg("radius"), "All within a radius of `center` (3,) [length].")
       .def(
           "excess",
           [](const Region& self, const py::object& at) { return self.excess(point(at, "point")); },
-          py::arg("point"), "How far a point (3,) is out of it; below 0 in it [length].");
+          py::arg("point"),
+          "The distance of a point (3,) from the region; below 0 inside [length].");
+}
+
+/// Adds what makes a guide of a link.
+void bind_link_guides(py::class_<Guide>& type) {
+  type.def_static(
+          "point",
+          [](const Name& name, const Link& link, const py::object& position,
+             const Given<Region>& region) {
+            return Guide::point(taken(name, "name"),
+                                {taken(link, "link"), point(position, "position")},
+                                taken(region, "region"));
+          },
+          py::arg("name"), py::arg("link"), py::arg("position"), py::arg("region"),
+          "A point (3,) of a link stays in a Region.")
+      .def_static(
+          "axis",
+          [](const Name& name, const Link& link, const py::object& axis,
+             const py::object& direction, const Number& angle) {
+            return Guide::axis(taken(name, "name"), taken(link, "link"), point(axis, "axis"),
+                               point(direction, "direction"), taken(angle, "angle"));
+          },
+          py::arg("name"), py::arg("link"), py::arg("axis"), py::arg("direction"), py::arg("angle"),
+          "An axis (3,) of a link stays within an angle of a direction (3,) [rad].")
+      .def_static(
+          "remote_center",
+          [](const Name& name, const py::object& from, const py::object& to,
+             const py::object& center, const Number& tolerance) {
+            return Guide::remote_center(taken(name, "name"), link_point(from, "from_"),
+                                        link_point(to, "to"), point(center, "center"),
+                                        taken(tolerance, "tolerance"));
+          },
+          py::arg("name"), py::arg("from_"), py::arg("to"), py::arg("center"), py::arg("tolerance"),
+          "The straight shaft between two points, each a pair (link, (x, y, z)), passes within a "
+          "tolerance\nof a center (3,), such as a trocar [length].")
+      .def_static(
+          "orientation",
+          [](const Name& name, const Link& link, const py::object& kept, const Number& angle) {
+            return Guide::orientation(taken(name, "name"), taken(link, "link"), rotation(kept),
+                                      taken(angle, "angle"));
+          },
+          py::arg("name"), py::arg("link"), py::arg("rotation"), py::arg("angle"),
+          "A link keeps an orientation, a rotation matrix (3, 3), within an angle of any turn "
+          "[rad]: a list\nof three guides, one for each axis.");
 }
 
 }  // namespace
 
+std::vector<Guide> guides_from(const py::object& given) {
+  if (!PyList_Check(given.ptr()) && !PyTuple_Check(given.ptr())) {
+    refuse("guides", "a list of guides", type_name(given));
+  }
+  std::vector<Guide> guides;
+  for (const py::handle item : given) {
+    if (py::isinstance<Guide>(item)) {
+      guides.push_back(item.cast<Guide>());
+    } else if (py::isinstance<py::str>(item)) {
+      guides.push_back(guide_of_text(item.cast<std::string>()));
+    } else {
+      refuse("guides[" + std::to_string(guides.size()) + "]",
+             "a keepout.Guide or the text of one, such as 'ball:0,0,50:20'", type_name(item));
+    }
+  }
+  return guides;
+}
+
 void bind_guides(py::module_& module) {
   bind_states(module);
   bind_region(module);
-  py::class_<Guide>(module, "Guide", guide_doc)
-      .def_static(
-          "point",
-          [](std::string name, const Region& region) {
-            return Guide::point(std::move(name), region);
-          },
-          py::arg("name"), py::arg("region"), "The tip of a MotionConstraint stays in a Region.")
-      .def_static(
-          "point",
-          [](std::string name, int link, const py::object& position, const Region& region) {
-            return Guide::point(std::move(name), {link, point(position, "position")}, region);
-          },
-          py::arg("name"), py::arg("link"), py::arg("position"), py::arg("region"),
-          "A point of a link, (3,) in its frame, stays in a Region.")
-      .def_static(
-          "axis",
-          [](std::string name, int link, const py::object& axis, const py::object& direction,
-             double angle) {
-            return Guide::axis(std::move(name), link, point(axis, "axis"),
-                               point(direction, "direction"), angle);
-          },
-          py::arg("name"), py::arg("link"), py::arg("axis"), py::arg("direction"), py::arg("angle"),
-          "A direction of a link, (3,) in its frame, stays within an angle of one in the world "
-          "[rad].")
-      .def_static(
-          "remote_center",
-          [](std::string name, const std::pair<int, py::object>& from,
-             const std::pair<int, py::object>& to, const py::object& center, double tolerance) {
-            return Guide::remote_center(std::move(name), {from.first, point(from.second, "from_")},
-                                        {to.first, point(to.second, "to")}, point(center, "center"),
-                                        tolerance);
-          },
-          py::arg("name"), py::arg("from_"), py::arg("to"), py::arg("center"), py::arg("tolerance"),
-          "The straight shaft between two points, each a pair of a link and a place (3,) in its\n"
-          "frame, passes within a tolerance of a center (3,), such as a trocar [length].")
-      .def_static(
-          "orientation",
-          [](const std::string& name, int link, const py::object& kept, double angle) {
-            return Guide::orientation(name, link, rotation(kept), angle);
-          },
-          py::arg("name"), py::arg("link"), py::arg("rotation"), py::arg("angle"),
-          "A link keeps an orientation, (3, 3) in the world, to within an angle of any "
-          "turn\n"
-          "[rad]: a list of three guides, one for each axis.")
-      .def("with_band", &Guide::with_band, py::arg("band"),
-           "The same guide, which may be left by so much [length or rad].")
+  py::class_<Guide> type(module, "Guide", guide_doc);
+  type.def_static(
+      "point",
+      [](const Name& name, const Given<Region>& region) {
+        return Guide::point(taken(name, "name"), taken(region, "region"));
+      },
+      py::arg("name"), py::arg("region"), "The tip of a MotionConstraint stays in a Region.");
+  bind_link_guides(type);
+  type.def_static(
+          "of_text", [](const Name& text) { return guide_of_text(taken(text, "text")); },
+          py::arg("text"), guide_text_doc)
+      .def(
+          "with_band",
+          [](const Guide& self, const Number& band) { return self.with_band(taken(band, "band")); },
+          py::arg("band"), "The same guide, whose region may be left by so much [length or rad].")
       .def_property_readonly("name", &Guide::name, "For messages.")
+      .def_property_readonly("kind", &guide_kind,
+                             "What stays in the region: 'point', 'axis' or 'shaft'.")
       .def_property_readonly("region", &Guide::region,
-                             "Where it is to stay; of an axis, the tips of unit vectors.")
+                             "The region; of an axis, of the tips of unit vectors.")
       .def_property_readonly("band", &Guide::band,
-                             "By how much its region may be left [length or rad].");
+                             "By how much the region may be left [length or rad].")
+      .def("__repr__", [](const Guide& self) {
+        return py::str("<keepout.Guide '{}' of {} {}>")
+            .format(self.name(), self.kind() == Guide::Kind::axis ? "an" : "a", guide_kind(self));
+      });
 }
 
 }  // namespace keepout::python

@@ -15,24 +15,6 @@
 namespace keepout::python {
 namespace {
 
-/// A pair of a link's number and a point of it.
-LinkPoint link_point(py::handle given, const std::string& name) {
-  const auto no_pair = [&] {
-    refuse(name, "a pair of a link's number and a point of it, (link, (x, y, z))",
-           std::string(Py_TYPE(given.ptr())->tp_name));
-  };
-  if (!PyTuple_Check(given.ptr()) && !PyList_Check(given.ptr())) no_pair();
-  const auto pair = py::reinterpret_borrow<py::sequence>(given);
-  if (py::len(pair) != 2) no_pair();
-  const py::object link = pair[0];
-  if (!PyIndex_Check(link.ptr())) {
-    refuse(name + "[0]", "the number of a link", Py_TYPE(link.ptr())->tp_name);
-  }
-  const py::ssize_t number = PyNumber_AsSsize_t(link.ptr(), nullptr);  // clipped: refused later
-  return {static_cast<int>(std::clamp<py::ssize_t>(number, -1, 1000)),
-          point(pair[1], name + "[1]")};
-}
-
 Body body_of(std::string name, const py::iterable& points, double radius) {
   Body body{.name = std::move(name), .radius = radius};
   for (const py::handle given : points) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "guard.h"
+#include "keepout/factory/convex_tool_text.h"
 
 namespace keepout::python {
 namespace {
@@ -28,21 +29,29 @@ then wait for each other; for loops of their own give each a constraint, and let
 the Index.
 
 index: a name of indices(), or an Index of this mesh. index_cache: a directory that keeps built
-indices for the next start. tool: a ConvexTool that must not touch the mesh, in place of the ball;
+indices for the next start. tool: a ConvexTool, or the text of one, that must not touch the mesh, in place of the ball;
 leave tool_radius and activation as they are: inside, refinements and nodes have no effect.
 A max_... is a capacity: a step that needs more ends with Status.over_capacity.)";
 
 constexpr const char* constraint_signature =
     "__init__(self: keepout.MotionConstraint, mesh: keepout.Mesh, *, "
     "index: str | keepout.Index = 'wide_bvh', index_cache: str | os.PathLike[str] | None = None, "
-    "tool: keepout.ConvexTool | None = None";
+    "tool: keepout.ConvexTool | str | None = None";
+
+std::optional<ConvexTool> tool_from(const py::object& given) {
+  if (given.is_none()) return std::nullopt;
+  if (py::isinstance<ConvexTool>(given)) return given.cast<ConvexTool>();
+  if (py::isinstance<py::str>(given)) return tool_of_text(given.cast<std::string>());
+  refuse("tool", "a keepout.ConvexTool or the text of one, such as 'capsule:0,0,0:0,0,12:1.5'",
+         type_name(given));
+}
 
 std::unique_ptr<Guard> make_guard(const py::object& mesh, const py::object& index,
                                   const std::optional<std::filesystem::path>& index_cache,
-                                  std::optional<ConvexTool> tool, const py::kwargs& given) {
+                                  const py::object& tool, const py::kwargs& given) {
   auto settings = settings_from<MotionConstraintSettings>("MotionConstraint", given,
                                                           {"mesh", "index", "index_cache", "tool"});
-  settings.tool = std::move(tool);
+  settings.tool = tool_from(tool);
   return std::make_unique<Guard>(index_from(mesh, index, index_cache), std::move(settings));
 }
 

@@ -32,6 +32,9 @@ ARGUMENTS = {
     "mesh": "Mesh",
     "place.pose": "ArrayLike | None",
     "Body.points": "Sequence[tuple[int, ArrayLike]]",
+    "remote_center.from_": "tuple[int, ArrayLike]",
+    "remote_center.to": "tuple[int, ArrayLike]",
+    "set_guides.guides": "Sequence[Guide | str]",
     "step.rows": "tuple[ArrayLike, ArrayLike] | None",
     "simulate.out": "Simulation | None",
     "out": "Steps | None",
@@ -42,6 +45,7 @@ ARGUMENTS = {
 RESULTS = {
     "Body.points": "list[tuple[int, tuple[float, float, float]]]",
     "Inspection.places": "dict[str, NDArray[np.float64]]",
+    "Guide.kind": 'Literal["point", "axis", "shaft"]',
     "InstrumentStep.degraded": "tuple[tuple[int, int, float | None], ...]",
     "activations": "list[Part]",
     "high": "tuple[float, float, float]",

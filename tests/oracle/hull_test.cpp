@@ -4,6 +4,7 @@
 #include "keepout/oracle/hull.h"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -104,11 +105,14 @@ TEST(Hull, OfABoxIsWhatItIsByHand) {
   EXPECT_EQ(distance({0.5, 0.5, 0.5}, {0.6, 0.5, 0.5}, {0.5, 0.6, 0.5}), 0.0);  // within
 }
 
-TEST(Hull, HasOneToEightPoints) {
+TEST(Hull, HasOneToSixtyFourPoints) {
   EXPECT_THROW(Hull({}), std::invalid_argument);
-  std::vector<Vec3> nine = box();
-  nine.emplace_back(0.5, 0.5, 0.5);
-  EXPECT_THROW(Hull{nine}, std::invalid_argument);
+  std::vector<Vec3> many(64, Vec3(0.5, 0.5, 0.5));
+  std::ranges::copy(box(), many.begin());
+  const Triangle above{Vec3(0.5, 0.5, 1.25), Vec3(0.6, 0.5, 2), Vec3(0.5, 0.6, 2)};
+  EXPECT_DOUBLE_EQ(Hull{many}.distance(above).estimate, 0.25);
+  many.emplace_back(0.5, 0.5, 0.5);
+  EXPECT_THROW(Hull{many}, std::invalid_argument);
 }
 
 }  // namespace

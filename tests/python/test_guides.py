@@ -72,6 +72,32 @@ def test_of_a_tip_are_regions_alone_and_hold_in_batches():
     assert step.limits == ("guide",) and np.array_equal(step.motion, guided[0])
 
 
+def test_a_text_is_the_guide_that_it_describes():
+    tip, desired = (0.0, 0.0, 15.0), (3.0, 1.0, -0.5)
+    corridor = keepout.Guide.point("corridor", keepout.Region.slab((0, 0, 15), (1, 0, 0), 1.0))
+    steps = []
+    for guides in (["corridor=slab:0,0,15:1,0,0:1", "ball:0,0,15:4"],
+                   (corridor, keepout.Guide.of_text("ball:0,0,15:4"))):
+        guard = keepout.MotionConstraint(cube, tool="sphere:1", margin=0.2)
+        guard.set_guides(guides)
+        steps.append(guard.step(tip, desired))
+    assert steps[0].limits == ("guide",) and [state.limits for state in steps[0].guides] == [True, False]
+    np.testing.assert_array_equal(steps[0].motion, steps[1].motion)
+    guide = keepout.Guide.of_text("corridor=slab:0,0,15:1,0,0:1")
+    assert guide.name == "corridor" and guide.kind == "point"
+    assert guide.region.excess((3, 0, 0)) == corridor.region.excess((3, 0, 0)) == 2.0
+    assert repr(guide) == "<keepout.Guide 'corridor' of a point>"
+    # Of an instrument, and a text that is refused changes nothing.
+    arm = keepout.InstrumentGuard(cube, instrument(), check_sides=False)
+    at = arm.instrument.chain.forward_kinematics([0.0, 0.0, 60.0, 0.0, 0.0, 0.0])[:3, 3]
+    near = "near=point:6:0,10.2,0:ball:{},{},{}:1".format(*at)
+    arm.set_guides([near])
+    with pytest.raises(keepout.Error, match="link 7"):
+        arm.set_guides([near.replace(":6:", ":7:")])
+    by = (0.0, 0.0, 4.0, 0.0, 0.0, 0.0)
+    assert arm.prove((0.0, 0.0, 60.0, 0.0, 0.0, 0.0), by).share == pytest.approx(0.25, abs=1 / 64 + 1e-9)
+
+
 def test_tip_axis_and_trocar_are_kept_on_the_way():
     guard = keepout.InstrumentGuard(cube, instrument(), period=0.02, check_sides=False)
     chain = guard.instrument.chain

@@ -43,6 +43,7 @@ import keepout
 
 mesh = keepout.Mesh(np.zeros((3, 3)), [[0, 1, 2]])
 guard = keepout.MotionConstraint(mesh, index=keepout.Index(mesh), margin=0.2, query="sphere", tool=None)
+guard.set_guides(["ball:0,0,0:1", keepout.Guide.point("a", keepout.Region.ball((0, 0, 0), 1))])
 step = guard.step((0, 0, 1), np.zeros(3), rows=([[1, 0, 0]], [0]))
 status: keepout.Status = step.status
 distance: float | None = step.distance

@@ -71,7 +71,13 @@ const files = given
         ..."simulate cube --strokes 2 --cycles 300".split(" "),
         ...(isLong ? ["--bench"] : []),
       ),
-      run("open", "simulate", "flat_plate", "--strokes", "2", "--cycles", "300"),
+      run(
+        "open",
+        ..."simulate flat_plate --strokes 2 --cycles 300 --guide ball:50,50,0:30".split(" "),
+      ),
+      ...(isLong
+        ? [run("tool", ..."simulate cube --strokes 2 --cycles 300 --tool blade:20:6:1".split(" "))]
+        : []),
       run(
         "bench",
         ..."bench --mesh cube,sphere --seconds 0.01 --radius".split(" "),
@@ -91,6 +97,7 @@ const files = given
       run(
         "simulate_robot",
         ..."simulate gear --robot psm --strokes 3 --cycles 200 --speed 5".split(" "),
+        ..."--guide axis:6:0,1,0:0,0,1:2.5".split(" "),
       ),
       run("experiments", "report", experimentsFile),
       run("inspect", "inspect", faultyFile, "--self-intersections"),

@@ -41,7 +41,7 @@ const statuses = keepout.statuses("tip");
 const share = isLong ? 1 : 4;
 const openSteps = 8000 / share;
 const closedSteps = 4000 / share;
-const settings = { radius: 1.2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8 };
+const settings = { radius: 1.2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8, guides: [] };
 
 /** Numbers from 0 to 1, the same in each run. */
 function seeded(state) {

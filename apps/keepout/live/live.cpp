@@ -52,13 +52,14 @@ std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions
   if (start) {
     make_instrument_constraint(
         loaded.mesh, robot_named(options.robot).make(start->base),
-        {.options = {.margin = options.constraint.options.margin}, .warn = warn});
+        {.options = {.margin = options.constraint.options.margin}, .warn = warn})
+        .set_guides(guides_of(options.guides, Guided::instrument));
     return warnings;
   }
   MotionConstraintSettings settings = options.constraint;
   if (settings.activation == no_fixture) settings.activation = "all_faces";  // which asks for least
   settings.warn = warn;
-  make_motion_constraint(loaded.mesh, settings);
+  make_motion_constraint(loaded.mesh, settings).set_guides(guides_of(options.guides, Guided::tip));
   return warnings;
 }
 
@@ -157,6 +158,7 @@ void write_anatomy(std::ostream& page, const LiveOptions& options,
                 {"tool_radius", constraint.options.tool_radius},
                 {"margin", constraint.options.margin},
                 {"max_step", options.max_step},
+                {"guides", options.guides},
                 {"meshes", Json::array()}};
   if (!options.robot.empty()) settings["robot"] = options.robot;
   for (const Anatomy& one : anatomy) settings["meshes"].push_back(one.facts);
@@ -214,6 +216,10 @@ void add_live(CLI::App& app, LiveOptions& options) {
   add_option_of(command, "radius", step)->excludes(robot);
   add_length(command, "--max-step", options.max_step, Zero::refused,
              "Longest way of the tool in a cycle of 1 ms");
+  add_guides(command, options.guides);
+  command.final_callback([&options] {
+    guides_of(options.guides, options.robot.empty() ? Guided::tip : Guided::instrument);
+  });
   command.footer(
       "What these set, the page begins with; there they are changed while the tool moves.\n"
       "The page is one file that needs no server and no network, and holds the meshes: pass it on "

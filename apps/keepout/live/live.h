@@ -26,6 +26,7 @@ struct LiveOptions {
   std::filesystem::path page = "keepout-live.html";  // to be written
   MotionConstraintSettings constraint = {
       .options = {.tool_radius = 3.0}};  // that the page begins with
+  std::vector<std::string> guides = {};  // texts, that the page begins with
   double max_step = 0.5;                 // longest way of the tool in a cycle [mm]
   Opening opening = Opening::by_the_desktop;
 };

@@ -8,6 +8,8 @@
 #include <functional>
 #include <vector>
 
+#include "keepout/geometry/convex_tool.h"
+#include "keepout/step/guide.h"
 #include "simulate/audit.h"
 #include "verify/robot/start.h"
 #include "verify/setup.h"
@@ -51,9 +53,12 @@ inline double lowered(double time) { return smooth(4.0 * time) * smooth(4.0 * (1
 /// and back up, with a tremor. The source throws Error if no place is free.
 ///
 /// Strokes go in where the surface faces outwards, as seen from the middle of the mesh, or, if that
-/// is nowhere free (a flat sheet, a mesh that keeps the tool inside), at any free place. `audit`
-/// must outlive the source.
-std::function<Stroke()> tip_strokes(Audit& audit, const StrokeSettings& settings);
+/// is nowhere free (a flat sheet, a mesh that keeps the tool inside), at any free place. They
+/// prefer places from which they start within all guides. `tool`: a convex tool, which must be free
+/// as well; null for a ball. `audit` and `tool` must outlive the source.
+std::function<Stroke()> tip_strokes(Audit& audit, const StrokeSettings& settings,
+                                    const ConvexTool* tool = nullptr,
+                                    std::vector<Guide> guides = {});
 
 /// Draws a stroke of an instrument. It comes from a port on the outside, 100 to 150 mm from the
 /// surface, its tip 5 to 20 mm before it (find_start). From there the operator goes in and comes

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <optional>
+#include <utility>
 
 #include "keepout/error.h"
 #include "keepout/fixtures/poses.h"
 #include "operators/strokes.h"
 #include "operators/tremor.h"
 #include "shared/number_text.h"
+#include "simulate/tool_audit.h"
 
 namespace keepout::app {
 namespace {
@@ -19,8 +23,11 @@ constexpr double tremor_amplitude = 0.1;
 
 class TipStrokes {
  public:
-  TipStrokes(Audit& audit, const StrokeSettings& settings)
+  TipStrokes(Audit& audit, const StrokeSettings& settings, const ConvexTool* tool,
+             std::vector<Guide> guides)
       : audit_(audit),
+        tool_(tool),
+        guides_(std::move(guides)),
         random_(settings.seed),
         cycles_(settings.cycles),
         scale_(std::min(1.0, audit.mesh().bounds().size().norm() / 100.0)) {}
@@ -70,18 +77,34 @@ class TipStrokes {
   /// strokes deep in a cavity would be as good a test, but invisible in a picture.
   std::optional<SurfacePoint> place_to_start(double height) {
     const Vec3 middle = audit_.mesh().bounds().center();
-    const auto is_free = [&](const SurfacePoint& place) {
-      return audit_.clearance(place.point + height * place.normal) > 0.8 * height;
-    };
-    std::optional<SurfacePoint> facing_elsewhere;
+    std::array<std::optional<SurfacePoint>, 3> others;  // the better first
     for (int attempt = 0; attempt < 2000; ++attempt) {
       const SurfacePoint place = draw_place();
       const Vec3 outwards = place.point - middle;
       const bool faces_outwards = place.normal.dot(outwards) >= 0.3 * outwards.norm();
-      if (faces_outwards && is_free(place)) return place;
-      if (!faces_outwards && !facing_elsewhere && is_free(place)) facing_elsewhere = place;
+      const Vec3 start = place.point + height * place.normal;
+      const std::size_t rank = (is_guided(start) ? 0U : 2U) + (faces_outwards ? 0U : 1U);
+      if (rank > 0 && others[rank - 1]) continue;
+      if (!is_free(start, height)) continue;
+      if (rank == 0) return place;
+      others[rank - 1] = place;
     }
-    return facing_elsewhere;
+    for (const std::optional<SurfacePoint>& place : others) {
+      if (place) return place;
+    }
+    return std::nullopt;
+  }
+
+  bool is_free(const Vec3& start, double height) {
+    if (!(audit_.clearance(start) > 0.8 * height)) return false;
+    if (tool_ == nullptr) return true;
+    if (!tool_audit_) tool_audit_.emplace(audit_, *tool_, start);
+    return tool_audit_->clearance_at(start, height) > 0.8 * height;
+  }
+
+  bool is_guided(const Vec3& start) const {
+    return std::ranges::all_of(
+        guides_, [&](const Guide& guide) { return guide.region().excess(start) <= 0.0; });
   }
 
   /// Follows the surface from a place, in a straight direction as seen from above.
@@ -98,6 +121,9 @@ class TipStrokes {
   }
 
   Audit& audit_;
+  const ConvexTool* tool_;  // null: a ball
+  std::vector<Guide> guides_;
+  std::optional<ToolAudit> tool_audit_;
   Random random_;
   std::size_t cycles_;
   double scale_;  // of lengths
@@ -107,8 +133,11 @@ class TipStrokes {
 
 }  // namespace
 
-std::function<Stroke()> tip_strokes(Audit& audit, const StrokeSettings& settings) {
-  return [strokes = TipStrokes(audit, settings)]() mutable { return strokes.next(); };
+std::function<Stroke()> tip_strokes(Audit& audit, const StrokeSettings& settings,
+                                    const ConvexTool* tool, std::vector<Guide> guides) {
+  return [strokes = TipStrokes(audit, settings, tool, std::move(guides))]() mutable {
+    return strokes.next();
+  };
 }
 
 }  // namespace keepout::app

@@ -265,26 +265,46 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings) {
       ->needs(tool);
 }
 
-void add_guides(CLI::App& command, std::vector<Guide>& guides) {
-  const auto take = [&guides](const std::vector<std::string>& texts) {
+CLI::Option* add_guides(CLI::App& command, std::vector<std::string>& guides) {
+  const auto is_guide = [](const std::string& text) -> std::string {
     try {
-      for (const std::string& text : texts) guides.push_back(guide_of_text(text));
+      guide_of_text(text);
+      return {};
     } catch (const Error& error) {
-      throw CLI::ValidationError("--guide", error.what());
+      return error.what();
     }
   };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--guide", take,
-          "A region that the tip is to stay in as well; may be given several times. [NAME=] and "
-          "one of: " +
-              std::string(region_forms))
+  std::string help =
+      "A region that the tip must not leave; may be given several times. [NAME=] and one of: " +
+      std::string(region_forms);
+  if (command.get_option_no_throw("--robot") != nullptr) {
+    help += ". With --robot, of a link: " + std::string(guide_forms);
+  }
+  return command.add_option("--guide", guides, help)
       ->type_name("GUIDE")
+      ->check(CLI::Validator(is_guide, ""))
       ->expected(1, static_cast<int>(Guide::most));
 }
 
 std::string unknown_command(const CLI::App& app, const std::string& word) {
   return no_such_command(app, word) + "\nSee '" + app.get_name() + " --help'.";
+}
+
+std::vector<Guide> guides_of(std::span<const std::string> texts, Guided guided) {
+  std::vector<Guide> guides;
+  for (const std::string& text : texts) {
+    const Guide& guide = guides.emplace_back(guide_of_text(text));
+    const bool is_of_tip = guide.kind() == Guide::Kind::point && guide.link() == 0 &&
+                           guide.first().position.isZero(0.0);
+    if (guided == Guided::tip ? is_of_tip : guide.link() > 0) continue;
+    const std::string forms(guided == Guided::tip ? region_forms : guide_forms);
+    throw CLI::ValidationError(
+        "--guide", "'" + text + "' is " +
+                       (guided == Guided::tip ? "for a link of an instrument, but this is a tip"
+                                              : "for a tip, but this is an instrument") +
+                       ": write [NAME=] and one of " + forms);
+  }
+  return guides;
 }
 
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {

@@ -166,8 +166,16 @@ void add_activation(CLI::App& command, std::string& activation);
 /// place of the ball. Precondition: add_constraint_options.
 void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
 
-/// Of a command that guards one tip: regions that it is to stay in. Precondition: its
-void add_guides(CLI::App& command, std::vector<Guide>& guides);
+/// Adds the guides of a tip, and of links if the command has the option --robot already, as texts.
+/// Each is checked to be one.
+CLI::Option* add_guides(CLI::App& command, std::vector<std::string>& guides);
+
+/// The tool that guides are for.
+enum class Guided : std::uint8_t { tip, instrument };
+
+/// Returns the guides of texts that add_guides has taken. Throws CLI::ValidationError if one is not
+/// of that tool.
+std::vector<Guide> guides_of(std::span<const std::string> texts, Guided guided);
 
 /// Says that there is no command of that name, with a hint at what was meant and at the help.
 std::string unknown_command(const CLI::App& app, const std::string& word);

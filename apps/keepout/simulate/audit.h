@@ -49,6 +49,8 @@ class Audit {
   /// The nearest triangle, of equally near ones the first, and its closest point.
   Hit nearest(const Vec3& point);
   const Mesh& mesh() const noexcept { return *mesh_; }
+  /// Returns the tree of the mesh's triangles, for other judges.
+  const std::shared_ptr<const oracle::TriangleTree>& tree() const noexcept { return tree_; }
 
  private:
   bool is_behind_sheet(const Vec3& point);

@@ -11,8 +11,10 @@
 #include "record/drawn_mesh.h"
 #include "record/json_parts.h"
 #include "shared/clip.h"
+#include "shared/command_line.h"
 #include "shared/names.h"
 #include "shared/number_text.h"
+#include "simulate/guide_audit.h"
 #include "simulate/simulated_tool.h"
 #include "verify/campaign.h"
 
@@ -29,7 +31,7 @@ constexpr std::array<const char*, 3> body_names{"shaft", "wrist", "jaw"};
 constexpr std::array<const char*, manners.size()> manner_names{
     "pushing with the jaw", "leaning with the shaft", "rotating the wrist"};
 
-Columns<RunTally> mode_columns() {
+Columns<RunTally> mode_columns(bool has_guides) {
   Columns<RunTally> columns{
       {"mesh", &RunTally::mesh, "mesh", -12},
       {"speed", &RunTally::speed, "speed", 5},
@@ -39,6 +41,7 @@ Columns<RunTally> mode_columns() {
       {"limits_broken", &RunTally::breaches, "limits", 6},
       {"below", [](const RunTally& t) { return Json(t.any.below); }, "close", 7},
       {"in_mesh", [](const RunTally& t) { return Json(t.any.in_mesh); }, "in mesh", 7}};
+  if (has_guides) columns.push_back({"guides_left", &RunTally::guides_left, "guides", 7});
   for (std::size_t b = 0; b < body_names.size(); ++b) {
     const std::string body = body_names[b];
     const auto of_body = [b](auto figure) {
@@ -55,7 +58,8 @@ Columns<RunTally> mode_columns() {
 constexpr const char* columns_meaning =
     R"(close: cycles in which a body was closer than the certified distance, as an independent judge sees
 five poses of each; in mesh: of them, those in which the mesh reached into it; deepest: how far, in mm,
-at most its radius. refused: cycles without a proven motion; limits: cycles that broke a joint's.
+at most its radius. refused: cycles without a proven motion; limits: cycles that broke a joint's;
+guides, if there are any: cycles that left one by more than is promised.
 )";
 
 /// The cycles of a stroke in one mode, and which was the worst.
@@ -81,7 +85,9 @@ Json run_json(const std::string& mode, const std::vector<Cycle>& cycles) {
 class GuardedInstrument final : public SimulatedTool {
  public:
   explicit GuardedInstrument(const SimulateOptions& options)
-      : options_(options), margin_(options.constraint.options.margin) {}
+      : options_(options),
+        margin_(options.constraint.options.margin),
+        guides_(guides_of(options.guides, Guided::instrument)) {}
 
   std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
     const std::string name = path.stem().string();
@@ -109,6 +115,7 @@ class GuardedInstrument final : public SimulatedTool {
     InstrumentOptions step = options_of({.margin = margin_}, instrument.chain(), stroke.speed);
     if (mode == Mode::linearised) step.certified = CertifiedMotion::linearised;
     joints_.emplace(instrument, std::make_unique<ActiveSet>(), step);
+    if (mode != Mode::none) joints_->set_guides(guides_);
     tip_.reset();
     if (mode == Mode::tip_only) {  // a ball at the end of the jaw
       tip_ = make_motion_constraint(scene.mesh(), scene.shared_index(),
@@ -121,7 +128,10 @@ class GuardedInstrument final : public SimulatedTool {
     speed_ = stroke.speed;
     random_ = stroke.random;
     q_ = stroke.start.positions;
-    judge_.emplace(oracle::JudgedScene{on_->robot.judged(), stroke.start.base, {{scene.tree()}}},
+    judge_.emplace(oracle::JudgedScene{.robot = on_->robot.judged(),
+                                       .base = stroke.start.base,
+                                       .meshes = {{scene.tree()}},
+                                       .guides = judged_guides(guides_)},
                    joints_->instrument().chain(), random_, q_, step, joints_->tolerance());
     // All starts are drawn farther away than the margin.
     return {.required = margin_ - step.band - 3.0 * joints_->tolerance()};
@@ -141,7 +151,9 @@ class GuardedInstrument final : public SimulatedTool {
     cycle.outcome = !step.ok()                    ? Outcome::stopped
                     : step.status != Status::free ? Outcome::limited
                                                   : Outcome::moved_freely;
-    cycle.is_breach = judge_->judge(q_).limits_broken;
+    const oracle::RobotVerdict verdict = judge_->judge(q_);
+    cycle.is_breach = verdict.limits_broken;
+    cycle.is_guide_left = verdict.is_guide_left;
     for (std::size_t b = 0; b < body_names.size(); ++b) {
       cycle.clearances[b] = judge_->least()[b];
       cycle.places[b] = judge_->oracle().axis(b).to;
@@ -180,17 +192,20 @@ class GuardedInstrument final : public SimulatedTool {
       }
       if (run.guard != mode_names.front()) continue;
       cycles += run.cycles;
-      broken += run.any.below + run.breaches;
+      broken += run.any.below + run.breaches + run.guides_left;
     }
     // A mesh without a stroke that is finished.
     if (meshes_.back()["strokes"].empty()) meshes_.erase(meshes_.size() - 1);
+    const bool has_guides = !guides_.empty();
+    const std::string in_guides = has_guides ? ", and in its guides" : "";
     Json record =
         new_record({.kind = "simulate_robot",
                     .command = options_.command,
                     .subject = "A simulated operator drove the instrument of a robot, " +
                                options_.robot + ", against anatomy: the same strokes in each mode",
                     .headline = std::string("The certified step ") +
-                                (broken == 0 ? "kept shaft, wrist and jaw off the anatomy in all "
+                                (broken == 0 ? "kept shaft, wrist and jaw off the anatomy" +
+                                                   in_guides + " in all "
                                              : "broke its promise in some of ") +
                                 counted(cycles, "cycle") + "." +
                                 (still.empty() ? ""
@@ -203,15 +218,16 @@ class GuardedInstrument final : public SimulatedTool {
                                  {"margin", trimmed(margin_) + " mm"},
                                  {"seed", std::to_string(options_.strokes.seed)},
                                  {"index", options_.constraint.index}}});
+    if (has_guides) record["settings"]["guides"] = listed(options_.guides);
     record["certified_mm"] = margin_ - joints_->options().band;
     for (std::size_t b = 0; b < body_names.size(); ++b) {
       record["bodies"].push_back(
           {{"name", body_names[b]}, {"radius_mm", joints_->instrument().bodies()[b].radius}});
     }
-    record["rows"] = json_of(mode_columns(), runs);
+    record["rows"] = json_of(mode_columns(has_guides), runs);
     record["meshes"] = std::move(meshes_);
     return {.record = std::move(record),
-            .columns = mode_columns(),
+            .columns = mode_columns(has_guides),
             .legend = columns_meaning,
             .is_broken = broken > 0};
   }
@@ -219,6 +235,7 @@ class GuardedInstrument final : public SimulatedTool {
  private:
   const SimulateOptions& options_;
   double margin_;  // [mm]
+  std::vector<Guide> guides_;
   std::optional<RobotScene> on_;
   Json meshes_ = Json::array();
   std::array<double, manners.size()> told_ = {};  // of the strokes kept on the last mesh [mm]

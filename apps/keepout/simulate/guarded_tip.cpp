@@ -4,15 +4,19 @@
 #include <utility>
 
 #include "shared/clip.h"
+#include "shared/command_line.h"
 #include "shared/progress.h"
+#include "simulate/guide_audit.h"
 #include "simulate/tip_record.h"
+#include "simulate/tool_audit.h"
 
 namespace keepout::app {
 namespace {
 
 class GuardedTip final : public SimulatedTool {
  public:
-  explicit GuardedTip(const SimulateOptions& options) : options_(options) {
+  explicit GuardedTip(const SimulateOptions& options)
+      : options_(options), guides_(guides_of(options.guides, Guided::tip)) {
     require_within_reach(options.max_step, options.constraint.options.radius);
   }
 
@@ -24,11 +28,12 @@ class GuardedTip final : public SimulatedTool {
       MotionConstraintSettings settings = options_.constraint;
       settings.activation = rule;
       settings.warn = warn_on_stderr;
-      constraints_.emplace_back(make_motion_constraint(mesh, settings));
+      constraints_.emplace_back(make_motion_constraint(mesh, settings))->set_guides(guides_);
       rules_.push_back(rule);
     }
     audit_.emplace(mesh);
-    strokes_ = tip_strokes(*audit_, options_.strokes);
+    const auto& tool = options_.constraint.tool;
+    strokes_ = tip_strokes(*audit_, options_.strokes, tool ? &*tool : nullptr, guides_);
     return mesh;
   }
 
@@ -39,8 +44,14 @@ class GuardedTip final : public SimulatedTool {
   StrokeStart start(const Stroke& stroke, std::size_t guard) override {
     constraint_ = constraints_[guard] ? &*constraints_[guard] : nullptr;
     tip_ = stroke.goals.front().position;
-    path_.emplace(*audit_, tip_);
-    return {required_clearance(options_.constraint.options), path_->clearance()};
+    if (options_.constraint.tool) {
+      tool_path_.emplace(*audit_, *options_.constraint.tool, tip_);
+    } else {
+      path_.emplace(*audit_, tip_);
+    }
+    guide_path_.emplace(guides_, tip_);
+    return {required_clearance(options_.constraint.options),
+            tool_path_ ? tool_path_->clearance() : path_->clearance()};
   }
 
   Cycle follow(const Pose& goal) override {
@@ -58,9 +69,11 @@ class GuardedTip final : public SimulatedTool {
       motion = step.motion;
     }
     tip_ += motion;
-    cycle.is_breach = path_->follow(tip_);
+    cycle.is_breach = tool_path_ ? tool_path_->follow(tip_) : path_->follow(tip_);
+    cycle.is_guide_left = guide_path_->follow(tip_);
+    cycle.guide_excess = guide_path_->excess();
     cycle.places.front() = tip_;
-    cycle.clearances.front() = path_->clearance();
+    cycle.clearances.front() = tool_path_ ? tool_path_->clearance() : path_->clearance();
     return cycle;
   }
 
@@ -72,6 +85,7 @@ class GuardedTip final : public SimulatedTool {
 
  private:
   const SimulateOptions& options_;
+  std::vector<Guide> guides_;
   std::vector<std::string> rules_{no_rule};
   std::vector<std::optional<MotionConstraint>> constraints_;  // of each rule
   std::optional<Audit> audit_;
@@ -79,7 +93,9 @@ class GuardedTip final : public SimulatedTool {
   std::vector<FollowedStroke> kept_;
   MotionConstraint* constraint_ = nullptr;  // null: none
   Vec3 tip_ = Vec3::Zero();
-  std::optional<PathAudit> path_;
+  std::optional<PathAudit> path_;       // of a ball
+  std::optional<ToolAudit> tool_path_;  // of a convex tool
+  std::optional<GuideAudit> guide_path_;
 };
 
 }  // namespace

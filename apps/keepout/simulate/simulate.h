@@ -42,6 +42,7 @@ struct SimulateOptions {
   RecordFiles files = {.json = {}, .page = "keepout-report.html"};
   std::vector<std::string> rules;       // run beside the tool without a fixture
   MotionConstraintSettings constraint;  // its activation is each of the rules in turn
+  std::vector<std::string> guides;      // texts: of the tip, or with a robot of its links
   StrokeSettings strokes;
   double max_step = 0.5;                 // longest increment commanded in a cycle [mm]
   TimeParts time_parts = {};             // unset in programs that cannot
@@ -61,7 +62,8 @@ struct SimulateOptions {
 ///
 /// A StopSignal ends it within a cycle. The strokes that are finished are kept; without one,
 /// nothing is written. Returns the exit status: failure if a certified cycle of an instrument broke
-/// what docs/joint-space-step.md promises, or if a part that was timed gave a wrong answer;
+/// what docs/joint-space-step.md promises, if a guarded tip left a guide, if a guarded convex tool
+/// touched the surface, or if a part that was timed gave a wrong answer;
 /// exit_interrupted if a signal stopped it. Throws Error, also if the report would
 /// overwrite the mesh; then there is no report.
 int simulate(const SimulateOptions& options, std::ostream& out);

@@ -16,6 +16,8 @@ void RunTally::add(const std::vector<Cycle>& stroke, const StrokeStart& start) {
   for (const Cycle& cycle : stroke) {
     ++outcomes[static_cast<std::size_t>(cycle.outcome)];
     breaches += cycle.is_breach ? 1 : 0;
+    guides_left += cycle.is_guide_left ? 1 : 0;
+    farthest_out = std::max(farthest_out, cycle.guide_excess);
     any.add(cycle.least(), required);
     for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].add(cycle.clearances[b], required);
     least = std::min(least, cycle.least());

@@ -34,7 +34,11 @@ struct Cycle {
   std::array<double, 3> clearances{far, far, far};
   float step_us = 0.0F;  // time that the step of a tip took; 0 without a fixture [us]
   Outcome outcome = Outcome::moved_freely;
-  bool is_breach = false;  // the tip passed through a triangle, or a joint left its limits
+  bool is_breach = false;      // the tip passed through a triangle, a convex tool touched one, or a
+                               // joint left its limits
+  bool is_guide_left = false;  // by more than is promised
+  double guide_excess =
+      -far;  // largest of a tip's guides at the end; -infinity without guides [mm]
 
   /// Returns the smallest clearance; NaN if one is, as no clearance is proved then.
   double least() const {
@@ -66,6 +70,8 @@ struct RunTally {
   std::size_t strokes = 0, cycles = 0;
   std::array<std::size_t, 3> outcomes = {};  // cycles, by outcome
   std::size_t breaches = 0;                  // cycles
+  std::size_t guides_left = 0;               // cycles in which a guide was left
+  double farthest_out = -Cycle::far;         // largest excess of a tip's guides [mm]
   std::size_t strokes_inside = 0;            // with at least one cycle inside
   std::size_t strokes_breached = 0;          // with a cycle inside, or with a breach
   std::size_t starts_too_close = 0;          // strokes that began nearer than is required

@@ -15,13 +15,23 @@ namespace {
 
 using Strokes = std::vector<FollowedStroke>;
 
+/// What is moved over what.
+struct TipScene {
+  SurfaceKind surface;
+  bool has_tool;  // a convex tool, of which contacts are counted, and no depth
+  bool has_guides;
+
+  /// Returns true if a depth inside the anatomy is known.
+  bool has_depth() const noexcept { return surface == SurfaceKind::closed && !has_tool; }
+};
+
 /// Returns 0 if the tip has been inside, or has crossed, or touched as far as the check can tell.
 /// [mm]
 double closest(const RunTally& run) {
   return run.kept_out() && run.least > Audit::touching ? run.least : 0.0;
 }
 
-Columns<RunTally> columns_of(SurfaceKind surface) {
+Columns<RunTally> columns_of(const TipScene& scene) {
   // Without a fixture there is no step to be timed.
   const auto timed = [](auto figure) {
     return [=](const RunTally& run) {
@@ -30,16 +40,13 @@ Columns<RunTally> columns_of(SurfaceKind surface) {
       return timing.max > 0.0 ? Json(figure(timing)) : Json();
     };
   };
-  // An open surface has no inside.
-  const auto inside = [surface](auto figure) {
-    return [=](const RunTally& run) {
-      return surface == SurfaceKind::closed ? Json(figure(run)) : Json();
-    };
+  const auto inside = [is_known = scene.has_depth()](auto figure) {
+    return [=](const RunTally& run) { return is_known ? Json(figure(run)) : Json(); };
   };
   const auto with = [](Outcome outcome) {
     return [=](const RunTally& run) { return Json(run.with(outcome)); };
   };
-  return {
+  Columns<RunTally> columns{
       {"", &RunTally::guard, "rule", -10},
       {"strokes", &RunTally::strokes},
       {"cycles", &RunTally::cycles, "cycles", 8},
@@ -57,16 +64,30 @@ Columns<RunTally> columns_of(SurfaceKind surface) {
       {"cycles_inside", inside([](const RunTally& run) { return run.any.in_mesh; }), "inside", 8,
        number_text<"%.0f">},
       {"strokes_inside", inside([](const RunTally& run) { return run.strokes_inside; })},
-      {"crossings", &RunTally::breaches, "crossings", 10},
+      {"crossings", &RunTally::breaches, scene.has_tool ? "contacts" : "crossings", 10},
       {"strokes_breached", &RunTally::strokes_breached, "breached", 9},
       {"starts_too_close", &RunTally::starts_too_close, "near starts", 11},
       {"moved_freely", with(Outcome::moved_freely)},
       {"limited", with(Outcome::limited)},
       {"stopped", with(Outcome::stopped), "stopped", 9}};
+  if (scene.has_guides) {
+    columns.push_back({"guides_left", &RunTally::guides_left, "left guide", 11});
+    columns.push_back(
+        {"farthest_out_mm", &RunTally::farthest_out, "out mm", 9, number_text<"%.4f">});
+  }
+  return columns;
+}
+
+/// Returns what a run did with its guides, after the rest of its words; empty without guides.
+std::string guide_words(const RunTally& run, bool has_guides) {
+  if (!has_guides) return "";
+  if (run.guides_left == 0) return "; left no guide";
+  return "; left a guide in " + counted(run.guides_left, "cycle") + ", by up to " +
+         length_text(run.farthest_out);
 }
 
 /// Returns the outcome of a run in a few words: "went up to 1.2 mm deep, in 3 of 24 strokes".
-std::string words(const RunTally& run, SurfaceKind surface) {
+std::string words(const RunTally& run, const TipScene& scene) {
   if (run.stood_still()) {
     return "stood still in all " + counted(run.cycles, "cycle") +
            (run.starts_too_close == 0
@@ -82,10 +103,14 @@ std::string words(const RunTally& run, SurfaceKind surface) {
     return "stayed outside" + near +
            (stopped > 0 ? "; stood still in " + counted(stopped, "cycle") : "");
   }
+  if (scene.has_tool) {
+    return "touched the surface in " + counted(run.breaches, "cycle") + ", in " +
+           grouped(run.strokes_breached) + " of " + counted(run.strokes, "stroke");
+  }
   const std::string how =
-      surface == SurfaceKind::open ? "through the surface " + how_often(run.breaches)
-      : run.any.in_mesh == 0       ? "right through the anatomy within a single cycle"
-                                   : "up to " + length_text(run.any.deepest) + " deep";
+      scene.surface == SurfaceKind::open ? "through the surface " + how_often(run.breaches)
+      : run.any.in_mesh == 0             ? "right through the anatomy within a single cycle"
+                                         : "up to " + length_text(run.any.deepest) + " deep";
   return "went " + how + ", in " + grouped(run.strokes_breached) + " of " +
          counted(run.strokes, "stroke");
 }
@@ -95,9 +120,24 @@ std::string rules_text(const std::vector<std::string>& rules) {
   return (rules.size() == 1 ? "Rule " : "Rules ") + listed(rules);
 }
 
+/// Returns whether all rules kept the tool in its guides, as a sentence.
+std::string guide_sentence(const std::vector<RunTally>& runs) {
+  constexpr double largest_band = 0.01;  // [mm]
+  std::size_t left = 0;
+  double out = 0.0;
+  for (std::size_t r = 1; r < runs.size(); ++r) {
+    left += runs[r].guides_left;
+    out = std::max(out, runs[r].farthest_out);
+  }
+  if (left > 0) return " The tool left a guide in " + counted(left, "cycle") + ".";
+  if (out <= largest_band) return " The tool left no guide by more than its band.";
+  return " The tool started up to " + length_text(out) +
+         " outside its guides, and moved no farther out.";
+}
+
 /// Returns which rules kept the tool out, which did not, and which were not tested, as the tool did
 /// not move. `required`: the clearance that rules keep. [mm]
-std::string headline(const std::vector<RunTally>& runs, SurfaceKind surface, double required) {
+std::string headline(const std::vector<RunTally>& runs, const TipScene& scene, double required) {
   if (runs.size() == 1) return "The tool moved without any fixture.";
   std::vector<std::string> kept_out, let_in, still;
   for (std::size_t r = 1; r < runs.size(); ++r) {
@@ -107,18 +147,21 @@ std::string headline(const std::vector<RunTally>& runs, SurfaceKind surface, dou
                            : let_in)
         .push_back("'" + runs[r].guard + "'");
   }
-  const bool is_closed = surface == SurfaceKind::closed;
+  const bool is_closed = scene.has_depth();
   std::string text;
   if (!let_in.empty()) {
-    text = rules_text(let_in) +
-           (is_closed ? " let the tool into the anatomy" : " let the tool through the surface");
+    text = rules_text(let_in) + (scene.has_tool ? " let the tool touch the surface"
+                                 : is_closed    ? " let the tool into the anatomy"
+                                                : " let the tool through the surface");
     if (!kept_out.empty()) {
       text += "; " + listed(kept_out) + (is_closed ? " kept it out" : " did not");
     }
     text += ".";
   } else if (!kept_out.empty()) {
-    text = rules_text(kept_out) + (is_closed ? " kept the tool out of the anatomy."
-                                             : " kept the tool from passing through the surface.");
+    text =
+        rules_text(kept_out) + (scene.has_tool ? " kept the whole tool off the surface."
+                                : is_closed    ? " kept the tool out of the anatomy."
+                                            : " kept the tool from passing through the surface.");
   }
   if (!still.empty()) {
     text += (text.empty() ? "" : " ") + rules_text(still) +
@@ -132,7 +175,7 @@ std::string headline(const std::vector<RunTally>& runs, SurfaceKind surface, dou
             ": is the mesh in millimeters?";
   }
   if (free.kept_out()) text += " Without a fixture it stayed out too: these strokes test no rule.";
-  return text;
+  return scene.has_guides ? text + guide_sentence(runs) : text;
 }
 
 /// One cycle of a run.
@@ -214,20 +257,37 @@ Box around(const FollowedStroke& followed) {
   return {box.low - far, box.high + far};
 }
 
+/// Returns a convex tool in a few words.
+std::string tool_text(const ConvexTool& tool) {
+  return "convex: hull of " + counted(tool.points().size(), "point") + ", grown by " +
+         keepout::text_of(tool.radius()) + " mm";
+}
+
 Json settings_of(const SimulateOptions& options) {
   const StepOptions& step = options.constraint.options;
-  return {{"mesh", options.meshes.front().string()},
-          {"index", options.constraint.index},
-          {"solver", options.constraint.solver},
-          {"motion sphere radius", keepout::text_of(step.radius) + " mm"},
-          {"tool radius", keepout::text_of(step.tool_radius) + " mm"},
-          {"margin", keepout::text_of(step.margin) + " mm"},
-          {"refinements", std::to_string(step.refinements)},
-          {"branches", std::to_string(step.nodes)},
-          {"longest step asked for", keepout::text_of(options.max_step) + " mm"},
-          {"seed", std::to_string(options.strokes.seed)},
-          {"strokes", std::to_string(options.strokes.count)},
-          {"cycles per stroke", std::to_string(options.strokes.cycles)}};
+  const auto& tool = options.constraint.tool;
+  Json settings{{"mesh", options.meshes.front().string()},
+                {"index", options.constraint.index},
+                {"solver", options.constraint.solver},
+                {"motion sphere radius", keepout::text_of(step.radius) + " mm"},
+                {tool ? "tool" : "tool radius",
+                 tool ? tool_text(*tool) : keepout::text_of(step.tool_radius) + " mm"},
+                {"margin", keepout::text_of(step.margin) + " mm"},
+                {"refinements", std::to_string(step.refinements)},
+                {"branches", std::to_string(step.nodes)},
+                {"longest step asked for", keepout::text_of(options.max_step) + " mm"},
+                {"seed", std::to_string(options.strokes.seed)},
+                {"strokes", std::to_string(options.strokes.count)},
+                {"cycles per stroke", std::to_string(options.strokes.cycles)}};
+  if (!options.guides.empty()) settings["guides"] = listed(options.guides);
+  return settings;
+}
+
+/// Returns the description of a rule, for the page.
+std::string description_of(const std::string& rule, bool has_tool) {
+  if (rule == no_rule) return "the tool moves as commanded";
+  if (has_tool) return "the rule of convex tools: each motion of the whole tool is proven";
+  return std::string(activation_rules().named(rule).description);
 }
 
 }  // namespace
@@ -236,6 +296,8 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
                             const Strokes& strokes, const std::vector<RunTally>& runs) {
   const RunTally& free = runs.front();
   const double margin = required_clearance(options.constraint.options);
+  const TipScene scene{audit.surface(), options.constraint.tool.has_value(),
+                       !options.guides.empty()};
   Json record = new_record(
       {.kind = "simulate",
        .command = options.command,
@@ -244,7 +306,7 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
                   "): " + counted(free.strokes, "stroke") + ", " + counted(free.cycles, "cycle") +
                   " of 1 ms, without a fixture and under " + counted(runs.size() - 1, "rule") +
                   ", margin " + length_text(margin),
-       .headline = headline(runs, audit.surface(), margin),
+       .headline = headline(runs, scene, margin),
        .machine = this_machine(),
        .settings = settings_of(options)});
   std::vector<Moments> moments;
@@ -254,6 +316,8 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
   record["mesh"] = drawn_mesh(free.mesh, audit.mesh(), around(strokes[moment.stroke]));
   record["mesh"]["surface"] = audit.surface() == SurfaceKind::closed ? "closed" : "open";
   record["kept_mm"] = margin;
+  record["has_convex_tool"] = scene.has_tool;
+  record["guides"] = options.guides;
   record["cycle_s"] = cycle_seconds;
   record["up"] = {0.0, 0.0, 1.0};  // head-wards in CT data
   record["moment"] = {{"run", told}, {"stroke", moment.stroke}, {"cycle", moment.cycle}};
@@ -261,16 +325,17 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
     Json& hand = record["hand"].emplace_back(Json::array());
     for (const Pose& goal : followed.stroke.goals) hand.push_back(place(goal.position));
   }
-  const Columns<RunTally> columns = columns_of(audit.surface());
+  const Columns<RunTally> columns = columns_of(scene);
+  bool is_broken = false;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const std::string& rule = runs[r].guard;
     const bool is_free = rule == no_rule;
+    is_broken |= !is_free && (runs[r].guides_left > 0 || (scene.has_tool && !runs[r].kept_out()));
     Json run{{"rule", rule},
              {"name", is_free ? "no fixture" : rule},
-             {"description", is_free ? "the tool goes where the hand goes"
-                                     : activation_rules().named(rule).description},
+             {"description", description_of(rule, scene.has_tool)},
              {"kept_out", runs[r].kept_out()},
-             {"words", words(runs[r], audit.surface())},
+             {"words", words(runs[r], scene) + guide_words(runs[r], scene.has_guides)},
              {"summary", json_of(columns, runs[r])},
              {"worst", moment_json(moments[r].worst)},
              {"strokes", Json::array()},
@@ -284,7 +349,7 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
     record["runs"].push_back(std::move(run));
   }
   for (const char* part : {"comparison", "benchmark"}) record[part] = nullptr;
-  return {.record = std::move(record), .columns = columns};
+  return {.record = std::move(record), .columns = columns, .is_broken = is_broken};
 }
 
 }  // namespace keepout::app

@@ -6,6 +6,7 @@
 #include <emscripten/bind.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -144,20 +145,33 @@ Tool* tool_on(Anatomy& anatomy, const val& settings) {
   return or_error([&] { return make_tool(anatomy, settings).release(); });
 }
 
+/// Returns a guide as a page draws it: its name, the kind of its region, and the region.
+val drawn(const keepout::Guide& guide) {
+  constexpr std::array kinds{"half_space", "slab", "tube", "ball"};
+  const keepout::Region& region = guide.region();
+  return object("name", guide.name(), "isAngular", guide.is_angular(), "kind",
+                kinds[static_cast<std::size_t>(region.kind())], "origin", list(region.origin()),
+                "direction", list(region.direction()), "radius", region.radius());
+}
+
 /// Returns the numbers of a position, the allowance for curvature [mm], the period of a cycle [s],
-/// and name and radius [mm] of each body.
+/// name and radius [mm] of each body, the link and the place of the last body's end in its frame,
+/// and the guides.
 val facts(const Tool& tool) {
   const auto body = [](const keepout::Body& each) {
     return object("name", each.name, "radius", each.radius);
   };
+  const auto& ends = tool.bodies.back().points;
+  const keepout::LinkPoint end = ends.empty() ? keepout::LinkPoint{} : ends.back();
   return object("positions", tool.positions, "asked", tool.asked, "band", tool.band, "period",
-                tool.period, "bodies", list(tool.bodies, body));
+                tool.period, "bodies", list(tool.bodies, body), "link", end.link, "end",
+                list(end.position), "guides", list(tool.guides, drawn));
 }
 
 /// Returns the numbers of the last cycle as they lie in memory, a view until the next call.
 val last(const Tool& tool) {
-  static_assert(sizeof(Cycle) == 8 * (39 + 6 * keepout::Instrument::most_bodies));
-  return val(typed_memory_view(39 + 6 * tool.bodies.size(), tool.cycle.positions));
+  static_assert(sizeof(Cycle) == 8 * (42 + 6 * keepout::Instrument::most_bodies));
+  return val(typed_memory_view(42 + 6 * tool.bodies.size(), tool.cycle.positions));
 }
 
 /// See Tool::place().

@@ -2,6 +2,7 @@
 #include "tool.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <limits>
 #include <optional>
@@ -10,6 +11,7 @@
 
 #include "keepout/control/haptic_force.h"
 #include "keepout/error.h"
+#include "keepout/factory/guide_text.h"
 #include "keepout/factory/make_instrument_constraint.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/index/query.h"
@@ -22,6 +24,26 @@ using emscripten::val;
 using keepout::Vec3;
 
 double number(const val& settings, const char* name) { return settings[name].as<double>(); }
+
+std::vector<keepout::Guide> guides_of(const val& settings) {
+  std::vector<keepout::Guide> guides;
+  for (const std::string& text : emscripten::vecFromJSArray<std::string>(settings["guides"])) {
+    guides.push_back(keepout::guide_of_text(text));
+  }
+  return guides;
+}
+
+/// Writes what a step reports of the mesh and its guides.
+void show_limits(const auto& step, Cycle& cycle) noexcept {
+  const std::span<const keepout::GuideState> states = step.guides;
+  cycle.by_mesh = step.limits.has(keepout::Limit::mesh) ? 1.0 : 0.0;
+  cycle.guides = 0.0;
+  cycle.excess = std::numeric_limits<double>::quiet_NaN();
+  for (std::size_t g = 0; g < states.size(); ++g) {
+    if (states[g].limits) cycle.guides += static_cast<double>(1U << g);
+    cycle.excess = std::fmax(cycle.excess, states[g].excess);
+  }
+}
 
 struct Tip final : Tool {
   Tip(Anatomy& of, const val& settings)
@@ -40,6 +62,8 @@ struct Tip final : Tool {
                                             .tool_radius = radius,
                                             .margin = number(settings, "margin"),
                                             .distances = keepout::Distances::always}});
+    guides = guides_of(settings);
+    constraint->set_guides(guides);
   }
 
   void place(std::span<const double> start) override {
@@ -66,6 +90,7 @@ struct Tip final : Tool {
     if (constraint) step = constraint->step(motion);
     planes = step.planes;
     active = step.active;
+    show_limits(step, cycle);
     cycle.distance = step.distance.value_or(std::numeric_limits<double>::quiet_NaN());
     cycle.status = static_cast<double>(step.status);
     cycle.held = static_cast<double>(active.size());
@@ -136,6 +161,8 @@ struct Instrument final : Tool {
     band = constraint.options().band;
     period = constraint.options().period;
     bodies.assign(made.bodies().begin(), made.bodies().end());
+    guides = guides_of(settings);
+    constraint.set_guides(guides);
   }
 
   void place(std::span<const double> start) override {
@@ -164,6 +191,7 @@ struct Instrument final : Tool {
     cycle.held = static_cast<double>(step.rows);
     cycle.rounds = static_cast<double>(step.rounds);
     cycle.nearest = step.nearest;
+    show_limits(step, cycle);
     show_bodies();
   }
 

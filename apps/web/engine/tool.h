@@ -13,6 +13,7 @@
 
 #include "anatomy.h"
 #include "keepout/robot/instrument.h"
+#include "keepout/step/guide.h"
 
 /// Result of a control cycle: doubles in this order, which src/engine/keepout.ts reads.
 struct Cycle {
@@ -29,6 +30,11 @@ struct Cycle {
   double nearest = -1;  // number of the nearest body; -1: unknown
   double triangles;     // that the step of a tip rests on
   double plane_count;
+  double by_mesh;  // 1 if the clearance from the mesh limits the motion
+  double guides;   // bit g is set if guide g limits the motion
+  // The largest distance of a guided point from its region before the cycle, below 0 inside; NaN
+  // without guides. [mm, of an axis about rad]
+  double excess = std::numeric_limits<double>::quiet_NaN();
   double cores[6 * keepout::Instrument::most_bodies];  // both ends of each body, after the cycle
 };
 
@@ -50,6 +56,7 @@ struct Tool {
   double band = 0.0;          // allowance for curvature [mm]
   double period = 0.001;      // of a cycle [s]
   std::vector<keepout::Body> bodies;
+  std::vector<keepout::Guide> guides;
   Cycle cycle = {};
   std::span<const keepout::HalfSpace> planes;  // of the last step of a tip, from the tip before it
   std::span<const std::uint32_t> active;       // numbers of those that limit its motion

@@ -25,42 +25,42 @@ double length(std::string_view name, double value) {
 
 }  // namespace
 
-Region::Region(const Vec3& origin, const Mat3& across, double radius)
-    : origin_(origin), across_(across), radius_(radius) {
+Region::Region(Kind kind, const Vec3& origin, const Vec3& direction, const Mat3& across,
+               double radius)
+    : kind_(kind), origin_(origin), direction_(direction), across_(across), radius_(radius) {
   if (!(origin.cwiseAbs().maxCoeff() <= longest_length)) {
     throw Error("the place of a region is not finite, or too far away");
   }
 }
 
 Region Region::half_space(const Vec3& point, const Vec3& into) {
+  const Vec3 n = required_direction(into);
   Mat3 across = Mat3::Zero();
-  across.row(0) = -required_direction(into);
-  Region region(point, across, 0.0);
-  region.one_sided_ = true;
-  return region;
+  across.row(0) = -n;
+  return {Kind::half_space, point, n, across, 0.0};
 }
 
 Region Region::slab(const Vec3& point, const Vec3& normal, double half_width) {
   const Vec3 n = required_direction(normal);
-  return {point, n * n.transpose(), length("half_width", half_width)};
+  return {Kind::slab, point, n, n * n.transpose(), length("half_width", half_width)};
 }
 
 Region Region::tube(const Vec3& point, const Vec3& direction, double radius) {
   const Vec3 d = required_direction(direction);
-  return {point, Mat3::Identity() - d * d.transpose(), length("radius", radius)};
+  return {Kind::tube, point, d, Mat3::Identity() - d * d.transpose(), length("radius", radius)};
 }
 
 Region Region::ball(const Vec3& center, double radius) {
-  return {center, Mat3::Identity(), length("radius", radius)};
+  return {Kind::ball, center, Vec3::Zero(), Mat3::Identity(), length("radius", radius)};
 }
 
 double Region::excess(const Vec3& point) const noexcept {
-  if (one_sided_) return across_.row(0).dot(point - origin_);
+  if (kind_ == Kind::half_space) return across_.row(0).dot(point - origin_);
   return (across_ * (point - origin_)).norm() - radius_;
 }
 
 Vec3 Region::outward(const Vec3& point) const noexcept {
-  if (one_sided_) return across_.row(0);
+  if (kind_ == Kind::half_space) return across_.row(0);
   return direction_of(across_ * (point - origin_));
 }
 

@@ -60,13 +60,14 @@ TEST_F(Live, ThePageHasTheSettingsAndEveryBitOfTheMeshes) {
   write_binary_stl(folder_.file("heart of a pig.stl"), make_shape("sphere"));
   succeeded(
       run("cube 'heart of a pig.stl' --activation none --radius 4 --tool-radius 0.5 --margin 0.25 "
-          "--max-step 0.125"));
+          "--max-step 0.125 --guide ball:0,0,0:9 high=half_space:0,0,-9:0,0,1"));
   nlohmann::json told = settings();
   const nlohmann::json meshes = told.at("meshes");
   told.erase("meshes");
   EXPECT_EQ(told,
             nlohmann::json::parse(R"({"format": "keepout live", "version": 1, "activation": "none",
       "radius": 4.0, "tool_radius": 0.5, "margin": 0.25, "max_step": 0.125,
+      "guides": ["ball:0,0,0:9", "high=half_space:0,0,-9:0,0,1"],
       "keepout": ")" KEEPOUT_VERSION R"("})"));
   ASSERT_EQ(meshes.size(), 2U);
   EXPECT_EQ(meshes[0].at("name"), "cube");
@@ -128,6 +129,8 @@ TEST_F(Live, WhatIsOfABallIsRefusedForAnInstrument) {
   expect_refused("cube --robot psm --activation paper", "--activation", 2);
   expect_refused("cube --robot psm --tool-radius 1", "--tool-radius", 2);
   expect_refused("cube --robot psm --radius 1", "--radius", 2);
+  expect_refused("cube --robot psm --guide ball:0,0,0:9", "is for a tip, but", 2);
+  expect_refused("cube --guide axis:6:0,0,1:0,0,1:1", "but this is a tip", 2);
   expect_refused("cube --robot psm --margin 25", "cube: there is no room for the instrument");
 }
 

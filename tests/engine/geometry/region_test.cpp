@@ -29,6 +29,8 @@ TEST(Region, MeasuresHowFarAPointIsOutOfIt) {
   EXPECT_DOUBLE_EQ(Region::ball(at, 1.0).excess(Vec3(1, 5, 7)), 4.0);
   EXPECT_DOUBLE_EQ(Region::ball(at, 1.0).excess(at), -1.0);
   EXPECT_TRUE(Region::ball(at, 1.0).outward(at).isZero(0.0));
+  EXPECT_EQ(Region::tube(at, z, 1.0).kind(), Region::Kind::tube);
+  EXPECT_EQ(Region::tube(at, z, 1.0).direction(), Vec3::UnitZ());
 }
 
 // What the proof of guides rests on: convex, no steeper than 1, and planes along `outward` have the

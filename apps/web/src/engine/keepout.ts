@@ -80,6 +80,8 @@ export interface ToolSettings {
   readonly margin: number;
   /** The longest motion that a cycle asks for. [mm] */
   readonly maxStep: number;
+  /** Texts of guidance constraints, as `--guide` takes them. A tip has them only under a rule. */
+  readonly guides: readonly string[];
 }
 
 /** The robot of an instrument, and its link 0: place, and rows of the rotation (12). */
@@ -100,6 +102,17 @@ export interface Frame {
 /** The orientation of the hand that leads a tip. */
 export const unturned: Frame["turn"] = [0, 0, 0, 1];
 
+/** A guidance constraint: something stays in a region. */
+export interface Guide {
+  readonly name: string;
+  /** It bounds a direction, and its region is of unit vectors: it is not drawn. */
+  readonly isAngular: boolean;
+  readonly kind: "half_space" | "slab" | "tube" | "ball";
+  readonly origin: Vec3; // [mm]
+  readonly direction: Vec3; // into a half-space, across a slab, along a tube
+  readonly radius: number; // [mm]
+}
+
 /** Facts of a tool that stay the same. */
 export interface ToolFacts {
   readonly positions: number;
@@ -107,6 +120,10 @@ export interface ToolFacts {
   readonly band: number; // [mm]
   readonly period: number; // [s]
   readonly bodies: readonly { readonly name: string; readonly radius: number }[];
+  /** The end of the last body: its link, and its place in the frame of that. [mm] */
+  readonly link: number;
+  readonly end: Vec3;
+  readonly guides: readonly Guide[];
 }
 
 /** A half-space {u : normal . u >= offset} of allowed increments, and the triangle it is of. */
@@ -131,6 +148,12 @@ export interface Cycle {
   readonly nearest: number;
   readonly triangles: number;
   readonly planeCount: number;
+  /** The clearance from the mesh limits the motion. */
+  readonly byMesh: boolean;
+  /** Bit g is set if guide g limits the motion. */
+  readonly guides: number;
+  /** How far something is out of its guide; below 0 inside, NaN without guides. [mm] */
+  readonly excess: number;
   readonly cores: readonly number[]; // (bodies, 6)
 }
 
@@ -193,7 +216,10 @@ export class Tool {
       nearest: one(36),
       triangles: one(37),
       planeCount: one(38),
-      cores: numbers.slice(39),
+      byMesh: one(39) > 0,
+      guides: one(40),
+      excess: one(41),
+      cores: numbers.slice(42),
     };
   }
 }

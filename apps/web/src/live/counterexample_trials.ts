@@ -21,7 +21,7 @@ export function runCounterexamples(
       );
       const ends = (["paper", "certified"] as const).map((rule): Vec3 => {
         const { radius, tip, desired } = example;
-        const settings = { rule, radius, toolRadius: 0, margin, maxStep: radius };
+        const settings = { rule, radius, toolRadius: 0, margin, maxStep: radius, guides: [] };
         const tool = new Tool(keepout, anatomy, settings, null);
         const { motion } = tool.step([...tip, ...desired]);
         tool.made.delete();

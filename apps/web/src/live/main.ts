@@ -6,6 +6,7 @@ import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
 import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
+import { type GuideKind, GuidePanel } from "./guide_panel.ts";
 import { HandInput } from "./hand_input.ts";
 import { type Choice, MeshList, meshOf, nameOf } from "./mesh_list.ts";
 import { element, embeddedText, isTip, made, page, roomBetweenCards, toast } from "./page.ts";
@@ -34,6 +35,7 @@ let settings: ToolSettings = {
   toolRadius: page.tool_radius,
   margin: page.margin,
   maxStep: page.max_step,
+  guides: page.guides,
 };
 let shown: Choice | null = null;
 /** That which is being loaded, until it is there or has failed. */
@@ -179,6 +181,10 @@ function load(choice: Choice): void {
   line.textContent = `Reading ${nameOf(choice)} …`;
   line.hidden = false;
   grip.hidden = true;
+  if (shown !== null && pendingPath === null) {
+    settings = { ...settings, guides: guides.forAnother(settings.guides) };
+    showSettings();
+  }
   const base = meshOf(choice)?.start?.base;
   const port = page.robot !== undefined && base ? { robot: page.robot, base } : null;
   tell({ kind: "load", source: choice.source, settings, port });
@@ -244,8 +250,9 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
   const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_");
   const mesh = meshOf(shown);
   if (robot !== undefined && mesh !== undefined) {
-    const { margin, maxStep } = madeWith;
-    const text = instrumentPathText({ keepout, robot, margin, maxStep }, mesh, facts, lines);
+    const { margin, maxStep, guides } = madeWith;
+    const made = { keepout, robot, margin, maxStep, guides };
+    const text = instrumentPathText(made, mesh, facts, lines);
     saveFile(`keepout-path-${robot}-${name}.txt`, text, "text/plain");
     toast(`${grouped(lines.length / (2 * facts.positions + 6))} cycles saved.`);
     return;
@@ -265,9 +272,18 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
 // Controls.
 
 const panel = new SettingsPanel(change);
+const guides = new GuidePanel(fittedGuide, change);
+
+/** A guide of a kind for the tip, or for the jaw's end, where that is; null while there is no tool. */
+function fittedGuide(kind: GuideKind): string | null {
+  if (state === null || facts === null) return null;
+  const region = scene.regionAbout(state.flange.place, kind);
+  return isTip ? region : `${kind}=point:${facts.link}:${facts.end.join()}:${region}`;
+}
 
 function showSettings(): void {
   panel.show(settings);
+  guides.show(settings);
   chart.setMargin(settings.margin);
 }
 

@@ -6,6 +6,7 @@ export const colors = {
   hand: "#e5484d",
   tool: "#2f7df6",
   plane: "#0fb5a3",
+  guide: "#9a5cf0",
   bone: "#e9dfce",
   steel: "#8d9db5",
 } as const;
@@ -67,9 +68,9 @@ export class Spring {
   }
 }
 
-/** An active plane: a disc with a rim, of radius 1. */
-export function sheet(): three.Group {
-  const shared = { color: colors.plane, side: three.DoubleSide, transparent: true };
+/** A plane: a disc with a rim, of radius 1. */
+export function sheet(color: string): three.Group {
+  const shared = { color, side: three.DoubleSide, transparent: true };
   const disc = new three.Mesh(
     new three.CircleGeometry(1, 64),
     new three.MeshBasicMaterial({ ...shared, opacity: 0.22, depthWrite: false }),
@@ -78,5 +79,6 @@ export function sheet(): three.Group {
     new three.RingGeometry(0.97, 1, 64),
     new three.MeshBasicMaterial({ ...shared, opacity: 0.9, depthWrite: false }),
   );
+  rim.userData.isRim = true;
   return new three.Group().add(disc, rim);
 }

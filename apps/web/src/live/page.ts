@@ -9,6 +9,7 @@ export interface PageSettings {
   readonly tool_radius: number;
   readonly margin: number;
   readonly max_step: number;
+  readonly guides: readonly string[];
   /** Of an instrument; a tip has none. */
   readonly robot?: string;
   readonly meshes: readonly EmbeddedMesh[];

@@ -33,7 +33,7 @@ export function pathText(header: PathHeader, lines: Float64Array): string {
 
 /** A path of an instrument; its header says what it was made with. All bits are kept. */
 export function instrumentPathText(
-  made: { keepout: string; robot: string; margin: number; maxStep: number },
+  made: Pick<ToolSettings, "margin" | "maxStep" | "guides"> & { keepout: string; robot: string },
   { command_name, digest, start }: EmbeddedMesh,
   { positions: joints, band, period }: ToolFacts,
   lines: Float64Array,
@@ -61,9 +61,13 @@ export function replayCommand({ mesh, settings }: PathHeader, file: string): str
   return (
     `keepout replay ${mesh} --closed-loop --poses ${file} --out steps.csv --activation ${rule}` +
     ` --radius ${settings.radius} --tool-radius ${settings.toolRadius} --margin ${settings.margin}` +
-    ` --max-step ${settings.maxStep}`
+    ` --max-step ${settings.maxStep}` +
+    (settings.guides.length > 0 ? ` --guide ${settings.guides.map(shellWord).join(" ")}` : "")
   );
 }
+
+const shellWord = (text: string): string =>
+  /^[\w=:,.+-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
 
 /** Reads a path, or any pose file of a closed loop, which has no header. Throws for what is none. */
 export function parsePath(text: string): { header: PathHeader | null; lines: Float64Array } {
@@ -95,7 +99,9 @@ function parseHeader(text: string, line: number): PathHeader {
   const lengths = [settings.radius, settings.toolRadius, settings.margin, settings.maxStep];
   if (typeof header?.mesh !== "string") throw wrong;
   if (!rules.includes(settings.rule ?? "") || !lengths.every(Number.isFinite)) throw wrong;
-  return header as PathHeader;
+  const { guides = [] } = settings; // paths of older pages have none
+  if (!Array.isArray(guides) || !guides.every((text) => typeof text === "string")) throw wrong;
+  return { ...(header as PathHeader), settings: { ...(settings as ToolSettings), guides } };
 }
 
 /** The fewest digits that read back exactly; JavaScript would lose the sign of zero. */

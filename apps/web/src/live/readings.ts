@@ -14,8 +14,9 @@ const moods: Readonly<Record<string, "free" | "limited">> = {
   yielding: "limited",
 };
 
-/** The number of the body that is held back: the nearest to the surface while a row holds; else -1. */
-export const heldBody = ({ held, nearest }: State): number => (held > 0 ? nearest : -1);
+/** The number of the body that is held back: the nearest to the surface while a row of it holds; else -1. */
+export const heldBody = ({ held, nearest, byMesh, guides }: State): number =>
+  held > 0 && (byMesh || guides === 0) ? nearest : -1;
 
 /** The card that shows what keepout does. The page of each tool has some of its figures. */
 export class Readings {
@@ -32,6 +33,7 @@ export class Readings {
     const isGuarded = settings.rule !== "none";
     this.showStatus(state, isGuarded);
     this.showClearances(state, facts);
+    this.showGuides(state, facts);
     const newtons = Math.hypot(...state.force);
     const bar = document.querySelector<HTMLElement>("#force i");
     if (bar) bar.style.width = `${(100 * newtons) / spring.largestForce}%`;
@@ -65,6 +67,17 @@ export class Readings {
     set("spoken", isGuarded ? `${name}: ${reason}` : "no fixture");
   }
 
+  /** Which guides hold the tool back, or how far out of one it is. */
+  private showGuides({ guides: limiting, excess }: State, { guides }: ToolFacts): void {
+    const row = element("guide-state", HTMLElement);
+    const holding = guides.filter((_, g) => Math.floor(limiting / 2 ** g) % 2 === 1);
+    row.className = holding.length > 0 ? "guided" : "";
+    const where = excess > 0.01 ? `${millimetres(excess)} outside` : "inside";
+    const names = [...new Set(holding.map(({ name }) => name.replaceAll("_", " ")))];
+    const words = holding.length > 0 ? `held by ${names.join(", ")}` : where;
+    set(row, guides.length > 0 ? words : "–");
+  }
+
   private showClearances(state: State, { bodies }: ToolFacts): void {
     const { clearances } = state;
     const least = Math.min(...clearances);
@@ -76,7 +89,8 @@ export class Readings {
     }
     set("clearance-words", `from the ${bodies[clearances.indexOf(least)]?.name} to the surface`);
     const held = heldBody(state);
-    set("held", held < 0 ? "nothing" : `by the ${bodies[held]?.name}`);
+    const nothing = state.guides > 0 ? "by a guide" : "nothing";
+    set("held", held < 0 ? nothing : `by the ${bodies[held]?.name}`);
     bodies.forEach(({ name }, i) => {
       const row = this.rowOf(name);
       set(row, millimetres(clearances[i] as number));

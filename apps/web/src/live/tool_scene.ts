@@ -3,6 +3,8 @@ import * as three from "three";
 import type { ToolFacts, Vec3 } from "../engine/keepout.ts";
 import { Capsule } from "../page/capsule.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
+import type { GuideKind } from "./guide_panel.ts";
+import { GuideShapes } from "./guide_shapes.ts";
 import { colors, sheet } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { heldBody } from "./readings.ts";
@@ -29,7 +31,8 @@ export class ToolScene extends Scene {
   private bodies: Capsule[] = [];
   private radii: readonly number[] = [];
   private wanted = new Capsule();
-  private readonly planes = Array.from({ length: mostPlanes }, sheet);
+  private readonly planes = Array.from({ length: mostPlanes }, () => sheet(colors.plane));
+  private readonly guides = new GuideShapes();
   private readonly edges = new three.LineSegments(
     new three.BufferGeometry(),
     new three.LineBasicMaterial({ color: colors.plane, depthTest: false, transparent: true }),
@@ -49,7 +52,7 @@ export class ToolScene extends Scene {
     private readonly isBall: boolean,
   ) {
     super(container, room, onDraw);
-    this.moving.add(this.edges, ...this.planes);
+    this.moving.add(this.edges, ...this.planes, this.guides.group);
     if (!isBall) this.moving.add(this.port);
     this.spring.line.renderOrder = isBall ? 1 : 3;
   }
@@ -60,7 +63,7 @@ export class ToolScene extends Scene {
   }
 
   /** Another tool, which has these facts. */
-  equip({ bodies }: ToolFacts): void {
+  equip({ bodies, guides }: ToolFacts): void {
     for (const body of [...this.bodies, this.wanted]) {
       this.moving.remove(...body.parts);
       body.dispose();
@@ -72,7 +75,42 @@ export class ToolScene extends Scene {
     this.bodies = bodies.map(() => new Capsule());
     this.moving.add(...[this.wanted, ...this.bodies].flatMap(({ parts }) => parts));
     this.toolRadius = this.isBall ? (this.radii[0] ?? 1) : gripRadius;
+    this.guides.show(guides, (place) => this.inside(place), 0.4 * this.extent());
     this.redraw();
+  }
+
+  /**
+   * The text of a region about a place, which fits what is seen: above the place or across it in the
+   * view, or along the way from there into the middle.
+   */
+  regionAbout(place: Vec3, kind: GuideKind): string {
+    this.camera.updateMatrixWorld();
+    const axis = (number: number) =>
+      new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, number);
+    const [right, up] = [axis(0), axis(1)];
+    const at = new three.Vector3(...place);
+    const text = (vector: three.Vector3, digits: number) =>
+      vector
+        .toArray()
+        .map((value) => Number(value.toFixed(digits)))
+        .join();
+    const length = (share: number) => Number((share * this.extent()).toPrecision(2));
+    switch (kind) {
+      case "half_space":
+        at.addScaledVector(up, -length(0.02));
+        return `half_space:${text(at, 2)}:${text(up, 3)}`;
+      case "slab":
+        return `slab:${text(at, 2)}:${text(up, 3)}:${length(0.03)}`;
+      case "tube":
+        return `tube:${text(at, 2)}:${text(right, 3)}:${length(0.04)}`;
+      case "ball":
+        return `ball:${text(at, 2)}:${length(0.12)}`;
+    }
+  }
+
+  /** How much is seen at first. [mm] */
+  private extent(): number {
+    return this.isBall ? this.size : Math.min(this.size, seenAtFirst);
   }
 
   override update(moment: State): void {
@@ -219,11 +257,14 @@ export class ToolScene extends Scene {
     const along = this.pointOf(cores, 1).sub(this.port.position).normalize();
     this.port.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), along);
     this.showPlanes(moment, tip, Math.max(4 * radius, 0.03 * seen));
+    this.guides.mark(moment.guides);
   }
 
   /** Shows the planes that limited the motion of a tip, as discs, and the edges of their triangles. */
   private showPlanes({ planes, motion }: State, tip: three.Vector3, size: number): void {
-    const shown = planes.slice(0, mostPlanes);
+    // A plane of a guide has no triangle, and is drawn with its guide.
+    const triangles = this.corners.length / 3;
+    const shown = planes.filter(({ triangle }) => triangle < triangles).slice(0, mostPlanes);
     this.planes.forEach((disc, i) => {
       const plane = shown[i];
       disc.visible = plane !== undefined;

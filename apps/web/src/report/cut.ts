@@ -111,7 +111,7 @@ function lookAt(record: SimulationRecord, moment: Moment, anatomy: Anatomy, heig
   const stroke = run.strokes[moment.stroke] as Stroke;
   const path = stroke.tip.map(anatomy.placed);
   const place = path[moment.cycle] as three.Vector3;
-  const bad = trespass(run, moment.stroke, record.mesh.surface);
+  const bad = trespass(run, moment.stroke, record);
   const entry = path[Math.max(bad.lastIndexOf(false, moment.cycle), 0)] as three.Vector3;
   const hand = anatomy.placed(record.hand[moment.stroke]?.[0] ?? [0, 0, 0]);
   const widest = 4; // [mm]: of a thin branch, not also the far side
@@ -158,7 +158,7 @@ export function markedCycle(
   if (number === moment.run) return moment.cycle;
   const run = record.runs[number] as SimulationRecord["runs"][number];
   const worst = worstCycle(run, moment.stroke);
-  if (trespass(run, moment.stroke, record.mesh.surface)[worst]) return worst;
+  if (trespass(run, moment.stroke, record)[worst]) return worst;
   const { tip, clearance_mm } = run.strokes[moment.stroke] as Stroke;
   const seen = tip.map((place) => {
     const { x, y } = placed(place).project(camera);

@@ -6,7 +6,7 @@ import { make } from "../page/elements.ts";
 import { type Anatomy, lookAtAll, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import type { Body, Layer } from "./painting.ts";
-import { entries, type ReportRecord } from "./record.ts";
+import { entries, type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
 import { millimetres, rounded, show, shown } from "./shown.ts";
@@ -45,6 +45,7 @@ function figures({ bodies }: RobotSimulationRecord): HTMLElement {
     { heading: "speed", from: "/speed" },
     named("mode", "/mode"),
     column("cycles", "/cycles"),
+    ...(valueAt("/rows/0/guides_left") === undefined ? [] : [harm("guides left", "/guides_left")]),
     ...bodies.flatMap(({ name }) => [
       harm(`${name}: too close`, `/${name}_below`),
       harm("in the mesh", `/${name}_in_mesh`),

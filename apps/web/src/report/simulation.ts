@@ -30,10 +30,10 @@ export async function simulationSections(main: HTMLElement, record: ReportRecord
   const anatomy = await unpackedAnatomy(simulation.mesh);
   main.append(
     overview(simulation, anatomy),
-    figures(),
+    figures(simulation),
     strokeSection(simulation, anatomy),
     ...speed(simulation),
-    measurement(simulation.mesh.surface === "closed"),
+    measurement(simulation),
     ...benchmarkSections("/benchmark", "/comparison"),
   );
 }
@@ -45,11 +45,12 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
   record.runs.forEach((run, number) => {
     const layer = { lengths: strokes(record, anatomy, run, number), cut: null };
     const description = `The anatomy with the paths of the tool tip, ${run.name}; in the colour of alarm where the tip is where it must not be.`;
-    const [verdict, words] = run.kept_out ? ["good", "stayed out"] : ["bad", "went in"];
+    const bad = record.has_convex_tool ? "touched" : "went in";
+    const [verdict, words] = run.kept_out ? ["good", "stayed out"] : ["bad", bad];
     view.add(
       description,
       layer,
-      worstPlace(anatomy, run, number),
+      worstPlace(record, anatomy, run, number),
       make("span", { class: `badge ${verdict}` }, words),
       runName(number),
       make("br"),
@@ -63,7 +64,7 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
 }
 
 /** A ring around the worst place of a rule that let the tool in, so that a small place is found. */
-function worstPlace(anatomy: Anatomy, run: Run, number: number) {
+function worstPlace(record: SimulationRecord, anatomy: Anatomy, run: Run, number: number) {
   if (run.kept_out || run.rule === "none") return [];
   const { stroke, cycle } = run.worst;
   const place = run.strokes[stroke]?.tip[cycle];
@@ -71,13 +72,13 @@ function worstPlace(anatomy: Anatomy, run: Run, number: number) {
   const deepest = `/runs/${number}/summary/deepest_mm`;
   const label = drawn("tspan", {});
   if (Number(valueAt(deepest)) > 0) show(label, deepest, (mm) => `${millimetres(mm)} deep`);
-  else label.textContent = "passed through";
+  else label.textContent = record.has_convex_tool ? "touched" : "passed through";
   return [mark("ring bad", anatomy.placed(place), 15, label)];
 }
 
 function strokes(record: SimulationRecord, anatomy: Anatomy, run: Run, number: number) {
   const parts = run.strokes.map(({ tip }, stroke) => {
-    const isBad = trespass(run, stroke, record.mesh.surface);
+    const isBad = trespass(run, stroke, record);
     return parted(tip.map(anatomy.placed), isBad, 1e-3 * anatomy.size);
   });
   const [good, bad] = [parts.flatMap((part) => part.good), parts.flatMap((part) => part.bad)];
@@ -128,18 +129,32 @@ function directions(up: three.Vector3): three.Vector3[] {
   );
 }
 
-const figures = (): HTMLElement =>
+const figures = ({ has_convex_tool, guides }: SimulationRecord): HTMLElement =>
   tableSection(
     "The figures",
     [
-      "A crossing is a move after which, or during which, the tip was on the other side of the surface. The rate is how often the median step fits into a millisecond.",
+      has_convex_tool
+        ? "A contact is a cycle in which the tool touched or cut the surface. "
+        : "A crossing is a move after which, or during which, the tip was on the other side of the surface. ",
+      ...(guides?.length
+        ? [
+            "A guide is left in a cycle if the tip is farther outside its region than the guide allows; how far outside is that of the whole run. ",
+          ]
+        : []),
+      "The rate is how often the median step fits into a millisecond.",
     ],
     entries("/runs"),
     [
       { ...named("rule", "/name"), content: (row) => [runName(Number(lastKey(row)))] },
       harm("deepest inside", "/summary/deepest_mm", millimetres),
       harm("cycles inside", "/summary/cycles_inside"),
-      harm("crossings", "/summary/crossings"),
+      harm(has_convex_tool ? "contacts" : "crossings", "/summary/crossings"),
+      ...(guides?.length
+        ? [
+            harm("guides left", "/summary/guides_left"),
+            column("farthest outside a guide", "/summary/farthest_out_mm", millimetres),
+          ]
+        : []),
       column("closest approach", "/summary/closest_approach_mm", millimetres),
       column("cycles", "/summary/cycles"),
       column("cycles limited", "/summary/limited"),
@@ -164,14 +179,22 @@ function speed(record: SimulationRecord): HTMLElement[] {
   ];
 }
 
-function measurement(isClosed: boolean): HTMLElement {
+/** How it was told where the tip, or a convex tool, is. */
+function judgement({ mesh, has_convex_tool }: SimulationRecord): string {
+  if (has_convex_tool) {
+    return "The clearance of the whole tool is the distance of its convex hull from the triangles, by a computation that shares nothing with the rule. A motion counts as a contact unless the distances on its way prove that the tool did not touch.";
+  }
+  return mesh.surface === "closed"
+    ? "Inside or outside is told by counting how often a ray from the tip passes through the surface, which shares nothing with the rules."
+    : "The surface has holes, so it has no inside: only crossings count. On which side of the surface the tip is, is told by the angle-weighted normal at the nearest point of it (the pseudonormal), which no rule uses. The tip may go around a rim; sliding around one in contact counts as a crossing.";
+}
+
+function measurement(record: SimulationRecord): HTMLElement {
   return section(
     "How this was measured",
     method(
       "A seeded random hand moves over the anatomy and pushes into it, cycle by cycle. Each rule gets the very same hand; it may shorten or turn each motion before the tool follows. In every cycle it is then checked where the tip really is. ",
-      isClosed
-        ? "Inside or outside is told by counting how often a ray from the tip passes through the surface, which shares nothing with the rules."
-        : "The surface has holes, so it has no inside: only crossings count. On which side of the surface the tip is, is told by the angle-weighted normal at the nearest point of it (the pseudonormal), which no rule uses. The tip may go around a rim; sliding around one in contact counts as a crossing.",
+      judgement(record),
       " Distances come from a search tree (a PD-tree) and a closest-point computation that the rules may use too; the tests hold both to brute force and to an independent computation in quadruple precision. Depths up to a nanometre count as touching, not as inside.",
     ),
     method(

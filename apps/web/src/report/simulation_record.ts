@@ -40,6 +40,8 @@ export interface Moment {
 
 export interface SimulationRecord extends ReportRecord {
   readonly mesh: RecordedMesh;
+  readonly has_convex_tool?: boolean;
+  readonly guides?: readonly string[];
   readonly kept_mm: number;
   readonly cycle_s: number;
   readonly up: Place;
@@ -61,9 +63,15 @@ export interface PlanRecord extends ReportRecord {
 
 /**
  * In which cycles of a stroke the tip is where it must not be: inside a closed surface, or just having
- * passed through it; past an open one after an odd number of crossings. What is not known counts against.
+ * passed through it; past an open one after an odd number of crossings; a convex tool, where it touches
+ * the surface. What is not known counts against.
  */
-export function trespass(run: Run, stroke: number, surface: Surface): readonly boolean[] {
+export function trespass(
+  run: Run,
+  stroke: number,
+  { mesh, has_convex_tool }: Pick<SimulationRecord, "mesh" | "has_convex_tool">,
+): readonly boolean[] {
+  const surface: Surface = has_convex_tool ? "closed" : mesh.surface;
   const { clearance_mm } = run.strokes[stroke] as Stroke;
   const crossed = new Set(
     run.crossings.filter((one) => one.stroke === stroke).map(({ cycle }) => cycle),

@@ -41,12 +41,15 @@ export function strokeSection(record: SimulationRecord, anatomy: Anatomy): HTMLE
       "Stroke ",
       chooser,
       " along the path of the tip; at first it is the one that tells most. ",
-      ...(isClosed
-        ? ["Hatched is the anatomy; ", make("b", {}, "red"), " is where the tip is inside it. "]
-        : [
-            make("b", {}, "Red"),
-            " is where the tip has passed through the surface an odd number of times. ",
-          ]),
+      ...(isClosed ? ["Hatched is the anatomy; "] : []),
+      ...(record.has_convex_tool
+        ? [make("b", {}, "red"), " is where the tool, which is not drawn, touches the surface. "]
+        : isClosed
+          ? [make("b", {}, "red"), " is where the tip is inside it. "]
+          : [
+              make("b", {}, "Red"),
+              " is where the tip has passed through the surface an odd number of times. ",
+            ]),
       "The label is at the worst moment, the balls are where the tip and, hollow, the hand are at the time chosen below.",
     ),
     content,
@@ -90,7 +93,7 @@ function strokeView(
     const path = tip.map(anatomy.placed);
     const hand = (record.hand[stroke] ?? []).map(anatomy.placed);
     const worst = markedCycle(record, number, moment, frame, anatomy);
-    const isBad = trespass(run, stroke, record.mesh.surface);
+    const isBad = trespass(run, stroke, record);
     const { good, bad } = parted(path, isBad, 1e-3 * frame.height);
     const lengths = coloured(good, bad, runColor(number), widths.near);
     const cut = cuts[number] as Cut;

@@ -24,7 +24,7 @@ namespace keepout::oracle {
 /// nearer than its heights along it say.
 class Hull {
  public:
-  static constexpr std::size_t most_points = 8;
+  static constexpr std::size_t most_points = 64;
 
   /// Throws std::invalid_argument for no point or more than most_points.
   explicit Hull(std::span<const Vec3> points);
