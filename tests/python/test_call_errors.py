@@ -34,7 +34,8 @@ step = "step(tip, desired, jacobian=None, rows=None)"
         (lambda: tip.forget(4), "forget takes no argument by position, got 1: call forget()"),
         (lambda: keepout.indices(color=4), "indices has no argument 'color'; known: none"),
         (lambda: keepout.load_mesh("a.stl", "RAS"),
-         "load_mesh takes one argument by position, got 2: call load_mesh(path, *, "),
+         "load_mesh takes one argument by position, got 2: call load_mesh(path, *, space=None, "
+         "untagged=None, unit=None, scale=None, flip=False)"),
         (lambda: Mesh(), "Mesh lacks its argument 'vertices': call Mesh(vertices, triangles, *, weld=False)"),
         (lambda: MotionConstraint(),
          "MotionConstraint lacks its argument 'mesh': call MotionConstraint(mesh, *, index='wide_bvh', "),
