@@ -58,8 +58,7 @@ void add_convert(CLI::App& app, ConvertOptions& options) {
 }
 
 void add_docs(CLI::App& app, DocsOptions& options) {
-  CLI::App& command =
-      *app.add_subcommand("docs", "Say where the pages of the documentation are");
+  CLI::App& command = *app.add_subcommand("docs", "Say where the pages of the documentation are");
   CLI::Option* page = command.add_option("PAGE", options.page, "The page to find");
   page->type_name("");
   if (const auto pages = pages_of_docs(); !pages.empty()) page->check(one_of(pages));
