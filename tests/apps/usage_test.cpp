@@ -39,8 +39,9 @@ TEST(Usage, HelpIsACommandAsWell) {
   for (const char* mistyped : {"help verfy", "verfy --help", "verfy -V"}) {
     const Outcome outcome = folder.run(mistyped);
     EXPECT_EQ(outcome.status, 2) << mistyped;
-    EXPECT_EQ(outcome.output,
-              "keepout: there is no command 'verfy'; did you mean 'verify'?\nSee 'keepout --help'.\n");
+    EXPECT_EQ(
+        outcome.output,
+        "keepout: there is no command 'verfy'; did you mean 'verify'?\nSee 'keepout --help'.\n");
   }
 }
 
