@@ -201,7 +201,7 @@ TEST_F(Inspect, APageIsMadeOfTheMeshAndItsFaults) {
 
 TEST_F(Inspect, WarningsOfTheReaderAreAmongTheFindings) {
   file = folder.write("mesh.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\nl 1 2\n");
-  EXPECT_CONTAINS(text(), "in the file: left out 1 lines or points");
+  EXPECT_CONTAINS(text(), "mesh.obj: 1 lines or points are left out");
   EXPECT_EQ(json().at("warnings").size(), 1u);
 }
 
