@@ -45,7 +45,6 @@ step = "step(tip, desired, jacobian=None, rows=None)"
         (lambda: keepout.load_mesh(3), "load_mesh: path: expected the path of a file, got 3"),
         (lambda: keepout.load_mesh("a.stl", space=3), "load_mesh: space: expected a string or None, got 3"),
         (lambda: Mesh(vertices, triangles, weld="no"), "Mesh: weld: expected True or False, got 'no'"),
-        (lambda: MotionConstraint(mesh, tool=3), "MotionConstraint: tool: expected a keepout.ConvexTool or None, got 3"),
         (lambda: InstrumentGuard(mesh, mesh), "InstrumentGuard: instrument: expected a keepout.Instrument, got keepout.Mesh"),
         (lambda: Instrument(psm(), [3]), "Instrument: bodies[0]: expected a keepout.Body, got 3"),
         (lambda: Body("a", 6, 1.0), "Body: points: expected a list, got 6"),
