@@ -246,7 +246,7 @@ void inspect(const InspectOptions& options, std::ostream& out) {
   const RecordFiles files{.json = {}, .page = options.page};
   OutputFiles outputs = files.open({options.mesh});
   const Inspection inspection = examine_file(options);
-  if (options.page) write_record(outputs, record_of(options, inspection), files, std::cerr);
+  if (options.page) write_record(outputs, record_of(options, inspection), files);
   if (options.json) {
     print_json(options, inspection, out);
     return;

@@ -3,8 +3,8 @@
 #include <optional>
 #include <utility>
 
+#include "keepout/factory/guide_text.h"
 #include "shared/clip.h"
-#include "shared/command_line.h"
 #include "shared/progress.h"
 #include "simulate/guide_audit.h"
 #include "simulate/tip_record.h"
@@ -15,8 +15,8 @@ namespace {
 
 class GuardedTip final : public SimulatedTool {
  public:
-  explicit GuardedTip(const SimulateOptions& options)
-      : options_(options), guides_(guides_of(options.guides, Guided::tip)) {
+  explicit GuardedTip(const SimulateOptions& options) : options_(options) {
+    for (const std::string& text : options.guides) guides_.push_back(guide_of_text(text));
     require_within_reach(options.max_step, options.constraint.options.radius);
   }
 
