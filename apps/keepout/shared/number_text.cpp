@@ -71,7 +71,7 @@ std::string for_terminal(std::string text) {
     const char* const value = std::getenv(variable);
     if (value == nullptr || *value == '\0') continue;
     std::string locale = value;
-    std::ranges::transform(locale, locale.begin(), [](char c) { return c | ' '; });  // lower case
+    for (char& c : locale) c = static_cast<char>(c | ' ');  // lower case
     const bool is_utf8 =
         locale.find("utf-8") != std::string::npos || locale.find("utf8") != std::string::npos;
     return is_utf8 ? text : in_ascii(std::move(text));

@@ -210,7 +210,7 @@ void turn_outward(const Mesh& mesh, Parts& all, Orientation& result) {
   for (Part& part : all.parts) {
     if (part.has_volume()) solid_parts.push_back(&part);
   }
-  std::ranges::stable_sort(solid_parts, [](const Part* a, const Part* b) {
+  std::stable_sort(solid_parts.begin(), solid_parts.end(), [](const Part* a, const Part* b) {
     return std::abs(a->volume) > std::abs(b->volume);
   });
   struct Outermost {
@@ -219,7 +219,7 @@ void turn_outward(const Mesh& mesh, Parts& all, Orientation& result) {
   };
   std::vector<Outermost> outermost;
   for (Part* const part : solid_parts) {
-    const auto around = std::ranges::find_if(outermost, [&](Outermost& outer) {
+    const auto around = std::find_if(outermost.begin(), outermost.end(), [&](Outermost& outer) {
       if (!encloses(outer.part->bounds, part->bounds)) return false;
       if (!outer.solid) outer.solid = std::make_unique<Solid>(mesh, all, *outer.part);
       return outer.solid->contains(mesh, *part);

@@ -70,7 +70,8 @@ void remove_lone_collinear(Surface& surface, RemovedTriangles& removed) {
     if (sides.size() == 1) return;
     for (const HalfEdge& side : sides) is_removed[side.triangle] = false;
   });
-  const auto count = static_cast<std::size_t>(std::ranges::count(is_removed, true));
+  const auto count =
+      static_cast<std::size_t>(std::count(is_removed.begin(), is_removed.end(), true));
   removed.degenerate += count;
   removed.collinear_left -= count;
   remove(surface, is_removed);
