@@ -46,7 +46,7 @@ typos = [
     ("replay cube --pose p --out s.csv", "there is no option --pose; did you mean '--poses'?"),
     (f"{to_s} --raduis 3", "there is no option --raduis; did you mean '--radius'?"),
     ("simulate cube --raduis=1", "there is no option --raduis; did you mean '--radius'?"),
-    ("simulate cube --tool sphere:1", "there is no option --tool"),
+    ("bench --tool sphere:1", "there is no option --tool"),
     ("live cube --no-opne", "there is no option --no-opne; did you mean '--no-open'?"),
     ("serve cube --joint 3", "there is no option --joint; did you mean '--joints'?"),
     ("verify cube --step 10", "there is no option --step; did you mean '--steps'?"),

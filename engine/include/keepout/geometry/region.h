@@ -11,7 +11,7 @@ namespace keepout {
 /// distance of a plane, a line or a point.
 class Region {
  public:
-  enum class Kind : std::uint8_t { half_space, slab, tube, ball };
+  enum class Kind : std::uint8_t { half_space, slab, tube, ball };  ///< The form of a region.
 
   /// Returns the side of a plane through `point` that `into` points to. Like the functions below it
   /// throws Error for a direction of no length, a number that is not finite or too large, or a
@@ -34,7 +34,7 @@ class Region {
   /// grows alike on all sides.
   Vec3 outward(const Vec3& point) const noexcept;
 
-  Kind kind() const noexcept { return kind_; }
+  Kind kind() const noexcept { return kind_; }  ///< Returns the form of the region.
   /// Returns a point of the plane or the line, or the center. [length]
   const Vec3& origin() const noexcept { return origin_; }
   /// Returns the unit vector into a half-space, across a slab or along a tube; zero of a ball.
