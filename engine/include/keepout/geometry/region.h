@@ -11,7 +11,8 @@ namespace keepout {
 /// distance of a plane, a line or a point.
 class Region {
  public:
-  enum class Kind : std::uint8_t { half_space, slab, tube, ball };  ///< The form of a region.
+  /// The form of a region: each has a function of its name.
+  enum class Kind : std::uint8_t { half_space, slab, tube, ball };
 
   /// Returns the side of a plane through `point` that `into` points to. Like the functions below it
   /// throws Error for a direction of no length, a number that is not finite or too large, or a
