@@ -2,6 +2,7 @@
 #include "user_commands.h"
 
 #include <iostream>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -245,10 +246,10 @@ void add_serve(CLI::App& app, ServeOptions& options) {
 }  // namespace
 
 std::vector<Command> user_commands(TimeParts time_parts) {
-  SimulateOptions simulation;
-  simulation.rules = names(activation_rules());
-  simulation.time_parts = std::move(time_parts);
-  simulation.make_instrument = make_guarded_instrument;
+  const auto simulation = std::make_shared<SimulateOptions>();
+  simulation->rules = names(activation_rules());
+  simulation->time_parts = std::move(time_parts);
+  simulation->make_instrument = make_guarded_instrument;
   const auto serve_on_stdin = [](const ServeOptions& options, std::ostream&) {
     return serve(options, std::cerr);
   };
@@ -256,7 +257,7 @@ std::vector<Command> user_commands(TimeParts time_parts) {
           command("convert", add_convert, convert),
           command("register", add_register, register_fiducials),
           command("replay", add_replay, replay),
-          command("simulate", add_simulate, simulate, std::move(simulation)),
+          command("simulate", add_simulate, simulate, simulation),
           command("live", add_live, live),
           command("serve", add_serve, serve_on_stdin),
           command("verify", add_verify, verify),

@@ -35,8 +35,7 @@ struct Command {
 /// stream of results, and returns the exit status or nothing.
 template <class Options, class Run>
 Command command(std::string_view name, void (*add)(CLI::App&, Options&), Run run,
-                Options defaults = {}) {
-  const auto options = std::make_shared<Options>(std::move(defaults));
+                std::shared_ptr<Options> options = std::make_shared<Options>()) {
   return {name, [=](CLI::App& app) { add(app, *options); },
           [=](const Call& call) {
             if constexpr (requires { options->command; }) options->command = call.command;
