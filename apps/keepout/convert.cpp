@@ -26,7 +26,7 @@
 namespace keepout::app {
 namespace {
 
-/// What became of a mesh.
+/// A converted mesh, and what the conversion changed.
 struct Conversion {
   Surface surface;                              // to be written
   std::optional<double> rounding = {};          // the farthest that a coordinate moved [mm]

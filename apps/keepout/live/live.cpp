@@ -73,8 +73,8 @@ Json record_of(const RobotStart& start) {
   return {{"base", base}, {"positions", start.positions}};
 }
 
-/// What to type after a command to get the mesh again: its name, and the options that it was read
-/// with.
+/// Returns the words that name the mesh on a command line: its name, and the options that it was
+/// read with.
 std::string command_name(const std::filesystem::path& mesh, const LoadOptions& load) {
   std::string words = shell_word(mesh.string());
   for (const auto& [option, space] :

@@ -22,7 +22,7 @@ struct Finding {
   FaultPlaces places = {};  // none where there is nothing to count
 };
 
-/// What there is to know, the worst first. `self_intersections`: if they were searched for.
+/// Returns the findings, the worst first. `self_intersections`: if they were searched for.
 std::vector<Finding> findings_of(const MeshFindings& mesh,
                                  const std::optional<SelfIntersections>& self_intersections);
 

@@ -52,7 +52,7 @@ void prepare_process() {
   }
 }
 
-/// True once a write to a pipe failed because nobody reads it any more.
+/// True once a write to a pipe failed because the reader has closed it.
 volatile std::sig_atomic_t reader_is_gone = 0;
 
 /// Lets a command finish its files if the reader of its output ends early, as `head` does.

@@ -9,11 +9,11 @@ namespace keepout::app {
 /// a shell gives to what Ctrl-C ended.
 inline constexpr int exit_interrupted = 130;
 
-/// What a command that keeps what it has finished says as soon as a signal comes.
+/// The message that a command with finished results prints as soon as a signal comes.
 inline constexpr std::string_view keeps_what_is_finished =
     "keepout: stopping; what is finished is kept. The same signal again ends it at once.\n";
 
-/// What a signal does before anything is finished.
+/// The effect of a signal before the first result is finished.
 enum class BeforeWork {
   is_noted,     // as later
   ends_process  // at once, without files, with exit_interrupted

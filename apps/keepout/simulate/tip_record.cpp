@@ -15,7 +15,7 @@ namespace {
 
 using Strokes = std::vector<FollowedStroke>;
 
-/// What is moved over what.
+/// The tool, the surface and the guides of a simulation.
 struct TipScene {
   SurfaceKind surface;
   bool has_tool;  // a convex tool, of which contacts are counted, and no depth
@@ -122,7 +122,6 @@ std::string rules_text(const std::vector<std::string>& rules) {
 
 /// Returns whether all rules kept the tool in its guides, as a sentence.
 std::string guide_sentence(const std::vector<RunTally>& runs) {
-  constexpr double largest_band = 0.01;  // [mm]
   std::size_t left = 0;
   double out = 0.0;
   for (std::size_t r = 1; r < runs.size(); ++r) {
@@ -130,9 +129,8 @@ std::string guide_sentence(const std::vector<RunTally>& runs) {
     out = std::max(out, runs[r].farthest_out);
   }
   if (left > 0) return " The tool left a guide in " + counted(left, "cycle") + ".";
-  if (out <= largest_band) return " The tool left no guide by more than its band.";
-  return " The tool started up to " + length_text(out) +
-         " outside its guides, and moved no farther out.";
+  return " The tool left no guide by more than promised" +
+         (out <= 0.0 ? "." : ": it was at most " + length_text(out) + " outside.");
 }
 
 /// Returns which rules kept the tool out, which did not, and which were not tested, as the tool did

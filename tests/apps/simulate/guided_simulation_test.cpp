@@ -35,7 +35,7 @@ TEST(SimulateGuides, EveryRuleKeepsTheTipInAndTheHandAloneDoesNot) {
                                 "cube --strokes 4 --cycles 400 --guide corridor=slab:0,0,0:1,0,0:4 "
                                 "half_space:0,0,20:0,0,1 --tool-radius 1");
   EXPECT_EQ(record["guides"].size(), 2U);
-  EXPECT_CONTAINS(record["headline"].get<std::string>(), "left no guide by more than its band");
+  EXPECT_CONTAINS(record["headline"].get<std::string>(), "left no guide by more than promised");
   EXPECT_CONTAINS(record["settings"]["guides"].get<std::string>(), "corridor=slab");
   ASSERT_EQ(record["runs"].size(), 4U);
   for (const Json& run : record["runs"]) {
