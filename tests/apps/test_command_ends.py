@@ -198,7 +198,7 @@ def test_without_a_terminal_there_is_a_line_every_ten_seconds_unless_it_is_quiet
         _, err = process.communicate(timeout=patience)
         assert process.returncode == 130, f"{name}: {err}"
         # `compare` has short parts: each tells its seconds at its end.
-        lines = re.findall(r": [\d.]+ s$" if name == "compare" else r" % after 1\d s$", err, re.MULTILINE)
+        lines = re.findall(r": [\d.]+ s$" if name == "compare" else r" % after 1\d s", err, re.MULTILINE)
         assert bool(lines) != bool(quiet), f"{name}: {err}"
         if quiet:
             assert all(line.startswith("keepout: stopped") for line in err.splitlines()), f"{name}: {err}"
