@@ -30,8 +30,9 @@ Otherwise work in a copy of the sources of your own:
     tar -C ~/keepout -x && ~/keepout/run"
 }
 
-# install_packages [LIST [PURPOSE]]: installs the Debian packages of cmake/LIST that are missing, those
-# for a purpose only where it is this one. LIST: debian_packages.txt. Offline when none is missing.
+# install_packages [LIST [PURPOSE]]: installs the missing Debian packages of cmake/LIST, by default
+# debian_packages.txt. Skips packages for another purpose; for the purpose `first`, all that are not marked so.
+# Needs no network if none is missing. without_asking: fails instead of asking for a password.
 install_packages() {
   local list=${1:-debian_packages.txt} purpose=${2:-}
   command -v apt-get >/dev/null || fail "this needs Debian 12 (apt-get); on another system install
@@ -40,6 +41,7 @@ the counterparts of cmake/$list yourself and use the CMake presets (README, Buil
   while read -r package condition word; do
     [ "$condition" = unless ] && command -v "$word" >/dev/null && continue
     [ "$condition" = for ] && [ "$word" != "$purpose" ] && continue
+    [ "$purpose" = first ] && [ "$condition" != first ] && continue
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
       missing+=("$package")
   done < <(grep -v '^#' "$root/cmake/$list")
@@ -48,7 +50,7 @@ the counterparts of cmake/$list yourself and use the CMake presets (README, Buil
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     command -v sudo >/dev/null || fail "to install ${missing[*]}, run this as root or install sudo"
-    as_root=(sudo)
+    as_root=(sudo ${without_asking:+-n})
   fi
   "${as_root[@]}" apt-get update -q >&2 || fail "apt-get update failed: is there a network?"
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
@@ -56,15 +58,28 @@ the counterparts of cmake/$list yourself and use the CMake presets (README, Buil
     fail "could not install ${missing[*]}: see apt-get's message above"
 }
 
-# build PRESET [TARGET...]: configures once, then builds what has changed.
-build() {
+# configure PRESET
+configure() {
+  say "configuring ($1)"
+  (cd "$root" && cmake --preset "$1" ${KEEPOUT_QUIET:+--log-level=WARNING} >&2) || fail "configuring failed: see above"
+}
+
+# compile PRESET [TARGET...]: builds what has changed. Precondition: configured.
+compile() {
   local preset=$1
   shift
-  if [ ! -f "$root/build/$preset/build.ninja" ]; then
-    say "configuring ($preset)"
-    (cd "$root" && cmake --preset "$preset" ${KEEPOUT_QUIET:+--log-level=WARNING} >&2) || fail "configuring failed: see above"
-  fi
   say "building ($preset)"
   (cd "$root" && cmake --build --preset "$preset" ${1:+--target "$@"} ${KEEPOUT_QUIET:+-- --quiet} >&2) ||
     fail "building failed: see above; to start afresh, remove build/$preset"
+}
+
+# build PRESET [TARGET...]: configures once, or again if it was for the first page of ./run only, and compiles.
+build() {
+  local folder=$root/build/$1
+  if [ ! -f "$folder/build.ninja" ] || [ -e "$folder/first_page_only" ]; then
+    rm -f "$folder/CMakeCache.txt"
+    configure "$1"
+    rm -f "$folder/first_page_only"
+  fi
+  compile "$@"
 }
