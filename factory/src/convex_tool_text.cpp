@@ -47,7 +47,9 @@ ConvexTool read(std::string_view kind, std::string_view rest) {
   }
   if (kind == "box" && f.size() == 2) return ConvexTool::box({point(f[0]), point(f[1])});
   if (kind == "blade" && f.size() == 3) return blade(number(f[0]), number(f[1]), number(f[2]));
-  if (kind != "hull") throw Error("there is no such form");
+  if (kind != "hull") {
+    throw Error(text::misfit(kind, {"sphere", "capsule", "box", "blade"}, "form"));
+  }
   std::error_code trouble;
   const std::filesystem::path file(rest);
   // Not a pipe, which would block.

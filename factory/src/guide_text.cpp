@@ -25,7 +25,9 @@ Region region_of(Part f) {
   if (f.size() == 4 && f[0] == "slab") return Region::slab(point(f[1]), point(f[2]), number(f[3]));
   if (f.size() == 4 && f[0] == "tube") return Region::tube(point(f[1]), point(f[2]), number(f[3]));
   if (f.size() == 3 && f[0] == "ball") return Region::ball(point(f[1]), number(f[2]));
-  throw Error("there is no such guide or region");
+  throw Error(text::misfit(f[0],
+                           {"half_space", "slab", "tube", "ball", "point", "axis", "remote_center"},
+                           "guide or region"));
 }
 
 int link_of(std::string_view field) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "text_fields.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <system_error>
@@ -20,6 +21,12 @@ Fields split(std::string_view text, char at) {
 }
 
 std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
+
+std::string misfit(std::string_view name, std::initializer_list<std::string_view> known,
+                   const char* what) {
+  if (std::ranges::find(known, name) == known.end()) return std::string("there is no such ") + what;
+  return in_quotes(name) + " has too few or too many fields";
+}
 
 double number(std::string_view field) {
   double value = 0.0;

@@ -30,6 +30,7 @@ TEST(ConvexToolByName, EachTextIsTheToolMadeByHand) {
 TEST(ConvexToolByName, ATextThatIsNoToolIsToldWithTheForms) {
   for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
            {"", "the tool '': there is no such form"},
+           {"box:4,4,20", "'box' has too few or too many fields"},
            {"sphere:nan", "'nan' is not a number"},
            {"sphere:-1", "the radius of a convex tool"},
            {"capsule:0,0:0,0,1:1", "'0,0' is not a point"},
@@ -144,7 +145,7 @@ TEST(GuideText, WhatIsNoneIsToldWithTheForms) {
   }
   for (const auto& [text, why] : std::vector<std::pair<std::string, std::string>>{
            {"point:1.5:0,0,0:ball:0,0,0:1", "'1.5' is not the number of a link"},
-           {"point:1:0,0,0:ball:0,0,0", "there is no such guide or region"},
+           {"point:1:0,0,0:ball:0,0,0", "'ball' has too few or too many fields"},
            {"axle:1:0,0,1:0,0,1:0.1", "there is no such guide or region"}}) {
     const std::string told = error_of([&] { guide_of_text(text); });
     EXPECT_CONTAINS(told, why);
