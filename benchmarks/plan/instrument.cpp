@@ -163,7 +163,7 @@ class InstrumentPlanning final : public Planning {
   /// 3. The goal is the place on its way that is farthest ahead, along the tool as it is at the
   ///    start, among those to which the straight motion of the joints leads through the mesh; to
   ///    within some 2 mm. Unless it is 30 mm ahead, another beginning is tried.
-  std::vector<PlanningProblem> draw() override {
+  std::vector<PlanningProblem> draw(const StopSignal& stop) override {
     Random random(options_->seed);
     const std::size_t count = options_->problems;
     std::vector<PlanningProblem> problems;
@@ -171,6 +171,7 @@ class InstrumentPlanning final : public Planning {
       // The hand begins with more than it is to keep.
       const auto start = on_.start(random, 2.1);
       if (!start) break;
+      if (stop.has_come()) return problems;
       std::optional<PlanningProblem> problem = led_by_hand(on_, *start, random);
       if (!problem) continue;
       problem->number = problems.size() + 1;

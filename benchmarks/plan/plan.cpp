@@ -215,7 +215,7 @@ void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
              const StopSignal& stop, Json& runs) {
   const std::string& mesh = planning.scene().name();
   progress.show(mesh + ", drawing problems");
-  for (const PlanningProblem& problem : planning.draw()) {
+  for (const PlanningProblem& problem : planning.draw(stop)) {
     planning.open(problem);
     for (const Checker& checker : checkers_of(options)) {
       progress.show(mesh + " " + std::to_string(problem.number) + ", " + checker.name());
@@ -225,6 +225,7 @@ void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
         // Cut short it tells nothing.
         if (stop.has_come() && !run["solved"]) return;
         runs.push_back(std::move(run));
+        stop.keep_from_now_on();
         progress.advance();
       }
     }
@@ -235,7 +236,8 @@ void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
 
 int plan(const PlanOptions& options, std::ostream& out) {
   OutputFiles outputs = options.files.open(options.meshes);
-  const StopSignal stop(keeps_what_is_finished);  // after the files, which a second signal removes
+  // After the files, which a signal removes that ends the process.
+  const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   std::vector<std::filesystem::path> meshes = options.meshes;
   if (meshes.empty()) meshes = {"airway", "skull"};
   std::vector<std::unique_ptr<Planning>> plannings;

@@ -14,6 +14,7 @@
 #include "keepout/geometry/pose.h"
 #include "plan/plan.h"
 #include "shared/columns.h"
+#include "shared/stop_signal.h"
 #include "verify/scene.h"
 
 namespace keepout::app {
@@ -62,8 +63,8 @@ class Planning {
   /// True if the mesh is planned within, not around.
   virtual bool is_within() const { return false; }
   /// Draws the problems, by a rule that knows no planner; each has a solution. Throws Error if it
-  /// finds too few.
-  virtual std::vector<PlanningProblem> draw() = 0;
+  /// finds too few. After a stop, returns those drawn so far.
+  virtual std::vector<PlanningProblem> draw(const StopSignal& stop) = 0;
   /// Makes what checks and judges the runs of a problem, which must outlive them.
   virtual void open(const PlanningProblem& problem) = 0;
   virtual ompl::base::StateSpacePtr space() const = 0;
@@ -96,8 +97,9 @@ struct TipScene {
 /// 3. A pair is taken when the way along the grid is at least a quarter of the diagonal long and
 ///    1.3 times as long as in the open, and the straight way from one to the other touches the
 ///    mesh.
+/// Returns those drawn so far after a stop.
 std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, std::size_t count,
-                                           std::uint64_t seed);
+                                           std::uint64_t seed, const StopSignal& stop);
 
 /// The checkers that are compared: for a tip sampled at each resolution, the same widened, then
 /// both of keepout's; for an instrument sampled and certified.

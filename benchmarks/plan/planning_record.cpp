@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <ostream>
@@ -64,6 +65,13 @@ std::string duration_text(const Json& seconds) {
   return seconds.is_null() ? "-" : in_ascii(time_text(1e6 * seconds.get<double>()));
 }
 
+/// Returns the median of counts, which is whole or a half; "-" for null.
+std::string median_count_text(const Json& median) {
+  const bool is_whole =
+      median.is_null() || median.get<double>() == std::floor(median.get<double>());
+  return count_text(median) + (is_whole ? "" : ".5");
+}
+
 bool is_of_an_instrument(const Json& run) { return run.contains("motions"); }
 
 Columns<Group> summary_columns(bool is_instrument) {
@@ -89,7 +97,7 @@ Columns<Group> summary_columns(bool is_instrument) {
   add({{"median_seconds", figure("seconds", median), "median", 9, duration_text},
        {"median_checking_seconds", figure("checking_seconds", median), "checking", 10,
         duration_text},
-       {"median_checks", figure("checks", median), "checks", 8, count_text},
+       {"median_checks", figure("checks", median), "checks", 10, median_count_text},
        {"median_length_mm", figure("length_mm", median), "length mm", 9, figure_text<3>}});
   return columns;
 }

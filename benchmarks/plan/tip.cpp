@@ -61,8 +61,8 @@ class TipPlanning final : public Planning {
   const Scene& scene() const override { return where_.scene; }
   bool is_within() const override { return where_.is_within; }
 
-  std::vector<PlanningProblem> draw() override {
-    return draw_problems(where_, options_->clearance(), options_->problems, options_->seed);
+  std::vector<PlanningProblem> draw(const StopSignal& stop) override {
+    return draw_problems(where_, options_->clearance(), options_->problems, options_->seed, stop);
   }
 
   void open(const PlanningProblem&) override {

@@ -58,9 +58,9 @@ class FreeCells {
   using Cell = std::uint32_t;
 
   /// Floods from the cell nearest to `from`. Nothing is reached when it is not free. `told`: up to
-  /// where distances from the mesh are of interest. [length]
+  /// where distances from the mesh are of interest [length]. Ends early after a stop.
   FreeCells(Scene& scene, const Box& bounds, double spacing, double clearance, double told,
-            const Vec3& from)
+            const Vec3& from, const StopSignal& stop)
       : low_(bounds.low),
         spacing_(spacing),
         nx_(count(bounds.size().x(), spacing)),
@@ -87,7 +87,7 @@ class FreeCells {
       return static_cast<std::uint32_t>(std::clamp(value, 0.0, static_cast<double>(size - 1)));
     };
     look(clamped(at.x(), nx_) + nx_ * (clamped(at.y(), ny_) + ny_ * clamped(at.z(), nz_)), 0.0);
-    for (std::size_t i = 0; i < reached_.size(); ++i) {
+    for (std::size_t i = 0; i < reached_.size() && !stop.has_come(); ++i) {
       const double guess = distance_[reached_[i]] + spacing;
       for_each_neighbor(reached_[i], [&](Cell next) { look(next, guess); });
     }
@@ -160,7 +160,7 @@ class FreeCells {
 }  // namespace
 
 std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, std::size_t count,
-                                           std::uint64_t seed) {
+                                           std::uint64_t seed, const StopSignal& stop) {
   Random random(seed);
   Scene& scene = where.scene;
   const double diagonal = scene.mesh()->bounds().size().norm();
@@ -169,7 +169,7 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
   if (where.starts_below) start_box.high.z() = start_box.low.z() + 0.1 * start_box.size().z();
   const Vec3 from = where.is_within ? widest_within(scene, start_box, random) : where.bounds.low;
   const double near_enough = nearest_clearances * clearance;
-  const FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from);
+  const FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from, stop);
   std::vector<FreeCells::Cell> near, starts;
   for (const FreeCells::Cell cell : cells.reached()) {
     if (cells.distance(cell) > near_enough) continue;
@@ -180,6 +180,7 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
   std::vector<PlanningProblem> problems;
   oracle::SafetyOracle oracle = scene.oracle();
   for (std::size_t draws = 0; draws < most_draws * count && problems.size() < count; ++draws) {
+    if (stop.has_come()) return problems;
     if (starts.empty()) break;
     const FreeCells::Cell start = starts[random.below(starts.size())];
     const FreeCells::Cell goal = near[random.below(near.size())];

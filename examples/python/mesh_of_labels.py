@@ -43,6 +43,8 @@ def read_nifti(path):
     """Returns the labels, and the matrix (4, 4) from indices to RAS [mm]."""
     import nibabel
 
+    if path.suffix.lower() == ".gz":
+        gzip.decompress(path.read_bytes())  # nibabel reads the voxels, but not the checksum behind them
     try:
         image = nibabel.load(path)
     except nibabel.filebasedimages.ImageFileError:
@@ -167,7 +169,9 @@ def main():
         write_ply(given.mesh, vertices, triangles, [f"SPACE={given.space}", f"label {label:g} of {given.labels.name}"])
     except ImportError as error:
         sys.exit(f"{error}: install python3-nibabel and python3-skimage")
-    except (Unreadable, OSError, ValueError, EOFError, zlib.error) as error:
+    except (gzip.BadGzipFile, EOFError, zlib.error) as error:
+        sys.exit(f"{given.labels}: is damaged ({error}); copy it again")
+    except (Unreadable, OSError, ValueError) as error:
         sys.exit(f"{given.labels}: {error}")
     size = " x ".join(f"{length:.1f}" for length in np.ptp(vertices, axis=0))
     print(f"{given.mesh}: label {label:g}, {len(triangles)} triangles, {size} mm, in {given.space}")

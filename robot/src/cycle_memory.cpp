@@ -147,7 +147,8 @@ void CycleMemory::set_guides(std::vector<Guide> all) {
     require_not_lost(guide);
     if (guide.link() == 0) {
       throw Error("guide '" + guide.name() +
-                  "' is on link 0, the base, which no joint moves: give it a link of the chain");
+                  "' is for a tip, or on link 0, the base, which no joint moves: name a link of the "
+                  "chain, as in Guide.point(name, link, position, region)");
     }
     if (guide.link() <= links) continue;
     throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +

@@ -51,7 +51,7 @@ is_made report 0 record
 
 rm -r "$pages" made.html
 ! told=$(moved/bin/keepout live cube --no-open --out made.html 2>&1) || fail "goes on without its page"
-[[ $told == *"there is no $PWD/$pages/live.html"*"./run makes it"* ]] ||
+[[ $told == *"there is no $PWD/$pages/live.html"*"./run live makes live.html"* ]] ||
   fail "without its page it says: $told"
 [ ! -e made.html ] || fail "there is a page all the same"
 told=$(moved/bin/keepout verify "$here/cube.obj" --steps 500 --out made.html 2>&1)

@@ -200,6 +200,7 @@ void open_tool(Client& client, const Json& request, std::string& out) {
         {client.tip.constraint->guides().begin(), client.tip.constraint->guides().end()});
   }
   client.tip.constraint = std::move(made);
+  client.tool = request["tool"].get<std::string>();
   append_member(out, "ok", true);
 }
 
@@ -278,6 +279,7 @@ void place_anatomy(Client& client, const Json& request, std::string& out) {
 
 void info(Client& client, const Json&, std::string& out) {
   out.append(",").append(client.service.info);
+  if (!client.tool.empty()) append_member(out, "tool", client.tool);
 }
 
 void statuses(Client& client, const Json&, std::string& out) {

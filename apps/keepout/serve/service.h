@@ -61,6 +61,7 @@ struct Client {
   Service& service;
   SideWatch side = {};                            // of the tip, where the last step led it
   Guarded<MotionConstraint> tip = {};             // its own once it has a tool or guides
+  std::string tool = {};                          // the text of its convex tool, if it has one
   Guarded<InstrumentConstraint> instrument = {};  // once it is opened
   bool is_skipping = false;  // the beginning of this line is gone: it was too long
 };

@@ -72,9 +72,13 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
   }
   if (kind == "RequiredError") return "an argument is missing: " + told;
   if (kind == "ArgumentMismatch") {
-    // "--radius: 1 required MM missing"
+    // "--radius: 1 required MM missing", "--radius: At Most 1 required but received 2"
     const std::size_t colon = told.find(':');
-    if (colon != std::string::npos) return told.substr(0, colon) + ": a value is missing";
+    const bool is_surplus = told.find("At Most") != std::string::npos;
+    if (colon != std::string::npos) {
+      return told.substr(0, colon) +
+             (is_surplus ? ": it is given more than once" : ": a value is missing");
+    }
   }
   if (kind == "RequiresError") {
     const std::size_t verb = told.find(" requires ");
@@ -283,7 +287,7 @@ CLI::Option* add_guides(CLI::App& command, std::vector<std::string>& guides) {
   return command.add_option("--guide", guides, help)
       ->type_name("GUIDE")
       ->check(CLI::Validator(is_guide, ""))
-      ->expected(1, static_cast<int>(Guide::most));
+      ->allow_extra_args(false);  // what follows a guide may be the mesh
 }
 
 std::string unknown_command(const CLI::App& app, const std::string& word) {
@@ -291,6 +295,10 @@ std::string unknown_command(const CLI::App& app, const std::string& word) {
 }
 
 std::vector<Guide> guides_of(std::span<const std::string> texts, Guided guided) {
+  if (texts.size() > Guide::most) {
+    throw CLI::ValidationError("--guide", "at most " + std::to_string(Guide::most) +
+                                              " guides, not " + std::to_string(texts.size()));
+  }
   std::vector<Guide> guides;
   for (const std::string& text : texts) {
     const Guide& guide = guides.emplace_back(guide_of_text(text));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <mutex>
@@ -124,6 +125,23 @@ std::string doubt_of_unit(const Mesh& mesh, double scale) {
          example + "\", unless all your lengths are in its unit";
 }
 
+/// Returns true if the triangles of a closed surface face inward: its signed volume is below 0.
+bool faces_inward(const Mesh& mesh, unsigned threads) {
+  const Vec3 origin = mesh.bounds().center();
+  double volume = 0.0;
+  std::mutex mutex;
+  share_ranges(mesh.triangle_count(), threads, [&](std::size_t begin, std::size_t end) {
+    double own = 0.0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Triangle t = mesh.triangle(static_cast<TriangleId>(i));
+      own += (t[0] - origin).dot((t[1] - origin).cross(t[2] - origin)) / 6.0;
+    }
+    const std::lock_guard lock(mutex);
+    volume += own;
+  });
+  return volume < -1e-9 * std::pow(mesh.bounds().size().maxCoeff(), 3);
+}
+
 }  // namespace
 
 EdgeFaults find_edge_faults(const Mesh& mesh, unsigned threads) {
@@ -175,6 +193,12 @@ std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads, double 
     warnings.emplace_back(
         "the surface is wound inconsistently: some neighbors disagree about which of their sides "
         "is free");
+  }
+  if (!faults.boundary && !faults.inconsistent && faces_inward(mesh, thread_count(threads))) {
+    warnings.emplace_back(
+        "the surface is closed and faces inward: the room that it encloses is free, and the rest "
+        "is "
+        "solid. If it bounds a solid, flip it: --flip or flip=True");
   }
   return warnings;
 }

@@ -85,6 +85,16 @@ TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {
   EXPECT_CONTAINS(both[1], "wound inconsistently");
 }
 
+TEST(QuickCheck, AClosedSurfaceThatFacesInwardIsReported) {
+  for (Surface surface : {make_cube(10.0), make_shape("far_cube")}) {
+    for (auto& triangle : surface.triangles) std::swap(triangle[0], triangle[1]);
+    const auto inward = quick_check(Mesh(surface));
+    ASSERT_EQ(inward.size(), 1u);
+    EXPECT_CONTAINS(inward[0], "closed and faces inward");
+    EXPECT_CONTAINS(inward[0], "flip it: --flip or flip=True");
+  }
+}
+
 TEST(QuickCheck, TrianglesThatNameAVertexTwiceHaveNoEdges) {
   Surface surface = make_cube(10.0);
   surface.triangles.push_back({0, 1, 1});

@@ -137,6 +137,10 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
   if (!is_actual) account.emplace_back("The linearised motion was certified: unsafe, to compare.");
   const auto count = [&](const char* key) { return total[key].get<std::uint64_t>(); };
+  if (!findings.is_complete) {
+    account.push_back("Incomplete: it was interrupted after " + counted(count("cycles"), "cycle") +
+                      ".");
+  }
   std::string headline = "No breach in ";
   if (broken > 0) {
     headline = counted(count("below"), "cycle") + " too close, " + grouped(count("in_mesh")) +
