@@ -20,19 +20,19 @@ inline Triangle hostile_triangle(Random& random) {
   Triangle t{point(), point(), point()};
   const double tiny = std::pow(10.0, random.uniform(-18.0, 0.0));
   switch (random.below(8)) {
-    case 0:
+    case 0:  // needle: two corners close together
       t[2] = t[1] + tiny * point();
       break;
-    case 1:
+    case 1:  // cap: the third corner next to the opposite side
       t[2] = t[0] + random.uniform() * (t[1] - t[0]) + tiny * point();
       break;
-    case 2:
+    case 2:  // collinear, beyond the end
       t[2] = t[0] + 2.0 * (t[1] - t[0]);
       break;
-    case 3:
+    case 3:  // a segment
       t[random.below(3)] = t[random.below(3)];
       break;
-    case 4:
+    case 4:  // a point
       t[1] = t[2] = t[0];
       break;
     default:
