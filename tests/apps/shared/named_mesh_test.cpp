@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "apps/command_process.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {

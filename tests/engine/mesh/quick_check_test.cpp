@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <utility>
 
-#include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/doctor.h"
+#include "meshes.h"
 #include "messages.h"
 
 namespace keepout {
