@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "hostile_triangle.h"
 #include "keepout/activation/facet.h"
 #include "keepout/fixtures/random.h"
-#include "oracle/hostile_pairs.h"
 #include "trials.h"
 
 namespace keepout {
@@ -88,7 +88,7 @@ TEST(ClosestPoint, DistanceAgreesWithAnIndependentComputationInQuadruplePrecisio
   Random random(20261120);
   double worst_relative = 0.0;
   for (int i = 0; i < test::trials(1'000'000); ++i) {
-    const Triangle triangle = oracle::hostile_triangle(random);
+    const Triangle triangle = test::hostile_triangle(random);
     const Vec3 query = random_query(triangle, random);
     const double expected = independent_distance(triangle, query);
     const double got = closest_point(triangle, query).distance;
@@ -157,7 +157,7 @@ TEST(Facet, DistancesNearTheTipAreAsTheProofAssumes) {
 TEST(ClosestPoint, OffsetIsAPointOfTheTriangleAtTheDistanceGiven) {
   Random random(3);
   for (int i = 0; i < test::trials(100'000); ++i) {
-    const Triangle triangle = oracle::hostile_triangle(random);
+    const Triangle triangle = test::hostile_triangle(random);
     const Vec3 query = random_query(triangle, random);
     const ClosestPoint closest = closest_point(triangle, query);
     const double rounding = 1e-14 * reach(triangle, query);
@@ -171,7 +171,7 @@ TEST(ClosestPoint, IsTheSameToTheBitInWhateverOrderTheCornersAreGiven) {
   constexpr std::array<std::array<int, 3>, 6> orders{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
   for (int i = 0; i < test::trials(20'000); ++i) {
-    const Triangle t = oracle::hostile_triangle(random);
+    const Triangle t = test::hostile_triangle(random);
     const Vec3 query = random_query(t, random);
     const ClosestPoint expected = closest_point(t, query);
     for (const auto& order : orders) {
