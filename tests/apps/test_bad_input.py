@@ -493,7 +493,7 @@ requests = [
     (asked("tool", '"tool":"sphere:nan"'), "no_tool", "'nan' is not a number"),
     (asked("tool", '"tool":"hull:broken.stl"'), "no_tool", "broken.stl: line 6: "),
     (asked("tool", '"tool":"sphere:1","narrow_phase":"exat"'), "no_tool", "did you mean 'exact'?"),
-    (asked("guides", '"guides":["ball:0,0,0"]'), "no_guide", "the guide 'ball:0,0,0': there is no such guide"),
+    (asked("guides", '"guides":["ball:0,0,0"]'), "no_guide", "the guide 'ball:0,0,0': 'ball' has too few or too many fields"),
     (asked("guides", '"guides":["tube:0,0,0:1,0,0:-1"]'), "no_guide", "radius: expected a number from 1e-15 to 1e15, got -1"),
     (asked("guides", '"guides":["slab:0,0,0:0,0,0:1"]'), "no_guide", "has no length"),
     (asked("guides", '"guides":["point:6:0,0,0:ball:0,0,0:1"]'), "no_guide", "link"),
