@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <optional>
 #include <ostream>
 #include <string>
@@ -15,6 +14,7 @@
 #include "keepout/mesh/binary_ply.h"
 #include "keepout/mesh/binary_stl.h"
 #include "keepout/mesh/doctor.h"
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/repair.h"
 #include "shared/fact_row.h"
 #include "shared/named_mesh.h"
@@ -34,13 +34,6 @@ struct Conversion {
   std::optional<Orientation> orientation = {};  // if asked for
 };
 
-std::string extension_of(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 /// Rounds coordinates to single precision, as STL has them. Returns the farthest that one moved.
 double round_to_floats(Surface& surface) {
   double farthest = 0.0;
@@ -56,7 +49,7 @@ Conversion converted(const ConvertOptions& options, const Mesh& mesh) {
   Conversion result;
   result.surface.vertices.assign(mesh.vertices().begin(), mesh.vertices().end());
   result.surface.triangles.assign(mesh.triangles().begin(), mesh.triangles().end());
-  if (extension_of(options.output) == ".stl") {
+  if (lower_extension(options.output) == ".stl") {
     // Before anything is decided: two vertices may become one, and a thin triangle degenerate.
     const double rounding = round_to_floats(result.surface);
     if (rounding > 0.0) result.rounding = rounding;
@@ -76,7 +69,7 @@ Conversion converted(const ConvertOptions& options, const Mesh& mesh) {
 void write(const ConvertOptions& options, const Surface& surface, AnatomicalSpace space,
            std::ostream& file) {
   try {
-    if (extension_of(options.output) == ".stl") {
+    if (lower_extension(options.output) == ".stl") {
       write_binary_stl(file, surface, space);
     } else {
       write_binary_ply(file, surface, space);
@@ -160,7 +153,7 @@ void print_text(const ConvertOptions& options, const LoadedMesh& loaded, const C
 }  // namespace
 
 std::string fault_of_output(const std::filesystem::path& output) {
-  const std::string extension = extension_of(output);
+  const std::string extension = lower_extension(output);
   if (extension == ".stl" || extension == ".ply") return {};
   return in_quotes(output.string()) +
          " ends in neither .stl nor .ply, which are the formats to write; choose one of them";

@@ -118,9 +118,7 @@ link k the one that joint k moves, counted from 1; frames are those of URDF.
 joints: 1 to 8 of Joint, from the base on. base: (4, 4), where link 0 is, in the frame of the mesh.
 flange: (4, 4), the frame that is steered, in that of the last link. None is the identity.)";
 
-}  // namespace
-
-void bind_chain(py::module_& module) {
+void bind_joints(py::module_& module) {
   py::class_<Joint>(module, "Joint", joint_doc)
       .def(py::init([](std::string name, const std::string& kind, const py::object& origin,
                        const py::object& axis, Optional lower, Optional upper, Optional velocity,
@@ -167,7 +165,12 @@ void bind_chain(py::module_& module) {
            py::arg("alpha") = 0.0, py::arg("d") = 0.0, py::arg("theta") = 0.0,
            py::arg("lower") = py::none(), py::arg("upper") = py::none(),
            py::arg("velocity") = py::none(), py::arg("increment") = py::none());
+}
 
+}  // namespace
+
+void bind_chain(py::module_& module) {
+  bind_joints(module);
   py::class_<Chain>(module, "Chain", chain_doc)
       .def(
           py::init([](std::vector<Joint> joints, const py::object& base, const py::object& flange) {

@@ -8,16 +8,11 @@
 
 #include "arrays.h"
 #include "bindings.h"
-#include "given.h"
 #include "keepout/factory/guide_text.h"
 #include "keepout/step/guide.h"
 
 namespace keepout::python {
 namespace {
-
-using Name = Given<std::string>;
-using Number = Given<double>;
-using Link = Given<int>;
 
 constexpr const char* region_doc =
     R"(A convex region in the world, which is the frame and the unit of the mesh, in which something is to
@@ -71,24 +66,22 @@ void bind_region(py::module_& module) {
           "The side of a plane through `point` (3,) that `into` (3,) points to.")
       .def_static(
           "slab",
-          [](const py::object& at, const py::object& normal, const Number& half_width) {
-            return Region::slab(point(at, "point"), point(normal, "normal"),
-                                taken(half_width, "half_width"));
+          [](const py::object& at, const py::object& normal, double half_width) {
+            return Region::slab(point(at, "point"), point(normal, "normal"), half_width);
           },
           py::arg("point"), py::arg("normal"), py::arg("half_width"),
           "All within half_width of the plane through `point` (3,) across `normal` (3,) [length].")
       .def_static(
           "tube",
-          [](const py::object& at, const py::object& direction, const Number& radius) {
-            return Region::tube(point(at, "point"), point(direction, "direction"),
-                                taken(radius, "radius"));
+          [](const py::object& at, const py::object& direction, double radius) {
+            return Region::tube(point(at, "point"), point(direction, "direction"), radius);
           },
           py::arg("point"), py::arg("direction"), py::arg("radius"),
           "All within a radius of the line through `point` (3,) along `direction` (3,) [length].")
       .def_static(
           "ball",
-          [](const py::object& center, const Number& radius) {
-            return Region::ball(point(center, "center"), taken(radius, "radius"));
+          [](const py::object& center, double radius) {
+            return Region::ball(point(center, "center"), radius);
           },
           py::arg("center"), py::arg("radius"), "All within a radius of `center` (3,) [length].")
       .def(
@@ -102,39 +95,34 @@ void bind_region(py::module_& module) {
 void bind_link_guides(py::class_<Guide>& type) {
   type.def_static(
           "point",
-          [](const Name& name, const Link& link, const py::object& position,
-             const Given<Region>& region) {
-            return Guide::point(taken(name, "name"),
-                                {taken(link, "link"), point(position, "position")},
-                                taken(region, "region"));
+          [](const std::string& name, int link, const py::object& position, const Region& region) {
+            return Guide::point(name, {link, point(position, "position")}, region);
           },
           py::arg("name"), py::arg("link"), py::arg("position"), py::arg("region"),
           "A point (3,) of a link stays in a Region.")
       .def_static(
           "axis",
-          [](const Name& name, const Link& link, const py::object& axis,
-             const py::object& direction, const Number& angle) {
-            return Guide::axis(taken(name, "name"), taken(link, "link"), point(axis, "axis"),
-                               point(direction, "direction"), taken(angle, "angle"));
+          [](const std::string& name, int link, const py::object& axis, const py::object& direction,
+             double angle) {
+            return Guide::axis(name, link, point(axis, "axis"), point(direction, "direction"),
+                               angle);
           },
           py::arg("name"), py::arg("link"), py::arg("axis"), py::arg("direction"), py::arg("angle"),
           "An axis (3,) of a link stays within an angle of a direction (3,) [rad].")
       .def_static(
           "remote_center",
-          [](const Name& name, const py::object& from, const py::object& to,
-             const py::object& center, const Number& tolerance) {
-            return Guide::remote_center(taken(name, "name"), link_point(from, "from_"),
-                                        link_point(to, "to"), point(center, "center"),
-                                        taken(tolerance, "tolerance"));
+          [](const std::string& name, const py::object& from, const py::object& to,
+             const py::object& center, double tolerance) {
+            return Guide::remote_center(name, link_point(from, "from_"), link_point(to, "to"),
+                                        point(center, "center"), tolerance);
           },
           py::arg("name"), py::arg("from_"), py::arg("to"), py::arg("center"), py::arg("tolerance"),
           "The straight shaft between two points, each a pair (link, (x, y, z)), passes within a "
           "tolerance\nof a center (3,), such as a trocar [length].")
       .def_static(
           "orientation",
-          [](const Name& name, const Link& link, const py::object& kept, const Number& angle) {
-            return Guide::orientation(taken(name, "name"), taken(link, "link"), rotation(kept),
-                                      taken(angle, "angle"));
+          [](const std::string& name, int link, const py::object& kept, double angle) {
+            return Guide::orientation(name, link, rotation(kept), angle);
           },
           py::arg("name"), py::arg("link"), py::arg("rotation"), py::arg("angle"),
           "A link keeps an orientation, a rotation matrix (3, 3), within an angle of any turn "
@@ -167,18 +155,12 @@ void bind_guides(py::module_& module) {
   py::class_<Guide> type(module, "Guide", guide_doc);
   type.def_static(
       "point",
-      [](const Name& name, const Given<Region>& region) {
-        return Guide::point(taken(name, "name"), taken(region, "region"));
-      },
+      [](const std::string& name, const Region& region) { return Guide::point(name, region); },
       py::arg("name"), py::arg("region"), "The tip of a MotionConstraint stays in a Region.");
   bind_link_guides(type);
-  type.def_static(
-          "of_text", [](const Name& text) { return guide_of_text(taken(text, "text")); },
-          py::arg("text"), guide_text_doc)
-      .def(
-          "with_band",
-          [](const Guide& self, const Number& band) { return self.with_band(taken(band, "band")); },
-          py::arg("band"), "The same guide, whose region may be left by so much [length or rad].")
+  type.def_static("of_text", &guide_of_text, py::arg("text"), guide_text_doc)
+      .def("with_band", &Guide::with_band, py::arg("band"),
+           "The same guide, whose region may be left by so much [length or rad].")
       .def_property_readonly("name", &Guide::name, "For messages.")
       .def_property_readonly("kind", &guide_kind,
                              "What stays in the region: 'point', 'axis' or 'shaft'.")

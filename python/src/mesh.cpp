@@ -166,6 +166,24 @@ std::string summary(const Inspection& mesh) {
   return text.str();
 }
 
+void bind_load_mesh(py::module_& module) {
+  module.def(
+      "load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
+      py::arg("untagged") = py::none(), py::arg("unit") = py::none(), py::arg("scale") = py::none(),
+      py::arg("flip") = false,
+      R"(Reads a mesh from an STL, PLY, OBJ, OFF, legacy VTK or VTP file, and welds it exactly.
+Nothing is repaired: see Mesh.inspect. What is odd about the mesh is a UserWarning, and in
+Mesh.warnings; what was done to it, as asked for, is in Mesh.notices.
+
+space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file
+says the other one (SPACE=...). None: as they stand.
+untagged: the space of a file that does not say. One that does is believed.
+unit: 'm', 'cm', 'mm', 'um' or 'in', the unit of the lengths in the file, which are scaled
+to mm. None: mm.
+scale: the factor from lengths in the file to mm, above 0, instead of a unit.
+flip: wind each triangle the other way, for normals that point into the solid.)");
+}
+
 }  // namespace
 
 const std::shared_ptr<const Mesh>& mesh_of(const py::object& mesh) {
@@ -310,22 +328,7 @@ void bind_mesh(py::module_& module) {
         return py::str("<keepout.Mesh of {} triangles, {} vertices>")
             .format(self.mesh->triangle_count(), self.mesh->vertex_count());
       });
-
-  module.def(
-      "load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
-      py::arg("untagged") = py::none(), py::arg("unit") = py::none(), py::arg("scale") = py::none(),
-      py::arg("flip") = false,
-      R"(Reads a mesh from an STL, PLY, OBJ, OFF, legacy VTK or VTP file, and welds it exactly.
-Nothing is repaired: see Mesh.inspect. What is odd about the mesh is a UserWarning, and in
-Mesh.warnings; what was done to it, as asked for, is in Mesh.notices.
-
-space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file
-says the other one (SPACE=...). None: as they stand.
-untagged: the space of a file that does not say. One that does is believed.
-unit: 'm', 'cm', 'mm', 'um' or 'in', the unit of the lengths in the file, which are scaled
-to mm. None: mm.
-scale: the factor from lengths in the file to mm, above 0, instead of a unit.
-flip: wind each triangle the other way, for normals that point into the solid.)");
+  bind_load_mesh(module);
 }
 
 }  // namespace keepout::python

@@ -15,14 +15,9 @@ namespace {
 
 constexpr double margin = 0.5;
 constexpr double radius = 2.0;
-constexpr double beat = 0.3;  // how far the surface comes and goes [length]
 
-/// As it is at some time, in beats.
 std::shared_ptr<const Mesh> at(const Surface& still, double time) {
-  Surface surface = still;
-  const double swing = beat * std::sin(2.0 * std::numbers::pi * time);
-  for (Vec3& v : surface.vertices) v += swing * v.normalized();
-  return mesh_of(std::move(surface));
+  return mesh_of(beating(still, time));
 }
 
 MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh,
@@ -164,11 +159,8 @@ TEST(MovingAnatomy, WatchesOfTheCallersOwnAreOfTheMeshTheyWereMadeOn) {
 }
 
 TEST(MovingAnatomy, WatchesAskWhatTheGuardAsks) {
-  const Surface cube = make_cube(5.0);
-  Surface lidless = cube;
-  lidless.triangles.pop_back();
-  const auto closed = mesh_of(cube);
-  const auto open = mesh_of(std::move(lidless));
+  const auto closed = mesh_of(make_cube(5.0));
+  const auto open = mesh_of(opened(make_cube(5.0)));
   const Vec3 inside(0.3, 0.2, closed->bounds().high.z() - 2.0);
   for (const bool is_first_open : {true, false}) {
     const auto& first = is_first_open ? open : closed;

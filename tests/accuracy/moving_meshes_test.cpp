@@ -103,15 +103,10 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
 // constraint measures the distances of the bodies anew.
 TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
   const auto still = load_mesh(fixture_path("liver")).mesh;
-  Surface surface{{still->vertices().begin(), still->vertices().end()},
-                  {still->triangles().begin(), still->triangles().end()}};
-  Vec3 top = still->vertex(0);
-  for (const Vec3& v : surface.vertices) {
-    if (v.z() > top.z()) top = v;
-  }
+  const Vec3 top = highest_vertex(*still);
   // It swells towards the port, most at the top, by 3 mm.
   const auto at = [&](double time) {
-    Surface now = surface;
+    Surface now = surface_of(*still);
     const double swell = 3.0 * std::sin(2.0 * std::numbers::pi * 0.25 * time);
     for (Vec3& v : now.vertices) {
       v.z() += swell * std::exp(-(v - top).squaredNorm() / (2.0 * 40.0 * 40.0));

@@ -17,18 +17,12 @@
 namespace keepout::test::promises {
 namespace {
 
-/// The same surface in another unit.
-Surface scaled(Surface surface, double factor) {
-  for (Vec3& v : surface.vertices) v *= factor;
-  return surface;
-}
-
 // Lengths beyond what is computed with are refused, whatever they are of.
 
 TEST(Range, LengthsOutsideAreRefusedWithAWordOnThem) {
   for (const double unit : {1e-80, 1e-29, 1e-17, 1e17, 1e19, 1e25}) {
     SCOPED_TRACE(unit);
-    const auto mesh = mesh_of(scaled(make_cube(5.0), unit));
+    const auto mesh = mesh_of(enlarged(make_cube(5.0), unit));
     EXPECT_THROW(
         make_motion_constraint(mesh, {.options = {.radius = 5.0 * unit, .margin = 0.2 * unit}}),
         Error);
@@ -51,7 +45,7 @@ TEST_P(RangeWithin, StepsAreCertifiedInWhateverUnit) {
   Random random(7);
   for (const char* shape : {"gear", "sphere", "needles"}) {
     SCOPED_TRACE(shape);
-    Loop loop(scaled(make_shape(shape), unit),
+    Loop loop(enlarged(make_shape(shape), unit),
               {.options = {.radius = 2.0 * unit, .margin = 0.2 * unit}});
     std::size_t held = 0;
     for (const Vec3& place : places(loop, 40, 0.5 * unit, random)) {
@@ -76,7 +70,7 @@ TEST(RangeWithin, StepsAreTheSameWithoutDenormals) {
   for (const double unit : {1e-13, 1.0}) {
     const MotionConstraintSettings settings{
         .options = {.radius = 2.0 * unit, .margin = 0.2 * unit}};
-    Loop loop(scaled(make_shape("gear"), unit), settings);
+    Loop loop(enlarged(make_shape("gear"), unit), settings);
     Random random(8);
     std::size_t held = 0;
     for (const Vec3& tip : places(loop, 200, 0.3 * unit, random)) {
@@ -183,7 +177,7 @@ TEST(IndexOfAnotherMesh, IsRefused) {
 // What is far off, and used by no triangle, changes nothing; nor does the origin.
 
 TEST(CoordinatesOf, VerticesThatNoTriangleUsesChangeNothing) {
-  Surface surface = scaled(make_shape("gear"), 1.0 / 3.0);  // in no floats
+  Surface surface = enlarged(make_shape("gear"), 1.0 / 3.0);  // in no floats
   Surface with_one_more = surface;
   with_one_more.vertices.emplace_back(3e7 / 7.0, -3e7, 3e7);
   const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 0.01}};
@@ -201,7 +195,7 @@ TEST(CoordinatesOf, VerticesThatNoTriangleUsesChangeNothing) {
 }
 
 TEST(CoordinatesOf, AMeshFarFromTheOriginLimitNoMore) {
-  const Surface surface = scaled(make_shape("gear"), 1.0 / 3.0);
+  const Surface surface = enlarged(make_shape("gear"), 1.0 / 3.0);
   const Vec3 offset(1e7 / 3.0, -1e7, 1e7 / 7.0);
   const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 0.01}};
   Loop loop(surface, settings);
@@ -221,7 +215,7 @@ TEST(CoordinatesOf, AMeshFarFromTheOriginLimitNoMore) {
 }
 
 TEST(CoordinatesOf, AMeshTooLargeForItsMarginIsWarnedOf) {
-  const auto mesh = mesh_of(scaled(make_shape("gear"), 1e4 / 3.0));
+  const auto mesh = mesh_of(enlarged(make_shape("gear"), 1e4 / 3.0));
   std::vector<std::string> warnings;
   const auto warn = [&](const std::string& text) { warnings.push_back(text); };
   make_motion_constraint(mesh, {.warn = warn, .options = {.radius = 10.0, .margin = 1.0}});

@@ -13,9 +13,8 @@ namespace {
 
 class Inspect : public testing::Test {
  protected:
-  void write(Surface surface, double scale = 100.0) {
-    for (Vec3& v : surface.vertices) v *= scale;
-    write_binary_stl(file, surface);
+  void write(const Surface& surface, double scale = 100.0) {
+    write_binary_stl(file, enlarged(surface, scale));
   }
   std::string text(bool self_intersections = false) const {
     std::ostringstream out;
@@ -67,9 +66,7 @@ TEST_F(Inspect, LargeNumbersAreGrouped) {
 }
 
 TEST_F(Inspect, EachFindingSaysHowManyWhatItMeansAndWhatToDo) {
-  Surface open = tetrahedron();
-  open.triangles.pop_back();
-  write(open);
+  write(opened(tetrahedron()));
   EXPECT_CONTAINS(text(), "3 boundary edges: the surface is open");
   EXPECT_CONTAINS(text(), "What to do: close the holes");
   const nlohmann::json finding = json().at("findings").at(0);
@@ -152,8 +149,7 @@ TEST_F(Inspect, SelfIntersectionsAreCountedOnRequest) {
 }
 
 TEST_F(Inspect, EachFindingSaysWhere) {
-  Surface open = tetrahedron();
-  open.triangles.pop_back();
+  Surface open = opened(tetrahedron());
   open = together(open, moved(open, {10, 0, 0}));
   open = together(open, moved(open, {0, 10, 0}));
   write(open);
@@ -178,9 +174,7 @@ TEST_F(Inspect, SelfIntersectionsHavePlacesToo) {
 }
 
 TEST_F(Inspect, APageIsMadeOfTheMeshAndItsFaults) {
-  Surface open = tetrahedron();
-  open.triangles.pop_back();
-  write(open);
+  write(opened(tetrahedron()));
   const std::filesystem::path page = folder.path() / "page.html";
   std::ostringstream out;
   inspect({.mesh = file, .page = page, .command = "keepout inspect mesh.stl"}, out);

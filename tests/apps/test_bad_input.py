@@ -24,8 +24,12 @@ patience = 60 if is_sanitized else 20  # for a command that has nothing to do, o
 to_s = "replay cube.off --poses poses.txt --out s.csv"  # what follows is the mistake
 simulate = "simulate cube --strokes 1 --cycles 20 --activation paper"
 
-# Names and options that are wrong. Each message begins with the first of its texts.
-typos = [
+length = "expected a number from 1e-15 to 1e15, not "
+zero_or_length = "expected 0 or a number from 1e-15 to 1e15, not "
+above_0 = "expected a number above 0 and at most 1e30, not "
+
+# Names and options that are wrong, and how the message begins.
+wrong_lines = [
     ("", "a command is missing; there are inspect, "),
     ("cube.off", "there is no command 'cube.off'; there are inspect, "),
     ("inspec cube", "there is no command 'inspec'; did you mean 'inspect'?"),
@@ -55,13 +59,10 @@ typos = [
     ("compare --pair 3", "there is no option --pair; did you mean '--pairs'?"),
     ("plan --planer RRT", "there is no option --planer; did you mean '--planner'?"),
     # What is missing, too much, or does not go together.
-    ("inspect", "an argument is missing: MESH is required"),
-    ("simulate", "an argument is missing: MESH is required"),
+    *((command, "an argument is missing: MESH is required") for command in ("inspect", "simulate", "serve")),
+    *((command, "an argument is missing: FILE is required") for command in ("register", "report")),
     ("replay cube --out s.csv", "an argument is missing: --poses is required"),
     ("replay cube --poses poses.txt", "an argument is missing: --out is required"),
-    ("register", "an argument is missing: FILE is required"),
-    ("report", "an argument is missing: FILE is required"),
-    ("serve", "an argument is missing: MESH is required"),
     ("inspect cube gear", "'gear' is one argument too many for inspect"),
     ("simulate cube gear", "MESH: "),
     ("simulate cube --radius", "--radius: a value is missing"),
@@ -72,6 +73,7 @@ typos = [
     ("serve cube --max-clients 3", "--max-clients has a meaning only together with --socket"),
     ("simulate cube --speed 1", "--speed has a meaning only together with --robot"),
     ("simulate cube --robot psm --radius 1", "--radius and --robot cannot be given together"),
+    (f"{to_s} --unit m --scale 2", "--unit and --scale cannot be given together"),
     ("verify --merge a.json --steps 3", "--steps and --merge cannot be given together"),
     ("verify cube --robot psm --steps 3", "--robot and --steps cannot be given together"),
     (f"{to_s} --tool sphere:1 --tool-radius 1", "--tool"),
@@ -80,7 +82,7 @@ typos = [
     ("--simd AVX22 inspect cube", "--simd: there is no 'AVX22'; "),
     ("inspect cube --space lsp", "--space: there is no 'lsp'; did you mean 'lps'?"),
     ("register f.csv --measured-in cm", "--measured-in: there is no 'cm'; there are: mm, m"),
-    ("inspect cube.off --unit mn", "--unit: there is no 'mn'; "),
+    ("inspect cube.off --unit inch", "--unit: there is no 'inch'; "),
     ("simulate cube --index wide_bhv", "--index: there is no 'wide_bhv'; did you mean 'wide_bvh'? There are: "),
     ("simulate cube --solver activeset", "--solver: there is no 'activeset'; did you mean 'active_set'?"),
     ("simulate cube --activation certifed,paper", "--activation: there is no 'certifed'; did you mean 'certified'?"),
@@ -96,22 +98,15 @@ typos = [
     ("bench --index embre", "--index: there is no 'embre'; did you mean 'embree'?"),
     ("bench --poses kontact", "--poses: there is no 'kontact'; did you mean 'contact'?"),
     ("plan --planner RTT", "--planner: there is no 'RTT'; did you mean 'RRT'?"),
-]
-
-length = "expected a number from 1e-15 to 1e15, not "
-zero_or_length = "expected 0 or a number from 1e-15 to 1e15, not "
-above_0 = "expected a number above 0 and at most 1e30, not "
-# Values that an option cannot have. The message begins with the option.
-values = [
+    # Values that an option cannot have.
     *((f"{to_s} --radius {value}", f"--radius: {length}'{value}'") for value in ("nan", "inf", "0", "-3", "2e30", "5mm", "three")),
     *((f"{to_s} --margin {value}", f"--margin: {zero_or_length}'{value}'") for value in ("-1", "nan", "1e-16", "0,2")),
     (f"{to_s} --margin=-1", f"--margin: {zero_or_length}'-1'"),
     (f"{to_s} --tool-radius -1", f"--tool-radius: {zero_or_length}'-1'"),
     (f"{to_s} --deepest -1", f"--deepest: {zero_or_length}'-1'"),
     (f"{to_s} --damping -1", "--damping: expected a number from 0 to 1e30, not '-1'"),
-    (f"{to_s} --refine some", "--refine: expected a whole number from 0 to 1000, not 'some'"),
-    (f"{to_s} --refine 1e4", "--refine: expected a whole number from 0 to 1000, not '1e4'"),
-    (f"{to_s} --refine 1.5e0", "--refine: expected a whole number from 0 to 1000, not '1.5e0'"),
+    *((f"{to_s} --refine {value}", f"--refine: expected a whole number from 0 to 1000, not '{value}'")
+      for value in ("some", "1e4", "1.5e0")),
     *((line, f"{option}: expected a value, not ''") for line, option in (
         ("inspect ''", "MESH"), ("simulate cube --out ''", "--out"), ("replay cube --poses '' --out s", "--poses"),
         ("bench --csv ''", "--csv"), ("serve cube --socket ''", "--socket"))),
@@ -128,8 +123,8 @@ values = [
     ("simulate cube --strokes 0", "--strokes: expected a whole number from 1 to 100000"),
     ("simulate cube --cycles 9", "--cycles: expected a whole number from 10 to 1000000"),
     ("simulate cube --robot psm --speed 0", "--speed: expected a multiple from 0.001 to 1000, not '0'"),
-    ("inspect cube.off --scale -1", "--scale: "),
-    ("inspect cube.off --scale nan", "--scale: "),
+    *((f"{to_s} --scale {value}", f"--scale: expected a number from 1e-30 to 1e30, not '{value}'")
+      for value in ("0", "-1", "nan", "inf", "x")),
     ("inspect cube --json=many", "--json: "),
     ("register f.csv --target 1 2 x", "--target: expected a number from -1e6 to 1e6, not 'x'"),
     ("register f.csv --confidence 1", "--confidence: expected a probability from 0.01 to 0.9999, not '1'"),
@@ -200,13 +195,10 @@ files = [
     ("replay cube.off --poses many.txt --out old.csv", "old.csv: could not be written to the end", "ulimit -f 8;"),
     ("verify cube --steps 100 --json v.json", "v.json: could not be written to the end", "ulimit -f 1;"),
     ("verify cube --steps 100 --json old.json", "old.json: could not be written to the end", "ulimit -f 1;"),
-    ("inspect cube.off > /dev/full", "stdout: could not be written to the end"),
-    ("inspect cube.off >&-", "stdout: could not be written to the end"),
-    ("--help > /dev/full", "stdout: could not be written to the end"),
-    ("--version > /dev/full", "stdout: could not be written to the end"),
-    ("simulate --help > /dev/full", "stdout: could not be written to the end"),
-    ("serve cube.off <&-", "stdin or stdout is closed"),
-    ("serve cube.off >&-", "stdin or stdout is closed"),
+    *((line, "stdout: could not be written to the end") for line in (
+        "inspect cube.off > /dev/full", "inspect cube.off >&-", "--help > /dev/full", "--version > /dev/full",
+        "simulate --help > /dev/full")),
+    *((f"serve cube.off {closed}", "stdin or stdout is closed") for closed in ("<&-", ">&-")),
 ]
 
 
@@ -300,15 +292,11 @@ meshes = {
     **{f"zeros.{kind}": (bytes(1000), f"zeros.{kind}") for kind in formats},
     "part.step": ("ISO-10303-21;", "its extension is none of .stl, .ply, .obj, .off"),
     "no_extension": (stl, "its extension is none of .stl, .ply, .obj, .off"),
+    # No regular files.
+    "folder.stl": (None, "is a directory"),
+    **{name: (None, "is not a regular file") for name in ("pipe.stl", "/dev/zero", "/dev/full")},
+    **{name: (None, "there is no such file") for name in ("loop.stl", "x" * 300 + ".stl")},
 }
-special_meshes = [
-    ("folder.stl", "is a directory"),
-    ("pipe.stl", "is not a regular file"),
-    ("/dev/zero", "is not a regular file"),
-    ("/dev/full", "is not a regular file"),
-    ("loop.stl", "there is no such file"),
-    ("x" * 300 + ".stl", "there is no such file"),
-]
 
 
 @pytest.fixture(scope="module")
@@ -322,7 +310,7 @@ def world(tmp_path_factory):
         "cube.off": cube, "poses.txt": "0 0 60 1 2 -3\n", "many.txt": 3000 * "0 0 60 1 2 -3\n",
         "nan.txt": "0 0 60 1 2 -3\n0 0 nan 0 0 0\n", "f.csv": "0,0,0,10,20,30\n0,0,40,10,20,70\n50,0,0,10,70,30\n",
         "broken.stl": stl[:70], "cut.json": '{"keepout_record": "verify", "format"', "old.csv": "precious\n",
-        "old.html": "precious\n", "old.json": "precious\n", **{name: content for name, (content, *_) in meshes.items()}}
+        "old.html": "precious\n", "old.json": "precious\n", **{name: content for name, (content, _) in meshes.items() if content is not None}}
     for name, content in contents.items():
         (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
     for name in ("folder", "folder.stl"):
@@ -376,7 +364,7 @@ def needs_bench(line):
         pytest.skip("OMPL is not built under sanitizers")
 
 
-@pytest.mark.parametrize("line, says", typos + values)
+@pytest.mark.parametrize("line, says", wrong_lines)
 def test_a_wrong_command_line_is_told_with_the_option_and_the_remedy(world, line, says):
     needs_bench(line)
     text = judge(world, line, 2, [says])
@@ -393,9 +381,8 @@ def test_files_that_cannot_be_read_or_written_are_named(world, line, says):
     judge(world, line, 1, says, before)
 
 
-@pytest.mark.parametrize("name", [*meshes, *(name for name, _ in special_meshes)], ids=lambda name: name[-30:])
-def test_a_broken_mesh_is_named_and_leaves_an_earlier_result_as_it_was(world, name):
-    says = meshes[name][1] if name in meshes else dict(special_meshes)[name]
+@pytest.mark.parametrize("name, says", [(name, says) for name, (_, says) in meshes.items()], ids=lambda text: text[-30:])
+def test_a_broken_mesh_is_named_and_leaves_an_earlier_result_as_it_was(world, name, says):
     judge(world, f"replay {name} --poses poses.txt --out old.csv", 1, [f"{name}: ", says])
 
 
@@ -506,7 +493,7 @@ requests = [
     (asked("tool", '"tool":"sphere:nan"'), "no_tool", "'nan' is not a number"),
     (asked("tool", '"tool":"hull:broken.stl"'), "no_tool", "broken.stl: line 6: "),
     (asked("tool", '"tool":"sphere:1","narrow_phase":"exat"'), "no_tool", "did you mean 'exact'?"),
-    (asked("guides", '"guides":["ball:0,0,0"]'), "no_guide", "the guide 'ball:0,0,0': there is no such guide"),
+    (asked("guides", '"guides":["ball:0,0,0"]'), "no_guide", "the guide 'ball:0,0,0': 'ball' has too few or too many fields"),
     (asked("guides", '"guides":["tube:0,0,0:1,0,0:-1"]'), "no_guide", "radius: expected a number from 1e-15 to 1e15, got -1"),
     (asked("guides", '"guides":["slab:0,0,0:0,0,0:1"]'), "no_guide", "has no length"),
     (asked("guides", '"guides":["point:6:0,0,0:ball:0,0,0:1"]'), "no_guide", "link"),

@@ -9,6 +9,9 @@ namespace {
 
 using Outcome = test::ProcessOutcome;
 
+/// Gives the command the name by which ./run calls it.
+constexpr const char* as_run = R"(bash -c 'exec -a ./run "$0" "$@"' )";
+
 TEST(Suggestion, NamesWhatWasLikelyMeant) {
   const std::vector<std::string> names{"wide_bvh", "pd_tree", "brute_force", "bvh"};
   EXPECT_EQ(did_you_mean("wide_bhv", names), "; did you mean 'wide_bvh'?");
@@ -32,10 +35,11 @@ TEST(Usage, TheExitStatusSaysWhatKindOfEndItWas) {
 
 TEST(Usage, HelpIsACommandAsWell) {
   const test::CommandFolder folder;
-  EXPECT_EQ(succeeded(folder.run("help")).output, folder.run("--help").output);
-  EXPECT_EQ(succeeded(folder.run("help verify")).output, folder.run("verify --help").output);
-  EXPECT_EQ(succeeded(folder.run("help bench")).output, folder.run("bench --help").output);
-  EXPECT_EQ(succeeded(folder.run("-V")).output, folder.run("--version").output);
+  for (const auto& [one, other] :
+       {std::pair("help", "--help"), std::pair("-V", "--version"),
+        std::pair("help verify", "verify --help"), std::pair("help bench", "bench --help")}) {
+    EXPECT_EQ(succeeded(folder.run(one)).output, folder.run(other).output);
+  }
   for (const char* mistyped : {"help verfy", "verfy --help", "verfy -V"}) {
     const Outcome outcome = folder.run(mistyped);
     EXPECT_EQ(outcome.status, 2) << mistyped;
@@ -56,7 +60,6 @@ TEST(Usage, CountsMayHaveAnExponent) {
 
 TEST(Usage, RunSuggestsItsOwnCommands) {
   const test::CommandFolder folder;
-  const std::string as_run = R"(bash -c 'exec -a ./run "$0" "$@"' )";
   for (const char* arguments : {"expirements", "expirements --help", "help expirements"}) {
     const Outcome outcome = folder.run(arguments, as_run);
     EXPECT_EQ(outcome.status, 2) << outcome.output;
@@ -67,15 +70,11 @@ TEST(Usage, RunSuggestsItsOwnCommands) {
 
 TEST(Usage, HelpCallsTheCommandWhatTheUserHasCalledIt) {
   const test::CommandFolder folder;
-  const Outcome direct = folder.run("inspec");
-  EXPECT_CONTAINS(direct.output, "See 'keepout --help'.");
-  const Outcome by_run =
-      folder.run("simulate cub --raduis 1", R"(bash -c 'exec -a ./run "$0" "$@"' )");
+  EXPECT_CONTAINS(folder.run("inspec").output, "See 'keepout --help'.");
+  const Outcome by_run = folder.run("simulate cub --raduis 1", as_run);
   EXPECT_CONTAINS(by_run.output, "See './run simulate --help'.");
   // What only ./run does is told by it alone.
-  const std::string help_of_run =
-      folder.run("--help", R"(bash -c 'exec -a ./run "$0" "$@"' )").output;
-  EXPECT_CONTAINS(help_of_run, "./run experiments");
+  EXPECT_CONTAINS(folder.run("--help", as_run).output, "./run experiments");
   EXPECT_LACKS(folder.run("--help").output, "experiments");
 }
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "keepout/fixtures/random.h"
-#include "keepout/geometry/shapes.h"
+#include "hostile_triangle.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 
@@ -12,35 +12,6 @@ struct HostilePair {
   Segment segment;
   Triangle triangle;
 };
-
-/// From fair to hopeless, about 1 large: needles and caps down to heights of 1e-18, corners on a
-/// line, segments, points.
-inline Triangle hostile_triangle(Random& random) {
-  const auto point = [&]() -> Vec3 { return random.direction() * random.uniform(); };
-  Triangle t{point(), point(), point()};
-  const double tiny = std::pow(10.0, random.uniform(-18.0, 0.0));
-  switch (random.below(8)) {
-    case 0:
-      t[2] = t[1] + tiny * point();
-      break;
-    case 1:
-      t[2] = t[0] + random.uniform() * (t[1] - t[0]) + tiny * point();
-      break;
-    case 2:
-      t[2] = t[0] + 2.0 * (t[1] - t[0]);
-      break;
-    case 3:
-      t[random.below(3)] = t[random.below(3)];
-      break;
-    case 4:
-      t[1] = t[2] = t[0];
-      break;
-    default:
-      break;
-  }
-  std::swap(t[random.below(3)], t[random.below(3)]);
-  return t;
-}
 
 /// A place on the triangle's face, an edge or a corner, as good as doubles can name it.
 inline Vec3 place_on(const Triangle& t, Random& random) {
@@ -90,7 +61,7 @@ inline Segment hostile_segment(const Triangle& t, Random& random) {
 /// The same, in some unit from 1e-6 to 1e6, sometimes 1e4 to 1e6 such units from the origin.
 inline HostilePair hostile_pair(Random& random) {
   HostilePair pair;
-  pair.triangle = hostile_triangle(random);
+  pair.triangle = test::hostile_triangle(random);
   pair.segment = hostile_segment(pair.triangle, random);
   if (random.below(2) == 0) std::swap(pair.segment.from, pair.segment.to);
   const double scale = std::pow(10.0, random.uniform(-6.0, 6.0));

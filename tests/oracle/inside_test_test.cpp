@@ -105,13 +105,7 @@ TEST(InsideTest, SaysNothingOfASurfaceThatIsNotClosed) {
 }
 
 TEST(InsideTest, NeedsNeitherAWeldNorAWindingNorTrianglesWithAnArea) {
-  const Surface whole = tetrahedron();
-  Surface loose;
-  for (const Corners& corners : whole.triangles) {
-    const auto first = static_cast<VertexId>(loose.vertices.size());
-    for (const VertexId v : corners) loose.vertices.push_back(whole.vertices[v]);
-    loose.triangles.push_back({first, first + 2, first + 1});
-  }
+  Surface loose = flipped(unwelded(tetrahedron()));
   std::swap(loose.triangles[0][0], loose.triangles[0][1]);
   loose.triangles.push_back({0, 1, 1});
   loose.triangles.push_back({2, 2, 2});

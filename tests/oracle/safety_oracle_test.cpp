@@ -94,10 +94,9 @@ INSTANTIATE_TEST_SUITE_P(SafetyOracle, WaysPastEveryShape, testing::ValuesIn(sha
 
 /// Two squares side by side in the plane z = 0, each cut along its diagonal.
 SafetyOracle flat_oracle(const Vec3& offset = Vec3::Zero()) {
-  Surface surface{{{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {0, 2, 0}, {2, 2, 0}, {4, 2, 0}},
-                  {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}};
-  for (Vec3& v : surface.vertices) v += offset;
-  return SafetyOracle(mesh_of(surface));
+  const Surface surface{{{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {0, 2, 0}, {2, 2, 0}, {4, 2, 0}},
+                        {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}};
+  return SafetyOracle(mesh_of(moved(surface, offset)));
 }
 
 TEST(SafetyOracle, SeesACrossingThroughAFaceAnEdgeAndAVertexAlike) {

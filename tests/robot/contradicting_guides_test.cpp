@@ -21,11 +21,7 @@ Instrument arm(int joints) {
   return {Chain(all, {}, {Vec3(30, 0, 0)}), {{"tip", {{joints, Vec3(30, 0, 0)}}, 1.0}}};
 }
 
-std::shared_ptr<const Mesh> far_cube() {
-  Surface surface = make_cube(20.0);
-  for (Vec3& v : surface.vertices) v += Vec3(0, 0, -5000);
-  return mesh_of(std::move(surface));
-}
+std::shared_ptr<const Mesh> far_cube() { return mesh_of(moved(make_cube(20.0), {0, 0, -5000})); }
 
 double excess(const Guide& guide, const ChainState& state) {
   return guide.region().excess(guided_point(guide, state));

@@ -18,6 +18,17 @@ std::vector<double> straight_down(double insertion) { return {0, 0, insertion, 0
 /// height 120 - d - 9.1 - 10.2 + 15.6.
 Instrument psm_above() { return psm(port_over(Vec3::Zero(), 120.0)); }
 
+/// Returns a ball of radius 1 that one prismatic joint carries along z.
+Instrument ball_on_a_slide(const Pose& base = {}) {
+  return {Chain({{.kind = JointKind::prismatic}}, base),
+          {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}}};
+}
+
+/// Returns the least clearance that a constraint certifies, to within its rounding.
+double certified_by(const InstrumentConstraint& guard) {
+  return guard.options().margin - guard.options().band - 3.0 * guard.tolerance();
+}
+
 /// The insertion at which nothing is nearer than that to a cube whose top is at 50.
 double insertion_above_cube(const Instrument& instrument, const Mesh& mesh, double distance) {
   double low = 10.0;
@@ -44,9 +55,8 @@ TEST(InstrumentConstraint, StopsAtASurfaceAtTheMarginAndSlidesAlongIt) {
   }
   const ChainState chain = test::state_of(instrument.chain(), q);
   EXPECT_NEAR(chain.flange().position.x() - before.x(), 0.1, 0.02) << "it slides";
-  const double kept = guard.options().margin - guard.options().band;
   EXPECT_NEAR(clearance_of(instrument, *mesh, q), guard.options().margin, 2e-3);
-  EXPECT_GE(clearance_of(instrument, *mesh, q), kept - 3.0 * guard.tolerance());
+  EXPECT_GE(clearance_of(instrument, *mesh, q), certified_by(guard));
 }
 
 TEST(InstrumentConstraint, WithoutAMeshGoesWhereItIsAskedToUntilOneIsAdded) {
@@ -64,8 +74,7 @@ TEST(InstrumentConstraint, WithoutAMeshGoesWhereItIsAskedToUntilOneIsAdded) {
   EXPECT_EQ(guard.add_mesh(mesh, make_index("wide_bvh", mesh)), 0u);
   const InstrumentStep limited = guard.step(q, down);
   EXPECT_EQ(limited.status, Status::limited);
-  EXPECT_GE(clearance_of(instrument, *mesh, moved(q, limited)),
-            guard.options().margin - guard.options().band - 3.0 * guard.tolerance());
+  EXPECT_GE(clearance_of(instrument, *mesh, moved(q, limited)), certified_by(guard));
   // A prismatic joint at its limit is held there, beside a mesh or not.
   InstrumentConstraint at_its_limit(instrument, std::make_unique<ActiveSet>(), {.period = 0.05});
   q[2] = instrument.chain().joint(3).limits.upper;
@@ -93,7 +102,6 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
       Random random(3);
       std::vector<double> way;
       int held = 0;
-      const double kept = guard.options().margin - guard.options().band;
       const int cycles = test::trials(part.solver == "active_set" ? 60 : 20);  // others are slow
       for (int i = 0; i < cycles; ++i) {
         const Twist desired{.linear = Vec3(0, 0, -1.0) + random.direction(),
@@ -102,8 +110,7 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
         if (!step.ok()) continue;  // a solver may give up
         held += step.status == Status::limited ? 1 : 0;
         for (const double share : {0.37, 1.0}) {
-          ASSERT_GE(clearance_of(instrument, *mesh, moved(q, step, share)),
-                    kept - 3.0 * guard.tolerance());
+          ASSERT_GE(clearance_of(instrument, *mesh, moved(q, step, share)), certified_by(guard));
         }
         q = moved(q, step);
         way.insert(way.end(), q.begin(), q.end());
@@ -129,7 +136,7 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearWhateverASolverAnswers) {
   const Instrument instrument = psm_above();
   InstrumentConstraint guard(mesh, std::make_shared<WideBvh>(mesh), instrument, solver_that(answer),
                              {.period = 0.05});
-  const double kept = guard.options().margin - guard.options().band - 3.0 * guard.tolerance();
+  const double kept = certified_by(guard);
   const std::vector<double> start = straight_down(insertion_above_cube(instrument, *mesh, 1.0));
   std::vector<double> q = start;
   int moves = 0;
@@ -227,9 +234,7 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoWorkForThemAtOn
 
 TEST(InstrumentConstraint, ChecksTheSideOnceItIsToldTo) {
   const auto mesh = mesh_of(make_cube(10.0));
-  const Chain chain({{.kind = JointKind::prismatic}});
-  const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
-  auto guard = guard_of(mesh, ball, {.check_sides = false});
+  auto guard = guard_of(mesh, ball_on_a_slide(), {.check_sides = false});
   const std::vector<double> q{0.0};
   EXPECT_EQ(guard.step(q, Twist{}).status, Status::free);
   InstrumentOptions options = guard.options();
@@ -270,9 +275,7 @@ TEST(InstrumentConstraint, RefusesPositionsThatLoseTheDigitsOfAWay) {
   const std::vector<double> far{0, 0, 1e8, 0, 0, 0};
   EXPECT_EQ(guard.prove(straight_down(20.0), far).status, Status::invalid_input);
   // Without limits of its own, a joint is not sent beyond what the next cycle would refuse.
-  const Chain chain({{.kind = JointKind::prismatic}}, {Vec3(0, 0, 500)});
-  const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
-  auto free = guard_of(mesh, ball, {.period = 0.05});
+  auto free = guard_of(mesh, ball_on_a_slide({Vec3(0, 0, 500)}), {.period = 0.05});
   std::vector<double> at{0.0};
   for (int i = 0; i < 3; ++i) {
     const InstrumentStep step = free.step(at, std::vector<double>{1e9});
@@ -286,12 +289,7 @@ TEST(InstrumentConstraint, RefusesPositionsThatLoseTheDigitsOfAWay) {
 // each it is looked where the instrument stands now.
 TEST(InstrumentConstraint, FollowsAnatomyThatDeforms) {
   const Surface still = make_shape("sphere");
-  const auto at = [&](double beats) {
-    Surface surface = still;
-    const double swing = 0.3 * std::sin(2.0 * std::numbers::pi * beats);
-    for (Vec3& v : surface.vertices) v += swing * v.normalized();
-    return mesh_of(std::move(surface));
-  };
+  const auto at = [&](double beats) { return mesh_of(beating(still, beats)); };
   auto mesh = at(0.0);
   const auto tree = std::make_shared<WideBvh>(mesh);
   const Instrument instrument = psm_above();
@@ -428,16 +426,14 @@ TEST(InstrumentConstraint, MovesNothingThatIsThroughTheSurfaceOrBehindIt) {
   EXPECT_EQ(guard.step(through, Twist{.linear = Vec3(0, 0, 1)}).status, Status::touching);
   EXPECT_TRUE(guard.step(through, Twist{}).increment.empty());
   // A ball alone, all of it inside.
-  const Chain chain({{.kind = JointKind::prismatic}});
-  const Instrument ball(chain, {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
-  auto inside = guard_of(mesh, ball, {.period = 0.05});
+  auto inside = guard_of(mesh, ball_on_a_slide(), {.period = 0.05});
   const std::vector<double> q{0.0};
   EXPECT_EQ(inside.step(q, Twist{}).status, Status::inside);
   EXPECT_TRUE(inside.step(q, Twist{}).increment.empty());
   EXPECT_EQ(inside.prove(q, q).status, Status::inside);
   inside.set_guides({Guide::point("down", {1, Vec3::Zero()}, Region::ball(Vec3(0, 0, -90), 1.0))});
   EXPECT_EQ(inside.step(q, Twist{}).status, Status::inside);
-  auto unchecked = guard_of(mesh, ball, {.check_sides = false});
+  auto unchecked = guard_of(mesh, ball_on_a_slide(), {.check_sides = false});
   EXPECT_EQ(unchecked.step(q, Twist{}).status, Status::free) << "of any surface, the side it is on";
 }
 

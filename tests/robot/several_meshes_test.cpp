@@ -22,9 +22,7 @@ Instrument ball(double radius) {
 constexpr InstrumentOptions undamped{.damping = 1e-9, .orientation_weight = 0.0};
 
 std::shared_ptr<const Mesh> cube_of(double side) {
-  Surface surface = make_cube(20.0);  // of a side of 100
-  for (Vec3& v : surface.vertices) v *= side / 100.0;
-  return mesh_of(std::move(surface));
+  return mesh_of(enlarged(make_cube(20.0), side / 100.0));  // of a side of 100
 }
 
 /// Returns the clearance of a ball from a mesh at a pose.

@@ -33,6 +33,12 @@ inline std::shared_ptr<const Mesh> wall(double at) {
   return mesh_of(Surface{{{at, -300, -300}, {at, 300, -300}, {at, 0, 300}}, {{0, 1, 2}}});
 }
 
+/// Returns a copy, to be changed.
+inline Surface surface_of(const Mesh& mesh) {
+  return {{mesh.vertices().begin(), mesh.vertices().end()},
+          {mesh.triangles().begin(), mesh.triangles().end()}};
+}
+
 /// Returns the vertex with the largest z.
 inline Vec3 highest_vertex(const Mesh& mesh) {
   Vec3 top = mesh.vertex(0);
@@ -83,6 +89,42 @@ inline Surface together(Surface one, const Surface& other) {
 inline Surface moved(Surface surface, const Vec3& by) {
   for (Vec3& v : surface.vertices) v += by;
   return surface;
+}
+
+/// The same surface in another unit.
+inline Surface enlarged(Surface surface, double factor) {
+  for (Vec3& v : surface.vertices) v *= factor;
+  return surface;
+}
+
+/// A surface about the origin that comes and goes by 0.3, at a time in beats.
+inline Surface beating(Surface surface, double time) {
+  const double swing = 0.3 * std::sin(2.0 * std::numbers::pi * time);
+  for (Vec3& v : surface.vertices) v += swing * v.normalized();
+  return surface;
+}
+
+/// The surface with its coordinates rounded to floats, as those of STL files are.
+inline Surface as_floats(Surface surface) {
+  for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
+  return surface;
+}
+
+/// The surface with a hole where its last triangle was.
+inline Surface opened(Surface surface) {
+  surface.triangles.pop_back();
+  return surface;
+}
+
+/// Each triangle with vertices of its own, as an STL reader gives them.
+inline Surface unwelded(const Surface& surface) {
+  Surface apart;
+  for (const Corners& corners : surface.triangles) {
+    const auto first = static_cast<VertexId>(apart.vertices.size());
+    for (const VertexId v : corners) apart.vertices.push_back(surface.vertices[v]);
+    apart.triangles.push_back({first, first + 1, first + 2});
+  }
+  return apart;
 }
 
 /// The same surface seen from its other side.

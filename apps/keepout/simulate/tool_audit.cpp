@@ -23,23 +23,21 @@ ToolAudit::ToolAudit(Audit& audit, const ConvexTool& tool, const Vec3& start)
       tip_(start),
       // No tool is farther from the surface than one of its points.
       clearance_(distance_at(start, 1.001 * audit.distance(start + of_core_) + Audit::touching)),
-      is_inside_(is_inside(start)) {}
+      is_inside_(is_inside(start, clearance_)) {}
 
 double ToolAudit::distance_at(const Vec3& tip, double reach) {
   oracle_.move_to({}, {.position = tip});
   return oracle_.clearance(0, reach);
 }
 
-bool ToolAudit::is_inside(const Vec3& tip) const {
+bool ToolAudit::is_inside(const Vec3& tip, double distance) const {
   return audit_->surface() == SurfaceKind::closed && audit_->side(tip + of_core_) == Side::behind &&
-         clearance_ > 0.0;
+         distance > 0.0;
 }
 
 double ToolAudit::clearance_at(const Vec3& tip, double reach) {
   const double distance = distance_at(tip, reach);
-  const bool is_behind =
-      audit_->surface() == SurfaceKind::closed && audit_->side(tip + of_core_) == Side::behind;
-  return is_behind && distance > 0.0 ? -distance : distance;
+  return is_inside(tip, distance) ? -distance : distance;
 }
 
 bool ToolAudit::touches(const Vec3& from, double at_from, const Vec3& to, double at_to) {
@@ -57,7 +55,7 @@ bool ToolAudit::follow(const Vec3& to) {
   const double length = (to - from).norm();
   clearance_ = distance_at(to, std::max(0.0, before) + length + Audit::touching);
   if (!touches(from, before, to, clearance_)) return false;
-  is_inside_ = is_inside(to);
+  is_inside_ = is_inside(to, clearance_);
   return true;
 }
 

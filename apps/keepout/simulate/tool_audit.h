@@ -32,7 +32,7 @@ class ToolAudit {
  private:
   double distance_at(const Vec3& tip, double reach);
   bool touches(const Vec3& from, double at_from, const Vec3& to, double at_to);
-  bool is_inside(const Vec3& tip) const;
+  bool is_inside(const Vec3& tip, double distance) const;
 
   Audit* audit_;
   Vec3 of_core_;  // a point of the core, from the tip

@@ -17,12 +17,6 @@
 namespace keepout {
 namespace {
 
-std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
-}
-
 void refuse_compressed(const MeshSource& source, std::string_view beginning) {
   constexpr std::array<std::string_view, 5> magics{"\x1f\x8b", "PK\x03\x04", "BZh",
                                                    "\xfd"
@@ -218,6 +212,12 @@ void flip_triangles(Surface& surface, LoadedMesh& loaded) {
 }
 
 }  // namespace
+
+std::string lower_extension(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
+  return extension;
+}
 
 #ifndef KEEPOUT_READS_VTP
 MeshFile read_vtp(const MeshSource& source) {

@@ -138,7 +138,7 @@ TEST_F(RequestLine, EachRequestIsCarriedOutOrRefusedByWhatItIs) {
   const std::string wrong = "not_a_request: ";
   const std::string one_tip = wrong + "'tip' must be an array of three numbers";
   const std::string two_kinds = wrong + "a 'joint_step' takes either";
-  const std::vector<std::pair<std::string, std::string>> table{
+  std::vector<std::pair<std::string, std::string>> table{
       {step + R"("jacobian":[[1],[2],[3]]})", good},
       {step + R"("jacobian":[[1,2,3,4],[5,6,7,8],[9,10,11,12]],)"
               R"("rows":[[1,2,3,4],[5,6,7,8]],"bounds":[-1,-2]})",
@@ -151,19 +151,7 @@ TEST_F(RequestLine, EachRequestIsCarriedOutOrRefusedByWhatItIs) {
       {step + R"("rows":[[1,2,3]],"bounds":[1,2]})", wrong + "'bounds' must have one number"},
       {step + R"("rows":[[1,2,3,4]],"bounds":[1]})", wrong + "each of the 'rows' must have"},
       {step + R"("rows":[[1,2]],"bounds":[1]})", wrong + "each of the 'rows' must have"},
-      {step + R"("rows":[1,2,3],"bounds":[1]})", wrong + "'rows' must be"},
-      {step + R"("rows":[[]],"bounds":[1]})", wrong + "'rows' must be"},
-      {step + R"("rows":[[1,2,3],[1,2]],"bounds":[1,2]})", wrong + "'rows' must be"},
-      {step + R"("rows":[[1,2,3],[1,2,3],[1,2,3]],"bounds":[1,2,3]})", wrong + "'rows' must be"},
       {step + R"("jacobian":[[1],[2],[3]],"rows":[[1,2,3]],"bounds":[1]})", wrong + "each of"},
-      {step + R"("jacobian":[]})", wrong + "'jacobian' must be"},
-      {step + R"("jacobian":[[1,2],[3,4]]})", wrong + "'jacobian' must be"},
-      {step + R"("jacobian":[[],[],[]]})", wrong + "'jacobian' must be"},
-      {step + R"("jacobian":[[1,2,3,4,5],[1,2,3,4,5],[1,2,3,4,5]]})", wrong + "'jacobian' must be"},
-      {step + R"("jacobian":[[1],[2],[3],[4]]})", wrong + "'jacobian' must be"},
-      {step + R"("jacobian":[[1],[2],3]})", wrong + "'jacobian' must be"},
-      {step + R"("jacobian":[[1],[2],[[3]]]})", wrong + "'jacobian' must be"},
-      {step + R"("jacobian":{}})", wrong + "'jacobian' must be"},
       {step + R"("jacobian":[[1],[2],[3]],"radius":1})", wrong + "'radius' is nothing that 'step'"},
       {step + R"("radius":1})", wrong + "'radius' is nothing that 'step' takes; it takes 'id'"},
       {open + capsule + R"(,"tip_link":"t","margin":0.5})", no_file},
@@ -188,15 +176,6 @@ TEST_F(RequestLine, EachRequestIsCarriedOutOrRefusedByWhatItIs) {
       {R"({"id":1,"do":"guides","guides":["ball:0,0,0:1",7]})",
        wrong + "'guides' must be an array"},
       {R"({"id":1,"do":"guides"})", wrong + "'guides' is missing"},
-      {R"({"id":1,"do":"step","tip":[1,2]})", one_tip},
-      {R"({"id":1,"do":"step","tip":[1,2,3,4]})", one_tip},
-      {R"({"id":1,"do":"step","tip":[1,[2],3]})", one_tip},
-      {R"({"id":1,"do":"step","tip":[1,"2",3]})", one_tip},
-      {R"({"id":1,"do":"step","tip":[1,null,3]})", one_tip},
-      {R"({"id":1,"do":"step","tip":[1,true,3]})", one_tip},
-      {R"({"id":1,"do":"step","tip":null})", one_tip},
-      {R"({"id":1,"do":"step","tip":{"x":1}})", one_tip},
-      {R"({"id":1,"do":"step","tip":1})", one_tip},
       {R"({"id":1,"do":"polytope","tip":[1,2,3],"radius":[1]})", wrong + "'radius' must be a num"},
       {R"({"id":1,"do":"polytope","tip":[1,2,3]})", wrong + "'radius' is missing"},
       {R"({"id":1,"do":"step","tip":[1,2,3]})", wrong + "'desired' is missing"},
@@ -218,6 +197,20 @@ TEST_F(RequestLine, EachRequestIsCarriedOutOrRefusedByWhatItIs) {
       {R"({"id":1,"do":"ping","do":"ping"})", wrong + "'do' is given twice"},
       {R"({"id":1,"id":1,"do":"ping"})", wrong + "'id' is given twice"},
       {R"({"id":1,"do":"step","tip":[1,2,3],"tip":[1,2,3]})", wrong + "'tip' is given twice"}};
+  for (const std::string bad :
+       {"[]", "[[1,2],[3,4]]", "[[],[],[]]", "[[1],[2],[3],[4]]", "{}", "[[1],[2],3]",
+        "[[1],[2],[[3]]]", "[[1,2,3,4,5],[1,2,3,4,5],[1,2,3,4,5]]"}) {
+    table.emplace_back(step + R"("jacobian":)" + bad + '}', wrong + "'jacobian' must be");
+  }
+  for (const std::string bad :
+       {R"([1,2,3],"bounds":[1])", R"([[]],"bounds":[1])", R"([[1,2,3],[1,2]],"bounds":[1,2])",
+        R"([[1,2,3],[1,2,3],[1,2,3]],"bounds":[1,2,3])"}) {
+    table.emplace_back(step + R"("rows":)" + bad + '}', wrong + "'rows' must be");
+  }
+  for (const std::string bad : {"[1,2]", "[1,2,3,4]", "[1,[2],3]", R"([1,"2",3])", "[1,null,3]",
+                                "[1,true,3]", "null", R"({"x":1})", "1"}) {
+    table.emplace_back(R"({"id":1,"do":"step","tip":)" + bad + '}', one_tip);
+  }
   for (const auto& [line, beginning] : table) {
     EXPECT_TRUE(outcome(line).starts_with("1 " + beginning)) << line << '\n' << outcome(line);
   }

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "apps/command_process.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
@@ -113,8 +113,7 @@ std::size_t occurrences(const std::string& text, std::string_view part) {
 
 TEST_F(NamedMesh, EveryCommandTellsOfMetresHolesAndWindingOnceOnStderr) {
   write_cube("metres.stl", 0.001);
-  Surface bad = make_cube(25.0);
-  bad.triangles.pop_back();
+  Surface bad = opened(make_cube(25.0));
   std::swap(bad.triangles[0][0], bad.triangles[0][1]);
   write_binary_stl(folder.file("bad.stl"), bad);
   for (const std::string& command : commands) {

@@ -3,8 +3,8 @@
 
 #include "engine/geometry/reference_separation.h"
 #include "engine/geometry/tools.h"
+#include "guards.h"
 #include "keepout/activation/certified.h"
-#include "keepout/activation/convex_tool_rule.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/error.h"
 #include "keepout/index/brute_force.h"
@@ -22,16 +22,11 @@ constexpr double margin = 0.2;
 constexpr double radius = 2.0;
 constexpr double tiny = 1e-8;  // far above the rule's tolerance, far below the margin
 
-std::shared_ptr<const Mesh> shape(std::string_view name) {
-  return std::make_shared<const Mesh>(make_shape(name));
-}
-
 MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const ConvexTool& tool,
                        std::unique_ptr<NarrowPhase> narrow_phase = nullptr,
                        StepOptions step_options = {.radius = radius, .margin = margin}) {
-  return {mesh, std::make_unique<PdTree>(mesh),
-          std::make_unique<ConvexToolRule>(tool, std::move(narrow_phase)),
-          std::make_unique<ActiveSet>(), step_options};
+  return guard_of<PdTree>(mesh, step_options, std::make_unique<ActiveSet>(),
+                          std::make_unique<ConvexToolRule>(tool, std::move(narrow_phase)));
 }
 
 /// Returns the distance that a plane proves, in 64-bit arithmetic: at most the true one, for any
@@ -85,15 +80,12 @@ class ToolJudge {
 
 TEST(ConvexToolRule, ASphereMovesAsAPointWithAsMuchMoreMargin) {
   for (const std::string name : {"star_bumps", "gear", "saddle_terrain"}) {
-    const auto mesh = shape(name);
+    const auto mesh = mesh_of(name);
     const double r = 1.5;
     MotionConstraint ours = guard(mesh, ConvexTool::sphere(r), nullptr,
                                   {.radius = radius, .margin = margin, .refinements = 0});
-    MotionConstraint points{mesh,
-                            std::make_unique<PdTree>(mesh),
-                            std::make_unique<CertifiedRule>(),
-                            std::make_unique<ActiveSet>(),
-                            {.radius = radius, .margin = margin + r, .refinements = 0}};
+    MotionConstraint points =
+        guard_of<PdTree>(mesh, {.radius = radius, .margin = margin + r, .refinements = 0});
     Random random(9);
     Vec3 tip(60, 10, 30);
     int held = 0;
@@ -112,8 +104,7 @@ TEST(ConvexToolRule, ASphereMovesAsAPointWithAsMuchMoreMargin) {
 
 TEST(ConvexToolRule, AsksForNoPolytopeAroundTheTipAlone) {
   // A shaft below the tip: free space around the tip says nothing of it.
-  MotionConstraint shaft = guard(shape("cube"), ConvexTool::capsule({0, 0, 0}, {0, 0, -10}, 0.5),
-                                 nullptr, {.radius = radius, .margin = margin});
+  MotionConstraint shaft = guard(mesh_of("cube"), ConvexTool::capsule({0, 0, 0}, {0, 0, -10}, 0.5));
   const Polytope polytope = shaft.free_polytope(Vec3(0, 0, 61), 5.0);
   EXPECT_EQ(polytope.status, Status::unsupported);
   EXPECT_FALSE(polytope.ok());
@@ -122,7 +113,7 @@ TEST(ConvexToolRule, AsksForNoPolytopeAroundTheTipAlone) {
 }
 
 TEST(ConvexToolRule, IsNotLedOutByItsTip) {
-  const auto mesh = shape("cube");
+  const auto mesh = mesh_of("cube");
   const auto make = [&](Inside inside) {
     return MotionConstraint(mesh, std::make_unique<PdTree>(mesh),
                             std::make_unique<ConvexToolRule>(ConvexTool::sphere(1.0)),
@@ -134,7 +125,7 @@ TEST(ConvexToolRule, IsNotLedOutByItsTip) {
 }
 
 TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
-  const auto mesh = shape("star_bumps");
+  const auto mesh = mesh_of("star_bumps");
   const double r = 1.5;
   ConvexToolRule rule(ConvexTool::sphere(r));
   const Vec3 tip = mesh->vertex(17) * 1.1;
@@ -170,7 +161,7 @@ TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
 }
 
 TEST(ConvexToolRule, ABoxSlidesAlongAFaceAtTheMargin) {
-  const auto mesh = shape("cube");  // its faces are at +-50
+  const auto mesh = mesh_of("cube");  // its faces are at +-50
   const ConvexTool box = ConvexTool::box({Vec3(-2, -1, -1), Vec3(2, 1, 3)});
   MotionConstraint constraint = guard(mesh, box);
   Vec3 tip(-30, 3, 60);
@@ -184,7 +175,7 @@ TEST(ConvexToolRule, ABoxSlidesAlongAFaceAtTheMargin) {
 }
 
 TEST(ConvexToolRule, AToolThatIsTooCloseIsLedOffAndComesNoNearer) {
-  const auto mesh = shape("cube");
+  const auto mesh = mesh_of("cube");
   const ConvexTool box = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   MotionConstraint constraint = guard(mesh, box);
   ToolJudge judge(mesh, box);
@@ -205,7 +196,7 @@ TEST(ConvexToolRule, AToolThatIsTooCloseIsLedOffAndComesNoNearer) {
 }
 
 TEST(ConvexToolRule, AToolTooCloseOnBothSidesStandsStill) {
-  const auto mesh = shape("thin_plates");  // gaps of 1
+  const auto mesh = mesh_of("thin_plates");  // gaps of 1
   const Vec3 in_the_gap(0, 0, mesh->bounds().low.z() + 1.5);
   const ConvexTool box = ConvexTool::box({Vec3(-1, -1, -0.4), Vec3(1, 1, 0.4)});
   MotionConstraint constraint = guard(mesh, box);
@@ -217,7 +208,7 @@ TEST(ConvexToolRule, AToolTooCloseOnBothSidesStandsStill) {
 }
 
 TEST(ConvexToolRule, AToolThatTouchesOrOverlapsStandsStill) {
-  const auto mesh = shape("cube");
+  const auto mesh = mesh_of("cube");
   const ConvexTool box = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   MotionConstraint constraint = guard(mesh, box);
   for (const double height : {51.0, 50.5, 49.5}) {
@@ -228,7 +219,7 @@ TEST(ConvexToolRule, AToolThatTouchesOrOverlapsStandsStill) {
 }
 
 TEST(ConvexToolRule, WhatCannotBeKeptIsRefusedWhenItIsMade) {
-  const auto mesh = shape("cube");
+  const auto mesh = mesh_of("cube");
   const ConvexTool tool = ConvexTool::sphere(1.0);
   EXPECT_THROW(guard(mesh, tool, nullptr, {.radius = radius, .margin = 0.0}), Error);
   EXPECT_THROW(guard(mesh, tool, nullptr, {.radius = radius, .margin = 1e-12}), Error);
@@ -279,7 +270,7 @@ TEST(ConvexToolLoop, NoToolComesNearerThanTheMarginOnAnyShape) {
   Random random(1);
   for (const std::string name :
        {"cube", "gear", "cortex", "thin_plates", "needles", "star_bumps"}) {
-    const auto mesh = shape(name);
+    const auto mesh = mesh_of(name);
     for (const test::NamedTool& named : test::tools_of_each_kind(4.0, random)) {
       SCOPED_TRACE(name + " " + named.name);
       MotionConstraint constraint = guard(mesh, named.tool);
@@ -292,7 +283,7 @@ TEST(ConvexToolLoop, NoToolComesNearerThanTheMarginOnAnyShape) {
 }
 
 TEST(ConvexToolLoop, NoNarrowPhaseCanTakeTheToolIn) {
-  const auto mesh = shape("gear");
+  const auto mesh = mesh_of("gear");
   for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
     Random random(3);
     for (const test::NamedTool& named : test::tools_of_each_kind(4.0, random)) {
@@ -344,7 +335,7 @@ class Liar final : public NarrowPhase {
 TEST(ConvexToolLoop, ALyingNarrowPhaseCostsMotionAndNotSafety) {
   Random random(6);
   for (const std::string name : {"cube", "gear"}) {
-    const auto mesh = shape(name);
+    const auto mesh = mesh_of(name);
     for (const test::NamedTool& named : test::tools_of_each_kind(4.0, random)) {
       SCOPED_TRACE(name + " " + named.name);
       MotionConstraint constraint = guard(mesh, named.tool, std::make_unique<Liar>());
@@ -355,7 +346,7 @@ TEST(ConvexToolLoop, ALyingNarrowPhaseCostsMotionAndNotSafety) {
 }
 
 TEST(ConvexToolLoop, JointsAreHeldToTheSamePlanes) {
-  const auto mesh = shape("gear");
+  const auto mesh = mesh_of("gear");
   Random random(8);
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 7);
   for (int i = 0; i < jacobian.size(); ++i) jacobian.data()[i] = normal(random);
@@ -379,10 +370,8 @@ TEST(ConvexToolLoop, JointsAreHeldToTheSamePlanes) {
 }
 
 TEST(ConvexToolLoop, GuidesHoldAsWell) {
-  const auto mesh = shape("gear");
-  const auto vertices = mesh->vertices();
-  const Vec3 top = *std::ranges::max_element(vertices, {}, [](const Vec3& v) { return v.z(); });
-  const Vec3 start = top + Vec3(0, 0, 8.0);
+  const auto mesh = mesh_of("gear");
+  const Vec3 start = highest_vertex(*mesh) + Vec3(0, 0, 8.0);
   const Guide corridor = Guide::point("corridor", Region::tube(start, Vec3::UnitZ(), 1.0));
   Random random(9);
   for (const test::NamedTool& named : test::tools_of_each_kind(3.0, random)) {

@@ -176,10 +176,7 @@ TEST(TreeWalk, StopsOnceItsTreeIsRefit) {
   const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
   const StepOptions options{.radius = 5.0, .margin = 1.0};
   ASSERT_EQ(sources.walking(motion, options).status, Status::free);
-  Surface raised{{sources.mesh->vertices().begin(), sources.mesh->vertices().end()},
-                 {sources.mesh->triangles().begin(), sources.mesh->triangles().end()}};
-  for (Vec3& v : raised.vertices) v.z() += 5.0;
-  const auto mesh = mesh_of(std::move(raised));
+  const auto mesh = mesh_of(moved(surface_of(*sources.mesh), {0.0, 0.0, 5.0}));
   sources.tree->refit(mesh);
   const Outcome stopped = sources.walking(motion, options);
   EXPECT_EQ(stopped.status, Status::mesh_changed);

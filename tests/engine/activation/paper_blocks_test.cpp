@@ -193,12 +193,6 @@ TEST_P(PaperBlocksOn, TheStepsAreThoseOfThePlainRuleAndAlikeOnEachTarget) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, PaperBlocksOn, testing::ValuesIn(names_of_shapes()), by_name);
 
-/// The shape with coordinates that are floats, as those of STL files are.
-Surface as_floats(Surface surface) {
-  for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
-  return surface;
-}
-
 TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
   PaperForms forms(as_floats(make_gear(1.0)));
   ASSERT_TRUE(forms.tree->tree().frame().is_exact());
@@ -209,16 +203,12 @@ TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleWhereTheFloatsAreExact) {
 
 TEST(PaperBlocks, ThePlanesAreThoseOfThePlainRuleFarFromTheOriginAndAtEveryScale) {
   for (const double scale : {1e-13, 1e-9, 1e9, 1e12}) {
-    Surface surface = make_cortex(6.0, 1);
-    for (Vec3& v : surface.vertices) v *= scale;
-    PaperForms forms(surface);
+    PaperForms forms(enlarged(make_cortex(6.0, 1), scale));
     std::size_t planes = 0;
     expect_same_planes(forms, 4, planes);
     EXPECT_GT(planes, 1000u) << scale;
   }
-  Surface surface = make_cortex(6.0, 1);
-  for (Vec3& v : surface.vertices) v += Vec3(1e6, -2e6, 3e5);
-  PaperForms forms(surface);
+  PaperForms forms(moved(make_cortex(6.0, 1), {1e6, -2e6, 3e5}));
   std::size_t planes = 0;
   expect_same_planes(forms, 4, planes);
   EXPECT_GT(planes, 1000u);
@@ -303,10 +293,7 @@ TEST(PaperBlocks, StopsOnceItsTreeIsRefit) {
   PaperForms forms(make_cube(5.0));
   const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
   ASSERT_EQ(forms.step(motion, {.radius = 5.0, .margin = 0.0}).status, Status::free);
-  Surface raised{{forms.mesh->vertices().begin(), forms.mesh->vertices().end()},
-                 {forms.mesh->triangles().begin(), forms.mesh->triangles().end()}};
-  for (Vec3& v : raised.vertices) v.z() += 5.0;
-  forms.tree->refit(mesh_of(std::move(raised)));
+  forms.tree->refit(mesh_of(moved(surface_of(*forms.mesh), {0.0, 0.0, 5.0})));
   const Step stopped = forms.step(motion, {.radius = 5.0, .margin = 0.0});
   EXPECT_EQ(stopped.status, Status::mesh_changed);
   EXPECT_EQ(stopped.motion, Vec3::Zero());

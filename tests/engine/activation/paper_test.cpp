@@ -213,8 +213,8 @@ TEST(PaperRule, TheMarginSetsEveryPlaneBack) {
 TEST(PaperRule, DoesNotDependOnHowTrianglesAreRotated) {
   Random random(7);
   const auto mesh = fan(0.5, -1);
-  Surface rotated{{mesh->vertices().begin(), mesh->vertices().end()}, {}};
-  for (const Corners& c : mesh->triangles()) rotated.triangles.push_back({c[1], c[2], c[0]});
+  Surface rotated = surface_of(*mesh);
+  for (Corners& c : rotated.triangles) c = {c[1], c[2], c[0]};
   const auto other = mesh_of(rotated);
   PaperRule rule, other_rule;
   for (int i = 0; i < 1000; ++i) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "hostile_triangle.h"
 #include "keepout/activation/facet.h"
 #include "keepout/fixtures/random.h"
 #include "trials.h"
@@ -60,35 +61,6 @@ double reach(const Triangle& triangle, const Vec3& query) {
       {(triangle[0] - query).norm(), (triangle[1] - query).norm(), (triangle[2] - query).norm()});
 }
 
-/// Triangles from fair to hopeless: needles, caps, segments, points, and a far-away frame.
-Triangle random_triangle(Random& random) {
-  const auto point = [&]() -> Vec3 { return random.direction() * random.uniform(); };
-  Triangle t;
-  for (Vec3& corner : t) corner = point();
-  const double tiny = std::pow(10.0, random.uniform(-18.0, 0.0));
-  switch (random.below(8)) {
-    case 0:  // needle: two corners close together
-      t[2] = t[1] + tiny * point();
-      break;
-    case 1:  // cap: the third corner next to the opposite side
-      t[2] = t[0] + random.uniform() * (t[1] - t[0]) + tiny * point();
-      break;
-    case 2:  // collinear, beyond the end
-      t[2] = t[0] + 2.0 * (t[1] - t[0]);
-      break;
-    case 3:  // a segment
-      t[random.below(3)] = t[random.below(3)];
-      break;
-    case 4:  // a point
-      t[1] = t[2] = t[0];
-      break;
-    default:
-      break;
-  }
-  std::swap(t[random.below(3)], t[random.below(3)]);
-  return t;
-}
-
 /// Queries near and far, and right on the triangle's face, edges and corners.
 Vec3 random_query(const Triangle& t, Random& random) {
   const double near = std::pow(10.0, random.uniform(-12.0, 3.0));
@@ -116,7 +88,7 @@ TEST(ClosestPoint, DistanceAgreesWithAnIndependentComputationInQuadruplePrecisio
   Random random(20261120);
   double worst_relative = 0.0;
   for (int i = 0; i < test::trials(1'000'000); ++i) {
-    const Triangle triangle = random_triangle(random);
+    const Triangle triangle = test::hostile_triangle(random);
     const Vec3 query = random_query(triangle, random);
     const double expected = independent_distance(triangle, query);
     const double got = closest_point(triangle, query).distance;
@@ -185,7 +157,7 @@ TEST(Facet, DistancesNearTheTipAreAsTheProofAssumes) {
 TEST(ClosestPoint, OffsetIsAPointOfTheTriangleAtTheDistanceGiven) {
   Random random(3);
   for (int i = 0; i < test::trials(100'000); ++i) {
-    const Triangle triangle = random_triangle(random);
+    const Triangle triangle = test::hostile_triangle(random);
     const Vec3 query = random_query(triangle, random);
     const ClosestPoint closest = closest_point(triangle, query);
     const double rounding = 1e-14 * reach(triangle, query);
@@ -199,7 +171,7 @@ TEST(ClosestPoint, IsTheSameToTheBitInWhateverOrderTheCornersAreGiven) {
   constexpr std::array<std::array<int, 3>, 6> orders{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
   for (int i = 0; i < test::trials(20'000); ++i) {
-    const Triangle t = random_triangle(random);
+    const Triangle t = test::hostile_triangle(random);
     const Vec3 query = random_query(t, random);
     const ClosestPoint expected = closest_point(t, query);
     for (const auto& order : orders) {

@@ -206,8 +206,7 @@ TYPED_TEST(TreeIndex, EveryProcessorBuildsTheSameTree) {
 /// With coordinates that are floats, and that are not.
 TEST(WideBvhLanes, EveryProcessorRefitsToTheSameTree) {
   for (const double stretch : {2.0, 1.1}) {
-    Surface surface = make_shape("cortex");
-    for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
+    Surface surface = as_floats(make_shape("cortex"));
     const auto before = mesh_of(surface);
     for (Vec3& v : surface.vertices) v.z() *= stretch;
     const auto after = mesh_of(surface);

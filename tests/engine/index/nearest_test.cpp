@@ -91,9 +91,7 @@ TEST(NearestTriangle, IsNotLookedForOnceTheBudgetIsSpent) {
 
 TEST(NearestTriangle, IsFoundWhereFloatsOverflow) {
   for (const double scale : {1e-25, 1e17, 1e25}) {
-    Surface surface = make_shape("cube");
-    for (Vec3& vertex : surface.vertices) vertex *= scale;
-    const auto mesh = mesh_of(std::move(surface));
+    const auto mesh = mesh_of(enlarged(make_shape("cube"), scale));
     const WideBvh tree(mesh);
     const BruteForce brute(mesh);
     Budget unlimited;

@@ -17,8 +17,17 @@ std::vector<Corners> windings(const Surface& surface) {
   return all;
 }
 
-void turn(Surface& surface, std::initializer_list<std::size_t> triangles) {
+/// Orients a surface, which must come to the windings of another one.
+Orientation oriented(Surface surface, const Surface& expected) {
+  const Orientation done = orient(surface);
+  EXPECT_EQ(windings(surface), windings(expected));
+  return done;
+}
+
+/// The surface with some triangles wound the other way.
+Surface turned(Surface surface, std::initializer_list<std::size_t> triangles) {
   for (const std::size_t t : triangles) std::swap(surface.triangles[t][0], surface.triangles[t][1]);
+  return surface;
 }
 
 /// Five times as large, about the same middle.
@@ -50,10 +59,7 @@ Surface moebius_strip(VertexId count) {
 
 TEST(Orient, TurnedTrianglesOfACubeAreTurnedBack) {
   const Surface cube = make_cube(50.0);
-  Surface surface = cube;
-  turn(surface, {0, 3, 7});
-  const Orientation done = orient(surface);
-  EXPECT_EQ(windings(surface), windings(cube));
+  const Orientation done = oriented(turned(cube, {0, 3, 7}), cube);
   EXPECT_EQ(done.turned, 3u);
   EXPECT_EQ(done.disagreeing, 3u);
   EXPECT_EQ(done.parts, 1u);
@@ -63,10 +69,7 @@ TEST(Orient, TurnedTrianglesOfACubeAreTurnedBack) {
 
 TEST(Orient, AClosedPartThatIsInsideOutIsTurnedAsAWhole) {
   const Surface sound = torus(10);
-  Surface surface = flipped(sound);
-  turn(surface, {5});
-  const Orientation done = orient(surface);
-  EXPECT_EQ(windings(surface), windings(sound));
+  const Orientation done = oriented(turned(flipped(sound), {5}), sound);
   EXPECT_EQ(done.disagreeing, 1u);
   EXPECT_EQ(done.turned, 199u);
   EXPECT_EQ(done.inside_out_parts, 1u);
@@ -74,9 +77,8 @@ TEST(Orient, AClosedPartThatIsInsideOutIsTurnedAsAWhole) {
 
 TEST(Orient, EachPartIsDecidedByItself) {
   const Surface sound = together(tetrahedron(), moved(tetrahedron(), {1e4, 0, 0}));
-  Surface surface = together(tetrahedron(), flipped(moved(tetrahedron(), {1e4, 0, 0})));
-  const Orientation done = orient(surface);
-  EXPECT_EQ(windings(surface), windings(sound));
+  const Orientation done =
+      oriented(together(tetrahedron(), flipped(moved(tetrahedron(), {1e4, 0, 0}))), sound);
   EXPECT_EQ(done.closed_parts, 2u);
   EXPECT_EQ(done.inside_out_parts, 1u);
   EXPECT_EQ(done.nested_parts, 0u);
@@ -84,38 +86,27 @@ TEST(Orient, EachPartIsDecidedByItself) {
 
 TEST(Orient, APartWithinAnotherKeepsItsWindingRelativeToIt) {
   const Surface hollow = together(flipped(tetrahedron()), around(tetrahedron()));
-  Surface surface = hollow;
-  EXPECT_EQ(orient(surface).nested_parts, 1u);
-  EXPECT_EQ(windings(surface), windings(hollow));
-  surface = flipped(hollow);
-  turn(surface, {6});
-  const Orientation done = orient(surface);
-  EXPECT_EQ(windings(surface), windings(hollow));
+  EXPECT_EQ(oriented(hollow, hollow).nested_parts, 1u);
+  const Orientation done = oriented(turned(flipped(hollow), {6}), hollow);
   EXPECT_EQ(done.inside_out_parts, 1u);
   EXPECT_EQ(done.nested_parts, 1u);
   const Surface island = together(tetrahedron(), around(tetrahedron()));
-  surface = island;
-  EXPECT_EQ(orient(surface).turned, 0u);
+  EXPECT_EQ(oriented(island, island).turned, 0u);
 }
 
 TEST(Orient, BesideIsNotWithin) {
   // The small part is in the box of the large one, but behind its slanted face.
   Surface small = tetrahedron();
   for (Vec3& v : small.vertices) v = 0.1 * v + Vec3::Constant(0.8);
-  Surface surface = together(tetrahedron(), flipped(small));
-  const Orientation done = orient(surface);
+  const Orientation done =
+      oriented(together(tetrahedron(), flipped(small)), together(tetrahedron(), small));
   EXPECT_EQ(done.nested_parts, 0u);
   EXPECT_EQ(done.inside_out_parts, 1u);
-  EXPECT_EQ(windings(surface), windings(together(tetrahedron(), small)));
 }
 
 TEST(Orient, AnOpenSurfaceAgreesAndKeepsMostWindings) {
-  Surface surface = flipped(tetrahedron());
-  surface.triangles.pop_back();
-  const Surface expected = surface;
-  turn(surface, {1});
-  const Orientation done = orient(surface);
-  EXPECT_EQ(windings(surface), windings(expected));
+  const Surface open = opened(flipped(tetrahedron()));
+  const Orientation done = oriented(turned(open, {1}), open);
   EXPECT_EQ(done.open_parts, 1u);
   EXPECT_EQ(done.closed_parts, 0u);
   EXPECT_EQ(done.turned, 1u);
@@ -142,11 +133,9 @@ TEST(Orient, SolidsThatTouchAlongAnEdgeAreClosed) {
   Surface other = tetrahedron();
   for (Vec3& v : other.vertices) v = {v.x(), -v.y(), -v.z()};  // half a turn about x
   const Surface sound = weld(together(tetrahedron(), other));
-  Surface surface = flipped(sound);
-  const Orientation done = orient(surface);
+  const Orientation done = oriented(flipped(sound), sound);
   EXPECT_EQ(done.closed_parts, 2u);
   EXPECT_EQ(done.inside_out_parts, 2u);
-  EXPECT_EQ(windings(surface), windings(sound));
 }
 
 TEST(Orient, ASheetOfTwoLayersHasNoOutside) {

@@ -50,9 +50,7 @@ TEST(Doctor, AClosedMeshWithANegativeVolumeIsInsideOut) {
 }
 
 TEST(Doctor, AnOpenMeshIsNeverInsideOut) {
-  Surface open = flipped(tetrahedron());
-  open.triangles.pop_back();
-  const MeshFindings findings = examine(open);
+  const MeshFindings findings = examine(opened(flipped(tetrahedron())));
   EXPECT_LT(findings.signed_volume, 0.0);
   EXPECT_FALSE(findings.is_inside_out());
 }
@@ -73,9 +71,7 @@ TEST(Doctor, CountsHandles) {
 
 TEST(Doctor, CountsEachBoundaryEdgeOnce) {
   EXPECT_EQ(examine(single_triangle()).boundary_edges, 3u);
-  Surface open = tetrahedron();
-  open.triangles.pop_back();
-  const MeshFindings findings = examine(open);
+  const MeshFindings findings = examine(opened(tetrahedron()));
   EXPECT_EQ(findings.boundary_edges, 3u);
   EXPECT_EQ(findings.edges, 6u);
   EXPECT_FALSE(findings.is_closed());
@@ -236,8 +232,7 @@ TEST(Doctor, FaultsAreWhereTheyWereMade) {
 }
 
 TEST(Doctor, OnePlaceOfEachHoleComesFirst) {
-  Surface open = tetrahedron();
-  open.triangles.pop_back();
+  const Surface open = opened(tetrahedron());
   const Surface two = together(open, moved(open, {10, 0, 0}));
   const FaultPlaces holes = keepout::examine(Mesh(two), 2).places.boundary_edges;
   EXPECT_EQ(holes.groups, 2u);

@@ -227,17 +227,15 @@ TEST_F(LoadMesh, PlyStripsAndPointCloudsAreErrors) {
 
 TEST_F(LoadMesh, PlyHeadersThatAreNotUnderstoodAreErrorsWithTheirLine) {
   const std::string ply = as_text_ply(single_triangle());
-  const auto message = [&](const char* from, const char* to) {
-    return complaint("mesh.ply", replaced(ply, from, to));
-  };
-  EXPECT_CONTAINS(message("float x", "quaternion x"), "line 5: unknown type");
-  EXPECT_CONTAINS(message("ascii 1.0", "ascii 2.0"), "line 2");
-  EXPECT_CONTAINS(message("ascii", "morse"), "line 2");
-  EXPECT_CONTAINS(message("comment made", "remark made"), "line 3");
-  EXPECT_CONTAINS(message("list uchar", "list float"), "line 10");
-  EXPECT_CONTAINS(message("float z", "float height"), "no z");
-  EXPECT_CONTAINS(message("vertex_indices", "corners"), "vertex_indices");
-  EXPECT_CONTAINS(message("element vertex", "element point"), "no vertices");
+  expect_faults("mesh.ply", ply,
+                {{"float x", "quaternion x", "line 5: unknown type"},
+                 {"ascii 1.0", "ascii 2.0", "line 2"},
+                 {"ascii", "morse", "line 2"},
+                 {"comment made", "remark made", "line 3"},
+                 {"list uchar", "list float", "line 10"},
+                 {"float z", "float height", "no z"},
+                 {"vertex_indices", "corners", "vertex_indices"},
+                 {"element vertex", "element point", "no vertices"}});
   EXPECT_CONTAINS(complaint("mesh.ply", ply.substr(0, ply.find("end_header"))),
                   "within its header");
 }
@@ -284,15 +282,13 @@ TEST_F(LoadMesh, TextStlMayHaveSeveralSolidsAndAnyLayout) {
 
 TEST_F(LoadMesh, TextStlThatIsMalformedIsAnErrorWithItsLine) {
   const std::string stl = as_text_stl(single_triangle());
-  const auto message = [&](const char* from, const char* to) {
-    return complaint("mesh.stl", replaced(stl, from, to));
-  };
-  EXPECT_CONTAINS(message("endsolid", "endsolit"), "line 9: expected 'facet'");
-  EXPECT_CONTAINS(message("  endloop\n", ""), "line 7: expected 'endloop'");
-  EXPECT_CONTAINS(message("    vertex 1 0 0\n", ""), "expected 'vertex', found 'endloop'");
-  EXPECT_CONTAINS(message("vertex 1 0 0", "vertex 1 0 0\nvertex 1 1 0"), "more than three corners");
-  EXPECT_CONTAINS(message("vertex 1 0 0", "vertex 1 0"), "expected a number, found 'vertex'");
-  EXPECT_CONTAINS(message("facet normal 0 0 1", "facet"), "expected 'normal'");
+  expect_faults("mesh.stl", stl,
+                {{"endsolid", "endsolit", "line 9: expected 'facet'"},
+                 {"  endloop\n", "", "line 7: expected 'endloop'"},
+                 {"    vertex 1 0 0\n", "", "expected 'vertex', found 'endloop'"},
+                 {"vertex 1 0 0", "vertex 1 0 0\nvertex 1 1 0", "more than three corners"},
+                 {"vertex 1 0 0", "vertex 1 0", "expected a number, found 'vertex'"},
+                 {"facet normal 0 0 1", "facet", "expected 'normal'"}});
   EXPECT_CONTAINS(complaint("mesh.stl", "solid\nendsolid\n"), "no faces");
   EXPECT_CONTAINS(complaint("mesh.stl", stl.substr(0, stl.find("endsolid"))), "cut short");
 }

@@ -192,8 +192,7 @@ TEST_P(LoadMeshText, TextIsReadToTheNearestNumberAsDocumented) {
   // What load_mesh.h promises: our text PLY declares floats, and the other formats nothing.
   const bool is_ply = GetParam().name == "TextPly";
   for (const double scale : {0.01, 1.0, 100.0}) {
-    Surface surface = torus(40);
-    for (Vec3& v : surface.vertices) v *= scale;
+    const Surface surface = enlarged(torus(40), scale);
     for (const auto style : {std::ios_base::fixed, std::ios_base::scientific}) {
       notation = style;
       const std::string contents = GetParam().write(surface);
@@ -219,8 +218,7 @@ TEST_P(LoadMeshText, TextIsReadToTheNearestNumberAsDocumented) {
 TEST_P(LoadMeshText, WhatWasPrintedFromFloatsIsReadAsFloats) {
   for (const int some : {3, 6, 7, 8, 9, 12, 17}) {
     for (const double scale : {1e-3, 1.0, 320.0}) {
-      Surface surface = torus(20);
-      for (Vec3& v : surface.vertices) v = (scale * v).cast<float>().cast<double>();
+      const Surface surface = as_floats(enlarged(torus(20), scale));
       digits = some;
       const std::string contents = GetParam().write(surface);
       digits = 9;
@@ -249,9 +247,7 @@ TEST_P(LoadMeshText, ANumeralThatNoFloatIsPrintedInIsReadAsADouble) {
 }
 
 TEST_F(LoadMesh, BinaryCoordinatesAreExact) {
-  Surface surface = torus(30);
-  for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
-  surface = weld(surface);
+  const Surface surface = weld(as_floats(torus(30)));
   for (const int f : {0, 3, 4, 5}) {
     const LoadedMesh loaded = load(formats()[f].file, formats()[f].write(surface));
     ASSERT_EQ(loaded.mesh->vertex_count(), surface.vertices.size());

@@ -367,6 +367,16 @@ class LoadMesh : public testing::Test {
   std::string complaint(std::string_view name, std::string_view contents) const {
     return complaint(folder.write(name, contents));
   }
+  /// A change to contents, and what load_mesh must say then.
+  struct Fault {
+    std::string_view from, to, says;
+  };
+  void expect_faults(std::string_view name, const std::string& good,
+                     std::initializer_list<Fault> faults) const {
+    for (const auto& [from, to, says] : faults) {
+      EXPECT_CONTAINS(complaint(name, replaced(good, from, to)), says) << from << " -> " << to;
+    }
+  }
   static std::string complaint(const fs::path& path) {
     const std::string message = error_of([&] { load_mesh(path); });
     EXPECT_TRUE(message.starts_with(path.string())) << message;

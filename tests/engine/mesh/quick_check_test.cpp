@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <utility>
 
-#include "keepout/fixtures/random.h"
-#include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/doctor.h"
+#include "meshes.h"
 #include "messages.h"
 
 namespace keepout {
@@ -50,11 +49,7 @@ TEST(QuickCheck, OfASoundMeshThereIsNothingToSay) {
 }
 
 /// The cube, so many times as large as its 100 mm.
-Mesh cube_times(double factor) {
-  Surface cube = make_cube(25.0);
-  for (Vec3& vertex : cube.vertices) vertex *= factor;
-  return Mesh(std::move(cube));
-}
+Mesh cube_times(double factor) { return Mesh(enlarged(make_cube(25.0), factor)); }
 
 TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
   const auto metres = quick_check(cube_times(0.001));
@@ -74,8 +69,7 @@ TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
 }
 
 TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {
-  Surface surface = make_cube(10.0);
-  surface.triangles.pop_back();
+  Surface surface = opened(make_cube(10.0));
   const auto open = quick_check(Mesh(surface));
   ASSERT_EQ(open.size(), 1u);
   EXPECT_CONTAINS(open[0], "the surface is open");
@@ -116,9 +110,7 @@ TEST(Watertight, IsWhatTheDoctorFinds) {
 TEST(Watertight, OneTriangleMoreLessOrTheOtherWayRoundIsNot) {
   const Surface cube = make_shape("cube");
   EXPECT_TRUE(is_watertight(Mesh(cube)));
-  Surface less = cube;
-  less.triangles.pop_back();
-  EXPECT_FALSE(is_watertight(Mesh(less)));
+  EXPECT_FALSE(is_watertight(Mesh(opened(cube))));
   Surface more = cube;
   more.triangles.push_back(cube.triangles.front());
   EXPECT_FALSE(is_watertight(Mesh(more)));

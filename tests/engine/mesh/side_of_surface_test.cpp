@@ -279,15 +279,8 @@ TEST(LeadOut, LeavesTheSurfaceItselfToTheFreeSide) {
 
 TEST(LeadOut, DoesNotLeadIntoANeighborThatStandsCloseBy) {
   // Two boxes, a hundredth apart; a tip two hundredths deep in the one.
-  Surface boxes = make_cube(1);
-  for (Vec3& v : boxes.vertices) v = v / 50.0 - Vec3(1, 0, 0);  // x from -2 to 0
-  const Surface one = boxes;
-  const auto count = static_cast<VertexId>(one.vertices.size());
-  for (const Vec3& v : one.vertices) boxes.vertices.push_back(v + Vec3(2.01, 0, 0));
-  for (const Corners& c : one.triangles) {
-    boxes.triangles.push_back({c[0] + count, c[1] + count, c[2] + count});
-  }
-  Classifier classify(boxes);
+  const Surface one = moved(enlarged(make_cube(1), 1.0 / 50.0), {-1, 0, 0});  // x from -2 to 0
+  Classifier classify(together(one, moved(one, {2.01, 0, 0})));
   Vec3 tip(-0.02, 0.1, 0.2);
   for (int cycle = 0; cycle < 20 && classify.inside(tip); ++cycle) {
     const double depth = classify.distance(tip);

@@ -89,9 +89,7 @@ TEST_F(LoadUnit, AUnitThatTheFileContradictsIsWarnedOf) {
 }
 
 TEST_F(LoadUnit, AMeshThatTheUnitMakesTooLargeIsWarnedOf) {
-  Surface surface = tetrahedron();
-  for (Vec3& v : surface.vertices) v *= 100.0;
-  const fs::path file = folder.write("mesh.off", as_off(surface));
+  const fs::path file = folder.write("mesh.off", as_off(enlarged(tetrahedron(), 100.0)));
   EXPECT_TRUE(load_mesh(file).warnings.empty());
   const LoadedMesh large = load_mesh(file, {.unit = "m"});
   ASSERT_EQ(large.warnings.size(), 1u);

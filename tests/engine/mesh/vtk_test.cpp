@@ -63,28 +63,24 @@ TEST_F(LoadMesh, AVtkFieldMayNameTheSpace) {
 
 TEST_F(LoadMesh, VtkThatIsMalformedIsAnErrorWithItsLine) {
   const std::string good = text_vtk(points + faces);
-  const auto message = [&](const char* from, const char* to) {
-    return complaint("mesh.vtk", replaced(good, from, to));
-  };
-  EXPECT_CONTAINS(message("3.0", "6.0"), "line 1: expected '# vtk DataFile Version'");
-  EXPECT_CONTAINS(message("ASCII", "MORSE"), "line 3: expected 'ASCII' or 'BINARY'");
-  EXPECT_CONTAINS(message("POLYDATA", "UNSTRUCTURED_GRID"), "only POLYDATA is a surface");
-  EXPECT_CONTAINS(message("POINTS 4", "POINTS 3"), "line 7: more numbers than the 9");
-  EXPECT_CONTAINS(message("POINTS 4", "POINTS 5"), "only 12 before 'POLYGONS'");
-  EXPECT_CONTAINS(message("POINTS 4", "POINTS 40000000000"), "more than the file has room for");
-  EXPECT_CONTAINS(message("POINTS 4", "POINTS 18446744073709551615"),
-                  "more than the file has room");
-  EXPECT_CONTAINS(message("POINTS 4 float", "POINTS 4"), "needs 2 words");
-  EXPECT_CONTAINS(message("float", "quaternion"), "unknown type 'quaternion'");
-  EXPECT_CONTAINS(message("POLYGONS 4 16", "POLYGONS 3 16"), "declares 3 cells, but has 4");
-  EXPECT_CONTAINS(message("3 1 2 3\n3 2 0 3\n", "3 1 200000 3\n3 2 0"),
-                  "ends within its 'POLYGONS'");
-  EXPECT_CONTAINS(message("POLYGONS 4 16", "POLYGONS 4 17"), "more than the file has room for");
-  EXPECT_CONTAINS(message("3 2 0 3", "4 2 0 3"), "fewer corners than it declares");
-  EXPECT_CONTAINS(message("3 2 0 3", "3 2 0 4"), "names vertex 4");
-  EXPECT_CONTAINS(message("3 2 0 3", "3 2 0 -1"), "expected a whole number, found '-1'");
-  EXPECT_CONTAINS(message("0 0 1\n", "0 0 nan\n"), "not finite");
-  EXPECT_CONTAINS(message("POLYGONS", "HEXAGONS"), "not understood: 'HEXAGONS'");
+  expect_faults("mesh.vtk", good,
+                {{"3.0", "6.0", "line 1: expected '# vtk DataFile Version'"},
+                 {"ASCII", "MORSE", "line 3: expected 'ASCII' or 'BINARY'"},
+                 {"POLYDATA", "UNSTRUCTURED_GRID", "only POLYDATA is a surface"},
+                 {"POINTS 4", "POINTS 3", "line 7: more numbers than the 9"},
+                 {"POINTS 4", "POINTS 5", "only 12 before 'POLYGONS'"},
+                 {"POINTS 4", "POINTS 40000000000", "more than the file has room for"},
+                 {"POINTS 4", "POINTS 18446744073709551615", "more than the file has room"},
+                 {"POINTS 4 float", "POINTS 4", "needs 2 words"},
+                 {"float", "quaternion", "unknown type 'quaternion'"},
+                 {"POLYGONS 4 16", "POLYGONS 3 16", "declares 3 cells, but has 4"},
+                 {"3 1 2 3\n3 2 0 3\n", "3 1 200000 3\n3 2 0", "ends within its 'POLYGONS'"},
+                 {"POLYGONS 4 16", "POLYGONS 4 17", "more than the file has room for"},
+                 {"3 2 0 3", "4 2 0 3", "fewer corners than it declares"},
+                 {"3 2 0 3", "3 2 0 4", "names vertex 4"},
+                 {"3 2 0 3", "3 2 0 -1", "expected a whole number, found '-1'"},
+                 {"0 0 1\n", "0 0 nan\n", "not finite"},
+                 {"POLYGONS", "HEXAGONS", "not understood: 'HEXAGONS'"}});
   EXPECT_CONTAINS(complaint("mesh.vtk", text_vtk(faces + points)), "before the POINTS");
   EXPECT_CONTAINS(complaint("mesh.vtk", text_vtk(points + points)), "twice");
   EXPECT_CONTAINS(complaint("mesh.vtk", text_vtk(points)), "no faces");
@@ -96,14 +92,12 @@ TEST_F(LoadMesh, OffsetsOfVtkThatDoNotFitAreErrors) {
       points + "POLYGONS 2 3\nOFFSETS vtktypeint64\n0 3\nCONNECTIVITY vtktypeint64\n0 1 2\n",
       "5.1");
   EXPECT_EQ(load("mesh.vtk", good).mesh->triangle_count(), 1u);
-  const auto message = [&](const char* from, const char* to) {
-    return complaint("mesh.vtk", replaced(good, from, to));
-  };
-  EXPECT_CONTAINS(message("0 3\n", "1 3\n"), "first offset");
-  EXPECT_CONTAINS(message("0 3\n", "0 4\n"), "from corner 0 to 4 of 3");
-  EXPECT_CONTAINS(message("0 3\n", "0 2\n"), "there are 3 corners, but the cells have 2");
-  EXPECT_CONTAINS(message("CONNECTIVITY", "CONNECTION"), "expected 'connectivity' and a type");
-  EXPECT_CONTAINS(message("vtktypeint64", "double"), "must have integers");
+  expect_faults("mesh.vtk", good,
+                {{"0 3\n", "1 3\n", "first offset"},
+                 {"0 3\n", "0 4\n", "from corner 0 to 4 of 3"},
+                 {"0 3\n", "0 2\n", "there are 3 corners, but the cells have 2"},
+                 {"CONNECTIVITY", "CONNECTION", "expected 'connectivity' and a type"},
+                 {"vtktypeint64", "double", "must have integers"}});
 }
 
 TEST_F(LoadMesh, BinaryVtkWithACoordinateOrAnIdThatIsNoneIsAnError) {
@@ -175,37 +169,38 @@ TEST_F(LoadMesh, AVtpFieldNamesTheSpace) {
   }
 }
 
+/// Returns the part of a VTP file that holds its mesh.
+std::string piece_of(const std::string& vtp) {
+  const std::size_t begin = vtp.find("<Piece");
+  return vtp.substr(begin, vtp.find("</PolyData>") - begin);
+}
+
 TEST_F(LoadMesh, VtpPiecesAreJoined) {
   const std::string one = as_vtp(single_triangle(), {});
-  const std::size_t begin = one.find("<Piece");
-  const std::size_t end = one.find("</PolyData>");
-  std::string two = one;
-  two.insert(end, replaced(one.substr(begin, end - begin), "0 1 2 ", "2 0 1 "));
-  const LoadedMesh loaded = load_unchecked("mesh.vtp", two);
+  const std::string piece = piece_of(one);
+  const std::string other = replaced(piece, "0 1 2 ", "2 0 1 ");
+  const LoadedMesh loaded = load_unchecked("mesh.vtp", replaced(one, piece, piece + other));
   ASSERT_EQ(loaded.mesh->triangle_count(), 2u);
   EXPECT_EQ(loaded.mesh->triangle(1)[0], loaded.mesh->triangle(0)[2]);
 }
 
 TEST_F(LoadMesh, VtpThatIsMalformedIsAnErrorThatSaysWhere) {
   const std::string good = as_vtp(tetrahedron(), {});
-  const auto message = [&](const char* from, const char* to) {
-    return complaint("mesh.vtp", replaced(good, from, to));
-  };
-  EXPECT_CONTAINS(message("</Points>", "</Point>"), "XML that is not well-formed, mismatched tag");
-  EXPECT_CONTAINS(message("PolyData", "UnstructuredGrid"), "only PolyData is a surface");
-  EXPECT_CONTAINS(message("<VTKFile", "<KTVFile"), "line 2: expected 'VTKFile'");
-  EXPECT_CONTAINS(message("NumberOfPoints=\"4", "NumberOfPoints=\"5"),
-                  "three for each of 5 points");
-  EXPECT_CONTAINS(message("NumberOfPoints=\"4", "NumberOfPoints=\"-4"), "must be a whole number");
-  EXPECT_CONTAINS(message("NumberOfPolys=\"4", "NumberOfPolys=\"5"), "4 numbers for 5 cells");
-  EXPECT_CONTAINS(message("Float32", "Float16"), "unknown type 'Float16'");
-  EXPECT_CONTAINS(message("type=\"Int64\"", "type=\"Float64\""), "must have integers");
-  EXPECT_CONTAINS(message("\"offsets\"", "\"onsets\""), "not both of their arrays");
-  EXPECT_CONTAINS(message("\"ascii\"", "\"morse\""), "must be ascii, binary or appended");
-  EXPECT_CONTAINS(message("UInt64", "UInt16"), "header_type");
-  EXPECT_CONTAINS(message("3 6 9 12", "3 6 9 13"), "from corner 9 to 13 of 12");
-  EXPECT_CONTAINS(message("3 6 9 12", "3 6 9 x"), "line 11: expected a whole number, found 'x'");
-  EXPECT_CONTAINS(message("Piece", "Peace"), "no Piece");
+  expect_faults("mesh.vtp", good,
+                {{"</Points>", "</Point>", "XML that is not well-formed, mismatched tag"},
+                 {"PolyData", "UnstructuredGrid", "only PolyData is a surface"},
+                 {"<VTKFile", "<KTVFile", "line 2: expected 'VTKFile'"},
+                 {"NumberOfPoints=\"4", "NumberOfPoints=\"5", "three for each of 5 points"},
+                 {"NumberOfPoints=\"4", "NumberOfPoints=\"-4", "must be a whole number"},
+                 {"NumberOfPolys=\"4", "NumberOfPolys=\"5", "4 numbers for 5 cells"},
+                 {"Float32", "Float16", "unknown type 'Float16'"},
+                 {"type=\"Int64\"", "type=\"Float64\"", "must have integers"},
+                 {"\"offsets\"", "\"onsets\"", "not both of their arrays"},
+                 {"\"ascii\"", "\"morse\"", "must be ascii, binary or appended"},
+                 {"UInt64", "UInt16", "header_type"},
+                 {"3 6 9 12", "3 6 9 13", "from corner 9 to 13 of 12"},
+                 {"3 6 9 12", "3 6 9 x", "line 11: expected a whole number, found 'x'"},
+                 {"Piece", "Peace", "no Piece"}});
 }
 
 TEST_F(LoadMesh, VtpInACompressionOtherThanZlibIsAnError) {
@@ -242,11 +237,9 @@ TEST_F(LoadMesh, VtpDataThatAreDamagedAreErrors) {
 TEST_F(LoadMesh, VtpArraysThatOverlapAreAnError) {
   // Otherwise a small file of many pieces would take any memory.
   const std::string raw = as_vtp(torus(20), {.format = Mode::appended_raw});
-  const std::size_t begin = raw.find("<Piece");
-  const std::size_t end = raw.find("</PolyData>");
-  std::string many = raw;
-  for (int i = 0; i < 3; ++i) many.insert(end, raw.substr(begin, end - begin));
-  EXPECT_CONTAINS(complaint("mesh.vtp", many), "overlaps another one");
+  const std::string piece = piece_of(raw);
+  EXPECT_CONTAINS(complaint("mesh.vtp", replaced(raw, piece, piece + piece + piece + piece)),
+                  "overlaps another one");
 }
 
 TEST_F(LoadMesh, EntitiesOfAVtpFileDoNotTakeMemory) {

@@ -9,17 +9,6 @@
 namespace keepout {
 namespace {
 
-/// Each triangle with vertices of its own, as an STL reader gives them.
-Surface unwelded(const Surface& surface) {
-  Surface apart;
-  for (const Corners& corners : surface.triangles) {
-    const auto first = static_cast<VertexId>(apart.vertices.size());
-    for (const VertexId v : corners) apart.vertices.push_back(surface.vertices[v]);
-    apart.triangles.push_back({first, first + 1, first + 2});
-  }
-  return apart;
-}
-
 TEST(Weld, MergesVerticesThatAreExactlyEqual) {
   const Surface welded = weld(unwelded(tetrahedron()));
   EXPECT_EQ(welded.vertices.size(), 4u);

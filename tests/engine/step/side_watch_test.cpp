@@ -82,9 +82,7 @@ TEST(SideWatch, WithJointsOrRowsOrWithoutRecoveryThereIsNoWayOut) {
 
 TEST(SideWatch, OnTheSurfaceALargeMeshDoesNotTrapTheTip) {
   // Where the tolerance is larger than a ten-thousandth of the recovery.
-  Surface huge = make_shape("cube");
-  for (Vec3& v : huge.vertices) v *= 100.0;
-  auto constraint = make_motion_constraint(mesh_of(huge), {});
+  auto constraint = make_motion_constraint(mesh_of(enlarged(make_shape("cube"), 100.0)), {});
   Vec3 tip(3, 4, 5000);
   Status last = Status::unsolved;
   for (int cycle = 0; cycle < 20; ++cycle) {

@@ -64,6 +64,9 @@ struct LoadedMesh {
   std::vector<std::string> notices = {};
 };
 
+/// Returns the extension of a file's name in lower case, with its dot: ".stl". Empty without one.
+std::string lower_extension(const std::filesystem::path& path);
+
 /// Reads a triangle mesh from a file and welds it exactly: STL, PLY, OBJ, OFF, legacy VTK or VTP,
 /// by its extension in any case. Polygons are triangulated. Nothing is repaired: see doctor.h. The
 /// mesh is scaled, turned or flipped only if the options say so, and `notices` reports it. A file
