@@ -158,6 +158,17 @@ def test_inspect_stops_while_it_finds_self_intersections(tmp_path, number):
     assert [path.name for path in tmp_path.iterdir()] == ["fan.off"]
 
 
+def test_the_benchmark_of_a_simulation_has_the_mesh_as_it_was_asked_for(tmp_path):
+    write_fan(tmp_path / "fan.off", 12)
+    process = start(tmp_path, *"simulate fan.off --scale 0.001 --strokes 1 --cycles 20 --bench --verbose --json r.json".split())
+    while not process.stdout.readline().startswith("5   "):
+        assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    rest_of(process)
+    row = json.loads((tmp_path / "r.json").read_text())["benchmark"]["rows"][0]
+    assert row["hits_mean"] > 11, "all 12 triangles are within 5 mm of a fan of 0.1 mm"
+
+
 def preparation(folder, text):
     """A program that prepares sample meshes, as KEEPOUT_PREPARE names it."""
     program = folder / "prepare"
