@@ -136,6 +136,20 @@ def test_compare_stops_while_it_records_problems(tmp_path):
     assert not json.loads((tmp_path / "r.json").read_text())["complete"]
 
 
+@pytest.mark.parametrize("line", ["compare cube --poses 1e6", "verify fan.off --steps 1e12"])
+def test_a_signal_before_anything_is_finished_ends_the_command_at_once(tmp_path, line):
+    write_fan(tmp_path / "fan.off", 100_000)
+    process = start(tmp_path, *line.split(), "--json", "r.json")
+    time.sleep(0.4)
+    process.send_signal(signal.SIGINT)
+    begin = time.monotonic()
+    _, err = process.communicate(timeout=patience)
+    assert time.monotonic() - begin < soon
+    assert process.returncode == 130
+    assert err.endswith("keepout: stopped before anything was finished: nothing was written\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["fan.off"]
+
+
 def write_fan(path, triangles):
     """Writes a cone of long triangles around one vertex: each is near all others."""
     corners = ["%.9g %.9g 0" % (50 * math.cos(a), 50 * math.sin(a))
