@@ -150,7 +150,7 @@ TEST(Example08, PushesIntoAMeshThatIsHollowBelowItsMiddle) {
   EXPECT_GT(held, 100);
 }
 
-TEST(Example08, SaysThatTheToolNeverTouchedAnInsideOutMeshInAnotherUnit) {
+TEST(Example08, SaysThatAnInsideOutMeshInAnotherUnitNeverLimitedTheTool) {
   const TemporaryFolder folder;
   const auto mesh = folder.path() / "inside_out.off";
   std::ofstream(mesh) << "OFF\n8 12 0\n"
@@ -161,7 +161,7 @@ TEST(Example08, SaysThatTheToolNeverTouchedAnInsideOutMeshInAnotherUnit) {
   const std::string text = said("08_crtk_loop", "'" + mesh.string() + "'", 1);
   EXPECT_CONTAINS(text, "held back in 0 of 4000 cycles");
   EXPECT_CONTAINS(text,
-                  "The tool never touched the mesh: see what `keepout inspect` says about it.");
+                  "The mesh never limited the tool: see what `keepout inspect` says about it.");
 }
 
 TEST(Example02, TheJointsKeepTheTipOut) {
