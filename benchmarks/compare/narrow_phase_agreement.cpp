@@ -145,6 +145,7 @@ std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::s
     const std::vector<ConvexTool> tools = turned(tool, random);
     for (const Relation& relation : relations) {
       const std::vector<Pair> same = make_pairs(mesh, tools, relation, pairs, random, stopped);
+      if (stopped()) return rows;
       for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
         auto row = agreement_of(backend, tools, same, progress, stopped);
         if (!row) return rows;
