@@ -105,7 +105,7 @@ int main(int argc, char** argv) try {
       energy.to_hand, energy.stored, energy.dissipated, energy.from_proxy, energy.active);
   if (held > 0) return 0;
   std::fprintf(stderr,
-               "The tool never touched the mesh: see what `keepout inspect` says about it.\n");
+               "The mesh never limited the tool: see what `keepout inspect` says about it.\n");
   return 1;
 } catch (const keepout::Error& error) {
   std::fprintf(stderr, "%s\n", error.what());

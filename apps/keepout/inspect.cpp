@@ -20,6 +20,8 @@
 #include "shared/findings.h"
 #include "shared/named_mesh.h"
 #include "shared/number_text.h"
+#include "shared/progress.h"
+#include "shared/stop_signal.h"
 
 namespace keepout::app {
 namespace {
@@ -37,6 +39,7 @@ struct Inspection {
 };
 
 Inspection examine_file(const InspectOptions& options) {
+  const StopSignal stop({}, BeforeWork::ends_process);
   Inspection inspection;
   LoadOptions load = options.load;
   load.check = MeshCheck::none;  // all that it would say, and more, is among the findings
@@ -45,8 +48,10 @@ Inspection examine_file(const InspectOptions& options) {
   const std::size_t most = options.page ? places_on_page : places_in_json;
   inspection.mesh = examine(mesh, most);
   if (options.self_intersections) {
+    Progress progress("inspect", mesh.triangle_count());
     const PdTree tree(inspection.loaded.mesh);
-    inspection.self_intersections = find_self_intersections(mesh, tree, most);
+    inspection.self_intersections =
+        find_self_intersections(mesh, tree, most, [&progress] { progress.advance(); });
   }
   inspection.findings = findings_of(inspection.mesh, inspection.self_intersections);
   return inspection;

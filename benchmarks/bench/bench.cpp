@@ -54,6 +54,7 @@ std::vector<Subject> chosen_subjects(const BenchOptions& options) {
     if (mesh != resampled_mesh || sizes.empty()) subjects.push_back({mesh});
   }
   if (is_default && options.full) subjects.push_back({"skull_1m"});
+  for (Subject& subject : subjects) subject.load = options.load;
   return subjects;
 }
 
@@ -157,9 +158,13 @@ void add_bench(CLI::App& app, BenchOptions& options) {
            "Rules to measure");
   add_list("--solver", options.selection.solvers, one_of_parts(solver_names(), solver_backends),
            "Solvers to measure");
-  command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
-      ->delimiter(',')
-      ->type_name("NAMES");
+  CLI::Option* const mesh = command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
+                                ->delimiter(',')
+                                ->type_name("NAMES");
+  add_load_options(command, options.load);
+  for (const char* name : {"--space", "--untagged", "--unit", "--scale", "--flip"}) {
+    command.get_option(name)->needs(mesh);
+  }
   command
       .add_option("--triangles", options.triangles,
                   "Sizes to which the bunny is resampled, 150 mm large as in the paper")
@@ -280,7 +285,7 @@ PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<con
                        const StopSignal& stop, std::ostream& out) {
   Benchmark benchmark;
   run_benchmark({.command = options.command,
-                 .subjects = {{.mesh = options.meshes.front().string()}},
+                 .subjects = {{.mesh = options.meshes.front().string(), .load = options.load}},
                  .combinations = combinations_of({.radii = {5.0, 1.0}}),
                  .queries = 1500,
                  .seconds = 0.3},

@@ -251,6 +251,7 @@ struct BenchOptions {
   bool is_speed = false;  // the table of ratios instead: see bench_speed()
   SpeedOptions speed;
   std::vector<std::string> meshes;     // fixtures or files; empty: the bunny
+  LoadOptions load = {};               // of the meshes that are named
   std::vector<std::size_t> triangles;  // sizes of the bunny; empty: up to `full`
   Selection selection;
   bool full = false;  // to 18 million triangles, and the skull; tens of minutes

@@ -198,6 +198,7 @@ void add_compare(CLI::App& app, CompareOptions& options) {
       "Hold all parts that can take each other's place to each other and to the truth, on the same "
       "input: indices, solvers, narrow phases");
   command.add_option("MESH", options.mesh, std::string(mesh_help))->capture_default_str();
+  add_load_options(command, options.load);
   add_number(command, "--poses", options.extent.poses, 6, 1'000'000,
              "Poses for the indices, under each rule");
   add_number(command, "--problems", options.extent.problems, 10, 1'000'000,
@@ -217,11 +218,15 @@ void add_compare(CLI::App& app, CompareOptions& options) {
 
 int compare(const CompareOptions& options, std::ostream& out) {
   OutputFiles outputs = options.files.open({options.mesh});
-  const Subject subject{.mesh = options.mesh};
+  const Subject subject{.mesh = options.mesh, .load = options.load};
+  // Until the first question is asked, as while the mesh is read and the poses are drawn, there is
+  // nothing to keep.
+  const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
-  const StopSignal stop(keeps_what_is_finished);
-  const Comparison comparison =
-      compare_parts(label_of(subject), mesh, options.extent, [&stop] { return stop.has_come(); });
+  const Comparison comparison = compare_parts(label_of(subject), mesh, options.extent, [&stop] {
+    stop.keep_from_now_on();
+    return stop.has_come();
+  });
   print(out, comparison);
   const CompareExtent& extent = options.extent;
   Json record = new_record(

@@ -14,6 +14,7 @@
 
 #include "keepout/fixtures/random.h"
 #include "keepout/index/query.h"
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/solvers/recording_solver.h"
 #include "record/record.h"
@@ -26,7 +27,7 @@ class App;
 
 namespace keepout::app {
 
-/// Whether whoever asked for the work wishes it to end.
+/// Returns true if the work shall end early.
 using Stopped = std::function<bool()>;
 inline bool never() { return false; }
 
@@ -147,11 +148,12 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
 
 /// The problems that closed-loop steps in contact pose: a hand presses the tip against the mesh and
 /// drags it along, motions of 0.05 to 0.2 mm, a sphere of 5 mm, a margin of 0.2 mm. In every third
-/// stroke seven joints move the tip, damped. Throws Error for an unknown rule, and where such
-/// motions pose too few problems, as on a mesh in another unit.
+/// stroke seven joints move the tip, damped. Calls `stopped` before each stroke, and then returns
+/// the problems until there. Throws Error for an unknown rule, and where such motions pose too few
+/// problems, as on a mesh in another unit.
 std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& mesh,
                                              const std::string& rule, std::size_t count,
-                                             std::uint64_t seed);
+                                             std::uint64_t seed, const Stopped& stopped = never);
 
 /// Adds a row that contradicts some of the others: with weights of order 1 they add up to
 /// 0 u >= a margin, 1e-6 to 1 of the motion asked for.
@@ -187,6 +189,7 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
 
 struct CompareOptions {
   std::string mesh = "skull";  // a real fixture or a file
+  LoadOptions load = {};
   CompareExtent extent;
   RecordFiles files;
   std::string command;  // that does it again

@@ -75,11 +75,14 @@ std::vector<ConvexTool> turned(const ConvexTool& tool, Random& random) {
   return tools;
 }
 
-/// From somewhere off the triangle along the normal there, to the distance wanted.
+/// From somewhere off the triangle along the normal there, to the distance wanted. Returns fewer
+/// pairs if it was stopped.
 std::vector<Pair> make_pairs(const Mesh& mesh, const std::vector<ConvexTool>& tools,
-                             const Relation& relation, std::size_t count, Random& random) {
+                             const Relation& relation, std::size_t count, Random& random,
+                             const Stopped& stopped) {
   std::vector<Pair> pairs;
-  for (std::size_t attempt = 0; pairs.size() < count && attempt < 100 * count; ++attempt) {
+  for (std::size_t attempt = 0; pairs.size() < count && attempt < 100 * count && !stopped();
+       ++attempt) {
     Pair pair;
     pair.tool = pairs.size() % tools.size();
     const ConvexTool& tool = tools[pair.tool];
@@ -141,7 +144,8 @@ std::vector<NarrowPhaseAgreement> compare_narrow_phases(const Mesh& mesh, std::s
   for (const auto& [name, tool] : kinds) {
     const std::vector<ConvexTool> tools = turned(tool, random);
     for (const Relation& relation : relations) {
-      const std::vector<Pair> same = make_pairs(mesh, tools, relation, pairs, random);
+      const std::vector<Pair> same = make_pairs(mesh, tools, relation, pairs, random, stopped);
+      if (stopped()) return rows;
       for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
         auto row = agreement_of(backend, tools, same, progress, stopped);
         if (!row) return rows;

@@ -54,9 +54,10 @@ void reserve(S& solver, const std::vector<RecordedProblem>& problems) {
 
 std::vector<RecordedProblem> problems_of(const std::shared_ptr<const Mesh>& mesh,
                                          const std::string& rule,
-                                         const SolverComparison& comparison) {
+                                         const SolverComparison& comparison,
+                                         const Stopped& stopped) {
   std::vector<RecordedProblem> problems =
-      record_problems(mesh, rule, comparison.problems, comparison.seed);
+      record_problems(mesh, rule, comparison.problems, comparison.seed, stopped);
   Random random(comparison.seed + 1);
   for (RecordedProblem& problem : problems) {
     constexpr double contradictory = 0.1;  // share of them
@@ -65,11 +66,14 @@ std::vector<RecordedProblem> problems_of(const std::shared_ptr<const Mesh>& mesh
   return problems;
 }
 
-std::vector<Expected> references_of(const std::vector<RecordedProblem>& problems) {
+/// Returns the solutions of the problems; fewer if it was stopped.
+std::vector<Expected> references_of(const std::vector<RecordedProblem>& problems,
+                                    const Stopped& stopped) {
   ActiveSet solver;
   reserve(solver, problems);
   std::vector<Expected> references;
   for (const RecordedProblem& problem : problems) {
+    if (stopped()) break;
     Solution solution;
     const SolveStatus status = solver.solve(problem.view(), solution);
     references.push_back({status, vector_of(solution.u)});
@@ -124,7 +128,7 @@ void judge(const RecordedProblem& problem, const Expected& reference, SolveStatu
 
 std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& mesh,
                                              const std::string& rule, std::size_t count,
-                                             std::uint64_t seed) {
+                                             std::uint64_t seed, const Stopped& stopped) {
   constexpr int approach = 10, strokes_at_once = 64, cycles = 30;
   constexpr double margin = 0.2;  // [mm]
   constexpr double radius = 5.0;  // [mm] as in the paper
@@ -151,6 +155,7 @@ std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& 
                   "unit, or too large or too narrow for them? Scale it to millimetres");
     }
     for (const Vec3& start : surface_points(*mesh, strokes_at_once, 0.5, random)) {
+      if (stopped()) return kept;
       const bool joints = stroke++ % 3 == 2;
       const TipJacobian::Matrix jacobian = random_jacobian(random);
       const Vec3 press = nearest(start).closest.offset.normalized();
@@ -209,9 +214,10 @@ std::vector<SolverAgreement> compare_solvers(const std::shared_ptr<const Mesh>& 
     std::vector<Expected> references;
     {
       const Progress progress("recording problems, " + rule, 1);
-      problems = problems_of(mesh, rule, comparison);
-      references = references_of(problems);
+      problems = problems_of(mesh, rule, comparison, stopped);
+      references = references_of(problems, stopped);
     }
+    if (stopped()) return rows;
     for (const std::string& name : comparison.solvers) {
       const SolverBackend& backend = solver_backends().named(name);
       const auto solver = backend.make();

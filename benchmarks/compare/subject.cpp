@@ -60,7 +60,8 @@ std::string title_of(const Subject& subject) {
 
 LoadedSubject load(const Subject& subject) {
   const UsedCores used;
-  LoadedSubject loaded{.mesh = load_named_mesh(subject.mesh).mesh, .seconds = 0.0, .cores = 0.0};
+  LoadedSubject loaded{
+      .mesh = load_named_mesh(subject.mesh, subject.load).mesh, .seconds = 0.0, .cores = 0.0};
   loaded.seconds = used.seconds();
   loaded.cores = used.own();
   if (subject.triangles == 0) return loaded;

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout::app {
@@ -16,6 +17,7 @@ namespace keepout::app {
 struct Subject {
   std::string mesh;           // the name of a real fixture, or a file
   std::size_t triangles = 0;  // the bunny, scaled and resampled to so many; 0: as it is in the file
+  LoadOptions load = {};
 };
 
 /// The mesh of which a curve over the number of triangles is made: the paper's.

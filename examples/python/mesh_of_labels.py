@@ -4,8 +4,8 @@
 python3 examples/python/mesh_of_labels.py LABELS.nii.gz MESH.ply
 python3 examples/python/mesh_of_labels.py LABELS.nrrd MESH.ply --label 2 --smooth 0
 
-Reads NIfTI by nibabel, and NRRD; takes the surface by marching cubes of scikit-image. Needs python3-nibabel and
-python3-skimage. Spacing, origin and direction of the image are applied, and the mesh states its space (SPACE=LPS or
+Reads NIfTI by nibabel, and NRRD, whose data may be in one other file (.nhdr); takes the surface by marching cubes of
+scikit-image. Needs python3-nibabel and python3-skimage. Spacing, origin and direction of the image are applied, and the mesh states its space (SPACE=LPS or
 SPACE=RAS). Its normals point out of the label.
 """
 
@@ -64,28 +64,35 @@ def vector(text):
 def read_nrrd(path):
     """Returns the labels, and the matrix (4, 4) from indices to RAS [mm]. Source: "Definition of NRRD File Format"."""
     content = path.read_bytes()
-    end = re.search(rb"\r?\n\r?\n", content)
-    if not content.startswith(b"NRRD0") or end is None:
+    header, *rest = re.split(rb"\r?\n\r?\n", content, maxsplit=1)
+    is_detached = re.search(rb"(?im)^data ?file:", header) is not None
+    if not content.startswith(b"NRRD0") or not (rest or is_detached):
         raise Unreadable("is not NRRD, or was cut short")
     fields = {}
-    for line in content[: end.start()].decode("ascii", "replace").splitlines()[1:]:
+    for line in header.decode("ascii", "replace").splitlines()[1:]:
         name, colon, value = line.partition(": ")
         if colon and not line.startswith("#"):
             fields[name.lower()] = value.strip()
     for name in ("type", "sizes", "encoding", "space", "space directions", "space origin"):
         if name not in fields:
             raise Unreadable(f"has no '{name}'; save it from a program that knows its space, such as 3D Slicer")
-    for name in ("data file", "datafile", "line skip", "byte skip", "lineskip", "byteskip"):
+    for name in ("line skip", "byte skip", "lineskip", "byteskip"):
         if fields.get(name, "0") != "0":
             raise Unreadable(f"has '{name}', which is not read; save it as one .nrrd file")
     if len(fields["sizes"].split()) != 3:
-        raise Unreadable(f"has {len(fields['sizes'].split())} axes, not 3; export the segmentation as one label map")
+        raise Unreadable(f"has {len(fields['sizes'].split())} axes, not 3; export it as one label map "
+                         "(3D Slicer: Segmentations, Export/import models and labelmaps)")  # fmt: skip
     kind = NRRD_TYPES.get(fields["type"])
     if kind is None:
         raise Unreadable(f"has numbers of the type '{fields['type']}', not integers, so it is no label map")
     if fields["space"].lower() not in NRRD_SPACES:
         raise Unreadable(f"is in the space '{fields['space']}'; save it as left-posterior-superior")
-    data = content[end.end() :]
+    data = rest[0] if rest else b""
+    if is_detached:
+        file = fields.get("data file", fields.get("datafile", ""))
+        if re.search(r"^LIST|%\d*d", file):
+            raise Unreadable(f"has its data in several files ('{file}'); save it as one .nrrd file")
+        data = (path.parent / file).read_bytes()
     if fields["encoding"] in ("gzip", "gz"):
         data = gzip.decompress(data)
     elif fields["encoding"] != "raw":

@@ -58,6 +58,10 @@ wrong_lines = [
     ("bench --spead", "there is no option --spead; did you mean '--speed'?"),
     ("compare --pair 3", "there is no option --pair; did you mean '--pairs'?"),
     ("plan --planer RRT", "there is no option --planer; did you mean '--planner'?"),
+    ("verify cube.off --unit m", "there is no option --unit: convert the mesh first, 'keepout convert IN OUT --unit ...'"),
+    ("plan cube.off --scale=9", "there is no option --scale: convert the mesh first, 'keepout convert IN OUT --scale ...'"),
+    ("plan cube.off --flip", "there is no option --flip: convert the mesh first, 'keepout convert IN OUT --flip', and"),
+    ("bench --unit m", "--unit has a meaning only together with --mesh"),
     # What is missing, too much, or does not go together.
     *((command, "an argument is missing: MESH is required") for command in ("inspect", "simulate", "serve")),
     *((command, "an argument is missing: FILE is required") for command in ("register", "report")),
@@ -408,6 +412,17 @@ def test_every_command_names_a_broken_mesh(world, command):
     needs_bench(command)
     out = "" if command in ("inspect", "serve") else "--json old.json"
     judge(world, f"{command} broken.stl {out}", 1, ["broken.stl: line 6: ", cut_short])
+
+
+@pytest.mark.skipif(is_sanitized, reason="the commands of keepout-bench are not built under sanitizers")
+@pytest.mark.parametrize("command", ["compare meters.off --poses 6 --problems 10 --pairs 10",
+                                     "bench --mesh meters.off --index wide_bvh --radius 1 --queries 20 --seconds 0.1"])
+def test_a_mesh_in_meters_is_scaled_on_request(world, tmp_path, command):
+    cube = (world / "cube.off").read_text()
+    (tmp_path / "meters.off").write_text(cube.replace("50", "0.05"))
+    done = run(tmp_path, f"{command} --unit m --out r.html")
+    assert done.returncode == 0, done.stderr
+    assert "meters.off: scaled by 1000, from m to mm" in done.stderr
 
 
 def test_a_closed_stdout_does_not_end_up_in_a_result(tmp_path):

@@ -2,6 +2,7 @@
 """How the keepout command ends: signals, a reader that is gone, progress without a terminal, and --quiet."""
 
 import json
+import math
 import os
 import re
 import shutil
@@ -113,6 +114,75 @@ def test_replay_keeps_the_steps_that_are_finished(tmp_path):
     assert out.startswith(f"{len(lines) - 1:,} steps -> s.csv")
 
 
+def test_verify_of_very_many_steps_stops_and_takes_little_memory(tmp_path):
+    process = start(tmp_path, "verify", "cube", "--steps", "1e12", "--json", "r.json")
+    time.sleep(2)
+    peak = int(re.search(r"VmHWM:\s*(\d+) kB", Path(f"/proc/{process.pid}/status").read_text())[1])
+    begin = time.monotonic()
+    status, _, err = stopped(process, signal.SIGINT)
+    assert status == 130, err
+    assert time.monotonic() - begin < soon
+    assert peak < 500_000, "a list of all trajectories takes 16 GB"
+    assert json.loads((tmp_path / "r.json").read_text())["steps_done"] > 0
+
+
+def test_compare_stops_while_it_records_problems(tmp_path):
+    process = start(tmp_path, "compare", "cube", "--poses", "6", "--problems", "1e6", "--json", "r.json")
+    time.sleep(3)
+    begin = time.monotonic()
+    status, _, err = stopped(process, signal.SIGINT)
+    assert status == 130, err
+    assert time.monotonic() - begin < soon
+    assert not json.loads((tmp_path / "r.json").read_text())["complete"]
+
+
+@pytest.mark.parametrize("line", ["compare cube --poses 1e6", "verify fan.off --steps 1e12"])
+def test_a_signal_before_anything_is_finished_ends_the_command_at_once(tmp_path, line):
+    write_fan(tmp_path / "fan.off", 100_000)
+    process = start(tmp_path, *line.split(), "--json", "r.json")
+    time.sleep(0.4)
+    process.send_signal(signal.SIGINT)
+    begin = time.monotonic()
+    _, err = process.communicate(timeout=patience)
+    assert time.monotonic() - begin < soon
+    assert process.returncode == 130
+    assert err.endswith("keepout: stopped before anything was finished: nothing was written\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["fan.off"]
+
+
+def write_fan(path, triangles):
+    """Writes a cone of long triangles around one vertex: each is near all others."""
+    corners = ["%.9g %.9g 0" % (50 * math.cos(a), 50 * math.sin(a))
+               for a in (2 * math.pi * i / triangles for i in range(triangles))]
+    faces = [f"3 0 {i + 1} {(i + 1) % triangles + 1}" for i in range(triangles)]
+    path.write_text("\n".join([f"OFF\n{triangles + 1} {triangles} 0\n0 0 10", *corners, *faces]) + "\n")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_inspect_stops_while_it_finds_self_intersections(tmp_path, number):
+    write_fan(tmp_path / "fan.off", 100_000)
+    process = start(tmp_path, "inspect", "fan.off", "--self-intersections", "--out", "page.html")
+    time.sleep(2)
+    process.send_signal(number)
+    begin = time.monotonic()
+    out, err = process.communicate(timeout=patience)
+    assert time.monotonic() - begin < soon
+    assert (process.returncode, out) == (130, "")
+    assert err == "keepout: stopped before anything was finished: nothing was written\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["fan.off"]
+
+
+def test_the_benchmark_of_a_simulation_has_the_mesh_as_it_was_asked_for(tmp_path):
+    write_fan(tmp_path / "fan.off", 12)
+    process = start(tmp_path, *"simulate fan.off --scale 0.001 --strokes 1 --cycles 20 --bench --verbose --json r.json".split())
+    while not process.stdout.readline().startswith("5   "):
+        assert process.poll() is None
+    process.send_signal(signal.SIGINT)
+    rest_of(process)
+    row = json.loads((tmp_path / "r.json").read_text())["benchmark"]["rows"][0]
+    assert row["hits_mean"] > 11, "all 12 triangles are within 5 mm of a fan of 0.1 mm"
+
+
 def preparation(folder, text):
     """A program that prepares sample meshes, as KEEPOUT_PREPARE names it."""
     program = folder / "prepare"
@@ -180,6 +250,7 @@ long_commands = {
     "replay": "replay cube --poses poses --out s.csv --activation all_faces --radius 200",
     "verify": "verify cube --steps 1e9",
     "bench": "bench --mesh cube --index wide_bvh --radius 1 --queries 1e6 --seconds 1000",
+    "inspect": "inspect fan.off --self-intersections",
     "compare": "compare cube --problems 1e5 --poses 6 --pairs 10",
 }
 
@@ -190,6 +261,7 @@ def test_without_a_terminal_there_is_a_line_every_ten_seconds_unless_it_is_quiet
     for folder in folders.values():
         folder.mkdir()
     (folders["replay"] / "poses").write_text("0 0 51 0.1 0 -0.4\n" * 300_000)
+    write_fan(folders["inspect"] / "fan.off", 200_000)
     running = {name: start(folders[name], *line.split(), *quiet) for name, line in long_commands.items()}
     time.sleep(14)
     for process in running.values():

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/binary_stl.h"
@@ -147,6 +148,20 @@ TEST(Example08, PushesIntoAMeshThatIsHollowBelowItsMiddle) {
   const std::string text = said("08_crtk_loop", "'" + mesh.string() + "'", 0);
   ASSERT_EQ(std::sscanf(text.c_str(), "held back in %d of", &held), 1) << text;
   EXPECT_GT(held, 100);
+}
+
+TEST(Example08, SaysThatAnInsideOutMeshInAnotherUnitNeverLimitedTheTool) {
+  const TemporaryFolder folder;
+  const auto mesh = folder.path() / "inside_out.off";
+  std::ofstream(mesh) << "OFF\n8 12 0\n"
+                         "-5e-3 -5e-3 -5e-3\n5e-3 -5e-3 -5e-3\n-5e-3 5e-3 -5e-3\n5e-3 5e-3 -5e-3\n"
+                         "-5e-3 -5e-3 5e-3\n5e-3 -5e-3 5e-3\n-5e-3 5e-3 5e-3\n5e-3 5e-3 5e-3\n"
+                         "3 1 2 0\n3 3 2 1\n3 6 5 4\n3 6 7 5\n3 4 1 0\n3 4 5 1\n"
+                         "3 3 6 2\n3 7 6 3\n3 2 4 0\n3 6 4 2\n3 5 3 1\n3 5 7 3\n";
+  const std::string text = said("08_crtk_loop", "'" + mesh.string() + "'", 1);
+  EXPECT_CONTAINS(text, "held back in 0 of 4000 cycles");
+  EXPECT_CONTAINS(text,
+                  "The mesh never limited the tool: see what `keepout inspect` says about it.");
 }
 
 TEST(Example02, TheJointsKeepTheTipOut) {

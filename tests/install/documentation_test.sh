@@ -72,5 +72,13 @@ completes replay cube --index wide_ wide_bvh
 completes replay cube --index = wide_ wide_bvh
 completes replay --index wide_bvh --solver act active_set
 completes --simd SSE2 insp inspect
-completes inspect cu ''
+completes inspect cub cube
+completes convert cub cube
+completes convert cube cub ''
+completes inspect cube cub ''
+completes verify cube skul 'skull skull_1m'
+completes bench --mesh cub cube
+touch "skulk of foxes.stl"
+completes inspect skul 'skull skull_1m skulk of foxes.stl'
+rm "skulk of foxes.stl"
 completes simulate --ben --bench

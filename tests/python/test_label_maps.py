@@ -91,6 +91,16 @@ def test_formats_and_spaces_agree(tmp_path):
         np.testing.assert_array_equal(mesh.triangles, expected.triangles)
 
 
+@pytest.mark.parametrize("encoding, field, end", [("raw", "data file", "\n\n"), ("gzip", "datafile", "\n")])
+def test_the_data_may_be_in_a_file_beside_the_header(tmp_path, encoding, field, end):
+    expected, _ = mesh_of(write_nrrd(tmp_path / "a.nrrd", labels(), encoding), tmp_path)
+    header, data = (tmp_path / "a.nrrd").read_bytes().split(b"\n\n", 1)
+    (tmp_path / "my data.raw").write_bytes(data)
+    (tmp_path / "a.nhdr").write_bytes(header + f"\n{field}: my data.raw{end}".encode())
+    mesh, _ = mesh_of(tmp_path / "a.nhdr", tmp_path)
+    np.testing.assert_array_equal(mesh.vertices, expected.vertices)
+
+
 def test_a_label_is_chosen_and_closed_at_the_border(tmp_path):
     values = np.zeros(shape, int)
     values[:10, :, :] = 1
@@ -114,7 +124,12 @@ def test_what_is_no_label_map_is_one_sentence(tmp_path):
         (b"encoding: raw", b"encoding: bzip2", "bzip2"),
         (b"encoding: raw", b"encoding: gzip", "gzip"),
         (b"sizes: 50", b"sizes: 51", "numbers for 51 x 40 x 30"),
-        (b"kinds: ", b"data file: other.raw\nkinds: ", "'data file'"),
+        (b"kinds: ", b"data file: other.raw\nkinds: ", "other.raw"),
+        (b"kinds: ", b"data file: LIST\nkinds: ", "in several files ('LIST'); save it as one .nrrd file"),
+        (b"kinds: ", b"datafile: a%03d.raw 1 30 1\nkinds: ", "in several files"),
+        (b"kinds: ", b"byte skip: 4\nkinds: ", "'byte skip', which is not read"),
+        (b"sizes: 50", b"sizes: 2 50", "has 4 axes, not 3; export it as one label map (3D Slicer: Segmentations, "),
+        (good, good[:40], "is not NRRD, or was cut short"),
     ]:
         (tmp_path / "bad.nrrd").write_bytes(good.replace(old, new))
         for file in ["bad.nrrd", "absent.nrrd"]:

@@ -5,6 +5,8 @@
 #include "keepout/activation/convex_tool_rule.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/factory/convex_tool_text.h"
+#include "keepout/factory/guide_text.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/pd_tree.h"
@@ -205,6 +207,32 @@ TEST(ConvexToolAllocation, AStepAllocatesNothingWhateverItsOutcome) {
       EXPECT_GT(of_each[static_cast<std::size_t>(status)], 0u) << named.name << name(status);
     }
   }
+}
+
+TEST(ConvexToolAllocation, AStepAsSimulateMakesItAllocatesNothing) {
+  const auto mesh = mesh_of("cortex");
+  MotionConstraint constraint = make_motion_constraint(
+      mesh, {.options = {.radius = 2.0, .margin = 0.3}, .tool = tool_of_text("blade:6:2:0.5")});
+  Random random(3);
+  int limited = 0;
+  int guided = 0;
+  for (Vec3 tip : surface_points(*mesh, 30, 4.0, random)) {
+    const std::vector<Guide> guides{
+        guide_of_text("slab:0,0," + std::to_string(tip.z()) + ":0,0,1:0.5")};
+    constraint.set_guides(guides);
+    const Vec3 desired = 0.5 * random.direction();
+    const std::size_t before = allocations();
+    for (int cycle = 0; cycle < 50; ++cycle) {
+      StageTimes times;
+      const Step step = constraint.step({.tip = tip, .desired = desired}, times);
+      tip += step.motion;
+      limited += step.status == Status::limited ? 1 : 0;
+      guided += step.limits.has(Limit::guide) ? 1 : 0;
+    }
+    EXPECT_EQ(allocations(), before);
+  }
+  EXPECT_GT(limited, 100);
+  EXPECT_GT(guided, 100);
 }
 
 // That an index takes nothing from the heap while it answers, unless its row says that it does.

@@ -52,7 +52,15 @@ std::string unknown_option(const CLI::App& app, const CLI::App& command, const s
     return name + " goes before the command: '" + app.get_name() + " " + name + " ... " +
            command.get_name() + "'";
   }
-  return "there is no option " + name + did_you_mean(name, option_names(command));
+  const std::string missing = "there is no option " + name;
+  const bool reads_mesh = command.get_option_no_throw("MESH") != nullptr;
+  const CLI::Option* const of_convert = app.get_subcommand("convert")->get_option_no_throw(name);
+  if (reads_mesh && of_convert != nullptr) {
+    const std::string value = of_convert->get_items_expected_max() > 0 ? " ..." : "";
+    return missing + ": convert the mesh first, 'keepout convert IN OUT " + name + value +
+           "', and name OUT";
+  }
+  return missing + did_you_mean(name, option_names(command));
 }
 
 /// CLI11's own words, but where they do not say enough.

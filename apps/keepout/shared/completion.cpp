@@ -2,9 +2,11 @@
 #include "shared/completion.h"
 
 #include <algorithm>
+#include <array>
 #include <ostream>
 
 #include "shared/command_line.h"
+#include "shared/named_mesh.h"
 
 namespace keepout::app {
 namespace {
@@ -21,14 +23,19 @@ std::vector<std::string> values_of(const CLI::Option& option) {
   return values;
 }
 
-/// Returns the names of all commands and the values of all arguments that have no option's name.
-std::vector<std::string> words_of(const CLI::App& command) {
-  std::vector<std::string> words = command_names(command);
-  for (const CLI::Option* option : command.get_options()) {
-    if (!option->get_positional()) continue;
-    for (std::string& value : values_of(*option)) words.push_back(std::move(value));
-  }
-  return words;
+/// Returns the argument without an option's name that follows `count` others; or null.
+const CLI::Option* argument_after(const CLI::App& command, std::size_t count) {
+  const std::vector<const CLI::Option*> arguments =
+      command.get_options([](const CLI::Option* option) { return option->get_positional(); });
+  if (arguments.empty()) return nullptr;
+  const bool is_list = arguments.back()->get_items_expected_max() > 1;
+  if (count >= arguments.size() && !is_list) return nullptr;
+  return arguments[std::min(count, arguments.size() - 1)];
+}
+
+bool is_mesh(const CLI::Option& option) {
+  constexpr std::array names{"MESH", "IN", "--mesh"};
+  return std::ranges::any_of(names, [&](const char* name) { return option.check_name(name); });
 }
 
 }  // namespace
@@ -37,6 +44,7 @@ void print_completions(const CLI::App& app, std::span<const std::string> words, 
   if (words.empty()) return;
   const CLI::App* command = &app;
   const CLI::Option* open = nullptr;  // waits for its value
+  std::size_t arguments = 0;          // of the command, without an option's name
   for (const std::string& word : words.first(words.size() - 1)) {
     if (word == "=") continue;
     if (open != nullptr) {
@@ -49,15 +57,21 @@ void print_completions(const CLI::App& app, std::span<const std::string> words, 
     } else if (command == &app) {
       const std::vector<std::string> commands = command_names(app);
       if (std::ranges::find(commands, word) != commands.end()) command = app.get_subcommand(word);
+    } else {
+      ++arguments;
     }
   }
   const std::string start = words.back() == "=" ? "" : words.back();
-  const std::vector<std::string> candidates = open != nullptr          ? values_of(*open)
-                                              : start.starts_with("-") ? option_names(*command)
-                                                                       : words_of(*command);
-  for (const std::string& candidate : candidates) {
-    if (candidate.starts_with(start)) out << candidate << '\n';
-  }
+  const bool is_option = open == nullptr && start.starts_with("-");
+  if (open == nullptr && !is_option) open = argument_after(*command, arguments);
+  const bool is_of_mesh = open != nullptr && is_mesh(*open);
+  std::vector<std::string> candidates = is_option         ? option_names(*command)
+                                        : is_of_mesh      ? fixture_names()
+                                        : open != nullptr ? values_of(*open)
+                                                          : command_names(*command);
+  std::erase_if(candidates, [&](const std::string& name) { return !name.starts_with(start); });
+  for (const std::string& candidate : candidates) out << candidate << '\n';
+  if (is_of_mesh && !candidates.empty()) out << '\n';
 }
 
 }  // namespace keepout::app

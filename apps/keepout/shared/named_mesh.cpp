@@ -55,8 +55,7 @@ std::vector<std::string> files_beside(const std::filesystem::path& path) {
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& path) {
-  std::vector<std::string> fixtures = real_names();
-  for (std::string& shape : names(shapes())) fixtures.push_back(std::move(shape));
+  const std::vector<std::string> fixtures = fixture_names();
   std::vector<std::string> known = files_beside(path);
   known.insert(known.end(), fixtures.begin(), fixtures.end());
   const std::string name = path.string();
@@ -98,6 +97,12 @@ std::string mesh_names_help() {
   return "MESH is a file, or, where there is no file of that name, a fixture:\n"
          "  prepared   " +
          enumerated(real_names()) + "\n" + "  generated  " + enumerated(names(shapes())) + "\n";
+}
+
+std::vector<std::string> fixture_names() {
+  std::vector<std::string> fixtures = real_names();
+  for (std::string& shape : names(shapes())) fixtures.push_back(std::move(shape));
+  return fixtures;
 }
 
 std::filesystem::path file_of_mesh(const std::filesystem::path& name) {

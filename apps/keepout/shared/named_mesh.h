@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "keepout/mesh/load_mesh.h"
 
@@ -14,6 +16,9 @@ namespace keepout::app {
 /// What MESH is, for the help of a command; and which names there are.
 extern const std::string_view mesh_help;
 std::string mesh_names_help();
+
+/// Returns the names of all fixtures.
+std::vector<std::string> fixture_names();
 
 /// The file behind the name; the name itself for a generated shape. Throws Error, with the names
 /// that were likely meant, when there is neither a file nor a fixture of that name, and when a real

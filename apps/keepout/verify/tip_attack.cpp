@@ -98,20 +98,27 @@ struct Tip {
 
 class TipAttack final : public Attack {
  public:
-  TipAttack(const Campaign& campaign, const Arena& arena, Findings& findings)
-      : Attack({.mesh = arena.mesh}), campaign_(campaign), arena_(arena), findings_(findings) {}
-
-  void add(std::uint64_t trajectory) { trajectories_.push_back(trajectory); }
+  /// Attacks on `arenas[arena]`.
+  TipAttack(const Campaign& campaign, std::span<const Arena> arenas, std::size_t arena,
+            Findings& findings)
+      : Attack({.mesh = arenas[arena].mesh}),
+        campaign_(campaign),
+        arenas_(arenas),
+        arena_(arena),
+        findings_(findings),
+        next_(from(campaign.shard.index - 1)) {}
 
   std::uint64_t begin() override {
     tip_.reset();
     if (is_done()) return 0;
     if (scenes_.empty()) {
-      scenes_ = arena_.load();
+      scenes_ = arenas_[arena_].load();
       for (const Scene& scene : scenes_) guards_.push_back(campaign_.make_guard(scene));
       row.triangles = scenes_.front().mesh()->triangle_count();
     }
-    trajectory_ = trajectories_[row.starts++];
+    ++row.starts;
+    trajectory_ = next_;
+    next_ = from(next_ + campaign_.shard.count);
     random_ = random_of(campaign_.seed, trajectory_);
     random_.bits();  // which chose the arena
     // The first scene is at the origin. The others are a minority.
@@ -148,9 +155,19 @@ class TipAttack final : public Attack {
     return true;
   }
 
-  bool is_done() const override { return row.starts == trajectories_.size(); }
+  bool is_done() const override { return next_ >= trajectory_count(campaign_.steps); }
 
  private:
+  /// Returns the first trajectory of the shard on this mesh, from this one on. A list of all would
+  /// take as much memory as the campaign has steps.
+  std::uint64_t from(std::uint64_t trajectory) const noexcept {
+    while (trajectory < trajectory_count(campaign_.steps) &&
+           random_of(campaign_.seed, trajectory).below(arenas_.size()) != arena_) {
+      trajectory += campaign_.shard.count;
+    }
+    return trajectory;
+  }
+
   void add(const TipVerdict& verdict, Status status) {
     ++row.cycles;
     ++row.statuses[static_cast<std::size_t>(status)];
@@ -163,10 +180,11 @@ class TipAttack final : public Attack {
   }
 
   const Campaign& campaign_;
-  const Arena& arena_;
+  std::span<const Arena> arenas_;
+  std::size_t arena_;
   Findings& findings_;
-  std::vector<std::uint64_t> trajectories_;  // the numbers of all on this mesh
-  std::uint64_t trajectory_ = 0;             // at present
+  std::uint64_t next_;            // the number of the next trajectory on this mesh
+  std::uint64_t trajectory_ = 0;  // at present
   std::vector<Scene> scenes_;
   std::vector<std::unique_ptr<Guard>> guards_;
   std::size_t scene_ = 0;  // at present
@@ -198,13 +216,8 @@ Step Guard::step(const Motion& motion) noexcept { return constraint_.step(motion
 Attacks attacks_on_tips(const Campaign& campaign, std::span<const Arena> arenas,
                         Findings& findings) {
   Attacks attacks;
-  for (const Arena& arena : arenas) {
-    attacks.push_back(std::make_unique<TipAttack>(campaign, arena, findings));
-  }
-  const std::uint64_t count = trajectory_count(campaign.steps);
-  for (std::uint64_t n = campaign.shard.index - 1; n < count; n += campaign.shard.count) {
-    const std::size_t arena = random_of(campaign.seed, n).below(arenas.size());
-    static_cast<TipAttack&>(*attacks[arena]).add(n);
+  for (std::size_t arena = 0; arena < arenas.size(); ++arena) {
+    attacks.push_back(std::make_unique<TipAttack>(campaign, arenas, arena, findings));
   }
   return attacks;
 }

@@ -53,11 +53,12 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   std::vector<std::string> missing;
   const std::vector<Arena> arenas = arenas_of(options, missing);
   for (const std::string& mesh : missing) out << "note: " << mesh << '\n';
-  const StopSignal stop(keeps_what_is_finished);
+  const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   Progress progress("verify", campaign.length(arenas.size()));
   Findings findings =
       run_campaign(campaign, arenas,
                    [&, shown = std::string()](std::uint64_t steps, const std::string& row) mutable {
+                     stop.keep_from_now_on();
                      progress.advance(steps);
                      if (row != shown) progress.show(shown = row);
                      return stop.has_come() ? Next::stop : Next::go_on;

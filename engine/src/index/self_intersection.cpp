@@ -208,7 +208,8 @@ bool meet_improperly(const Mesh& mesh, TriangleId one, TriangleId other) noexcep
 }
 
 SelfIntersections find_self_intersections(const Mesh& mesh, const SpatialIndex& index,
-                                          std::size_t most_places) {
+                                          std::size_t most_places,
+                                          const std::function<void()>& examined) {
   const auto count = static_cast<TriangleId>(mesh.triangle_count());
   std::vector<Box> boxes(count);
   std::vector<bool> flat(count);  // without an area
@@ -219,8 +220,7 @@ SelfIntersections find_self_intersections(const Mesh& mesh, const SpatialIndex& 
 
   FaultList pairs(6);
   TriangleBuffer nearby(count);
-  for (TriangleId t = 0; t < count; ++t) {
-    if (flat[t]) continue;
+  const auto add_pairs_of = [&](TriangleId t) {
     nearby.clear();
     index.collect(ball_around(mesh.triangle(t), boxes[t]), nearby);
     for (const TriangleId other : nearby) {
@@ -230,6 +230,10 @@ SelfIntersections find_self_intersections(const Mesh& mesh, const SpatialIndex& 
         pairs.add({a[0], a[1], a[2], b[0], b[1], b[2]});
       }
     }
+  };
+  for (TriangleId t = 0; t < count; ++t) {
+    if (!flat[t]) add_pairs_of(t);
+    if (examined) examined();
   }
   SelfIntersections found{pairs.size(), pairs.places(mesh, most_places)};
   for (FaultPlace& place : found.places.places) {

@@ -115,6 +115,20 @@ TEST(RecordedProblems, AreTheSameForTheSameSeedAndHaveRows) {
   EXPECT_GT(rows, 30);
 }
 
+TEST(RecordedProblems, AreThoseUntilItIsStopped) {
+  std::size_t asked = 0;
+  const auto stopped = [&] { return ++asked > 5; };
+  const auto problems = record_problems(cortex(), "certified", 1'000'000, 3, stopped);
+  EXPECT_EQ(asked, 6u) << "before each stroke";
+  EXPECT_FALSE(problems.empty());
+  EXPECT_LT(problems.size(), 1000u);
+}
+
+TEST(NarrowPhaseAgreement, MakesNoPairsAfterItIsStopped) {
+  EXPECT_TRUE(
+      compare_narrow_phases(Mesh(make_sphere(3.0)), 1'000'000, 1, [] { return true; }).empty());
+}
+
 TEST(RecordedProblems, AContradictionLeavesNoSolution) {
   Random random(5);
   ActiveSet solver;

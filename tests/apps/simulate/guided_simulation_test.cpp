@@ -134,6 +134,34 @@ TEST(SimulateGuides, OfAnInstrumentAreKeptInEachModeThatHasThem) {
   EXPECT_GT(left, 0U);
 }
 
+/// Removes the members that differ from one run to the next: times, and what tells of the machine.
+Json without_times(Json record) {
+  for (const char* name : {"date", "machine", "account"}) record.erase(name);
+  for (Json& run : record["runs"]) {
+    for (const char* name : {"rate_khz", "p50_us", "p99_us", "p999_us", "max_us"}) {
+      run["summary"].erase(name);
+    }
+    for (Json& stroke : run["strokes"]) stroke.erase("step_us");
+  }
+  return record;
+}
+
+TEST(SimulateTool, TwoRunsWithGuidesDifferInTimesOnly) {
+  const test::CommandFolder folder;
+  for (const char* extent : {"--refine 3", "--refine 0 --branches 3"}) {
+    const std::string arguments = std::string(
+                                      "cube --strokes 3 --cycles 200 --guide slab:0,0,0:1,0,0:4 "
+                                      "half_space:0,0,20:0,0,1 --tool blade:20:6:1 ") +
+                                  extent;
+    const Json first = record_of(folder, arguments);
+    EXPECT_TRUE(without_times(first) == without_times(record_of(folder, arguments))) << extent;
+    const Json& summary = run_of(first, "certified")["summary"];
+    EXPECT_EQ(summary["crossings"], 0U) << extent;
+    EXPECT_EQ(summary["guides_left"], 0U) << extent;
+    EXPECT_GT(summary["limited"], 20U) << extent;
+  }
+}
+
 TEST(SimulateGuides, TellOfMistakes) {
   const test::CommandFolder folder;
   for (const auto& [arguments, told] : std::initializer_list<std::pair<const char*, const char*>>{

@@ -144,6 +144,13 @@ TEST(SelfIntersections, OfTheGeneratedSolidsThereAreNone) {
   }
 }
 
+TEST(FindSelfIntersections, ReportsEachTriangleThatItHasExamined) {
+  const auto mesh = mesh_of(make_cube(5.0));
+  std::size_t examined = 0;
+  find_self_intersections(*mesh, PdTree(mesh), 10, [&] { ++examined; });
+  EXPECT_EQ(examined, mesh->triangle_count());
+}
+
 TEST(FindSelfIntersections, PlacesAreWhereTrianglesMeet) {
   const auto crossing = mesh_of(beside_base({1, 1, -1}, {1, 1, 1}, {1, 9, 0}));
   const SelfIntersections found = find_self_intersections(*crossing, PdTree(crossing));

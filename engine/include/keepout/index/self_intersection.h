@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/fault_places.h"
@@ -25,9 +26,11 @@ struct SelfIntersections {
 /// examine() counts them apart.
 ///
 /// `index` is one over `mesh`, asked for the surroundings of each triangle: a few microseconds
-/// each. Where triangles are long beside their neighbors it takes longer.
+/// each. Where triangles are long beside their neighbors it takes longer. Calls `examined`, if
+/// there is one, after each triangle.
 SelfIntersections find_self_intersections(const Mesh& mesh, const SpatialIndex& index,
-                                          std::size_t most_places = 10);
+                                          std::size_t most_places = 10,
+                                          const std::function<void()>& examined = {});
 
 /// Returns the number of pairs that find_self_intersections finds.
 std::size_t count_self_intersections(const Mesh& mesh, const SpatialIndex& index);
