@@ -24,6 +24,7 @@ NRRD_SPACES = {
     "left-posterior-superior": SPACES["LPS"],
     "left-anterior-superior": np.diag([-1.0, 1.0, 1.0, 1.0]),
 }
+NRRD_SPACES |= {"ras": SPACES["RAS"], "lps": SPACES["LPS"], "las": NRRD_SPACES["left-anterior-superior"]}
 NRRD_TYPES = {
     **dict.fromkeys(["signed char", "int8", "int8_t"], "i1"),
     **dict.fromkeys(["uchar", "unsigned char", "uint8", "uint8_t"], "u1"),
@@ -53,7 +54,10 @@ def read_nifti(path):
         raise Unreadable("is not NIfTI; save it as .nii.gz or .nrrd")
     if image.header["qform_code"] == 0 and image.header["sform_code"] == 0:
         raise Unreadable("does not state where it is (qform_code and sform_code are 0); save it with its orientation")
-    scale = MILLIMETERS[image.header.get_xyzt_units()[0]]
+    try:
+        scale = MILLIMETERS[image.header.get_xyzt_units()[0]]
+    except KeyError:
+        raise Unreadable("has an unknown code of its unit (xyzt_units); save it again") from None
     return np.asanyarray(image.dataobj), np.diag([scale, scale, scale, 1.0]) @ image.affine
 
 
@@ -72,6 +76,8 @@ def read_nrrd(path):
     for line in header.decode("ascii", "replace").splitlines()[1:]:
         name, colon, value = line.partition(": ")
         if colon and not line.startswith("#"):
+            if name.lower() in fields:
+                raise Unreadable(f"states '{name}' twice")
             fields[name.lower()] = value.strip()
     for name in ("type", "sizes", "encoding", "space", "space directions", "space origin"):
         if name not in fields:
@@ -79,6 +85,9 @@ def read_nrrd(path):
     for name in ("line skip", "byte skip", "lineskip", "byteskip"):
         if fields.get(name, "0") != "0":
             raise Unreadable(f"has '{name}', which is not read; save it as one .nrrd file")
+    units = set(re.findall(r'"(.*?)"', fields.get("space units", "")))
+    if units - {"mm"}:
+        raise Unreadable(f"has lengths in {', '.join(sorted(units))}; save it in mm")
     if len(fields["sizes"].split()) != 3:
         raise Unreadable(f"has {len(fields['sizes'].split())} axes, not 3; export it as one label map "
                          "(3D Slicer: Segmentations, Export/import models and labelmaps)")  # fmt: skip
@@ -109,6 +118,8 @@ def read_nrrd(path):
 
 def chosen_label(labels, label):
     """Returns the label to take: the only one that there is, unless it is given."""
+    if labels.dtype.kind not in "iuf" or not np.isfinite(labels).all():
+        raise Unreadable(f"has voxels that are no labels ({labels.dtype.name}, or NaN)")
     present = np.unique(labels[labels != 0])
     if label is None and len(present) == 1:
         return present[0]
@@ -121,7 +132,7 @@ def chosen_label(labels, label):
 
 def surface_of(labels, matrix, label, smooth):
     """Returns the vertices (n, 3) [mm] and the triangles (m, 3) of a label, wound so that normals point outwards."""
-    from scipy.ndimage import gaussian_filter
+    from scipy.ndimage import binary_dilation, gaussian_filter
     from skimage.measure import marching_cubes
 
     inside = labels == label
@@ -134,6 +145,10 @@ def surface_of(labels, matrix, label, smooth):
         values = gaussian_filter(values, smooth)
         if values.max() <= 0.5:
             raise Unreadable(f"is too thin at label {label:g} to be smoothed by {smooth:g} voxels; give --smooth 0")
+        lost = np.count_nonzero(np.pad(box, border) & ~binary_dilation(values > 0.5, np.ones((3, 3, 3))))
+        if lost:
+            print(f"{lost} of {np.count_nonzero(box)} voxels of label {label:g} are more than a voxel outside of the "
+                  "surface: smoothing removes thin parts; keep them with --smooth 0", file=sys.stderr)  # fmt: skip
     vertices, triangles, _, _ = marching_cubes(values, 0.5)
     vertices = (vertices.astype(np.float64) + low - border) @ matrix[:3, :3].T + matrix[:3, 3]
     corners = vertices[triangles]
@@ -171,9 +186,11 @@ def main():
         labels = labels.reshape(labels.shape[:3]) if labels.size == np.prod(labels.shape[:3]) else labels
         if labels.ndim != 3:
             raise Unreadable(f"has {labels.ndim} axes, not 3; export the segmentation as one label map")
+        if not (np.isfinite(matrix).all() and np.linalg.det(matrix) != 0.0):
+            raise Unreadable("has spacings, directions or an origin that place no voxels; save it again")
         label = chosen_label(labels, given.label)
         vertices, triangles = surface_of(labels, SPACES[given.space] @ matrix, label, given.smooth)
-        write_ply(given.mesh, vertices, triangles, [f"SPACE={given.space}", f"label {label:g} of {given.labels.name}"])
+        write_ply(given.mesh, vertices, triangles, [f"SPACE={given.space}", f"label {label:g}"])
     except ImportError as error:
         sys.exit(f"{error}: install python3-nibabel and python3-skimage")
     except (gzip.BadGzipFile, EOFError, zlib.error) as error:

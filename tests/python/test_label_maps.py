@@ -124,6 +124,9 @@ def test_what_is_no_label_map_is_one_sentence(tmp_path):
         (b"encoding: raw", b"encoding: bzip2", "bzip2"),
         (b"encoding: raw", b"encoding: gzip", "gzip"),
         (b"sizes: 50", b"sizes: 51", "numbers for 51 x 40 x 30"),
+        (b"kinds: ", b'space units: "m" "m" "m"\nkinds: ', "lengths in m; save it in mm"),
+        (b"kinds: ", b"space: LPS\nkinds: ", "states 'space' twice"),
+        (b"space origin: (", b"space origin: (nan,0,0)\n#(", "place no voxels"),
         (b"kinds: ", b"data file: other.raw\nkinds: ", "other.raw"),
         (b"kinds: ", b"data file: LIST\nkinds: ", "in several files ('LIST'); save it as one .nrrd file"),
         (b"kinds: ", b"datafile: a%03d.raw 1 30 1\nkinds: ", "in several files"),
@@ -139,8 +142,28 @@ def test_what_is_no_label_map_is_one_sentence(tmp_path):
             assert ended.returncode == 1 and "Traceback" not in ended.stderr, ended.stderr
             assert (says in ended.stderr) == (file == "bad.nrrd"), ended.stderr
             assert len(ended.stderr.splitlines()) == 1
-    (tmp_path / "bad.nii").write_bytes(b"nothing")
-    ended = subprocess.run(
-        [sys.executable, script, tmp_path / "bad.nii", tmp_path / "m.ply"], capture_output=True, text=True
-    )
-    assert ended.returncode == 1 and "is no NIfTI file" in ended.stderr and "Traceback" not in ended.stderr
+    damaged = bytearray(write_nifti(tmp_path / "good.nii.gz", labels()).read_bytes())
+    damaged[-5] ^= 1  # in the checksum
+    unit = bytearray(gzip.decompress((tmp_path / "good.nii.gz").read_bytes()))
+    unit[123] = 77
+    for file, content, says in [
+        ("bad.nii", b"nothing", "is no NIfTI file"),
+        ("bad.nii.gz", damaged, "is damaged (CRC check failed"),
+        ("unit.nii", unit, "unknown code of its unit"),
+    ]:
+        (tmp_path / file).write_bytes(content)
+        ended = subprocess.run(
+            [sys.executable, script, tmp_path / file, tmp_path / "m.ply"], capture_output=True, text=True
+        )
+        assert ended.returncode == 1 and says in ended.stderr and "Traceback" not in ended.stderr, ended.stderr
+
+
+def test_parts_that_smoothing_removes_are_reported(tmp_path):
+    values = np.zeros(shape, int)
+    values[5:20, 5:20, 5:20] = 1
+    values[20:45, 12, 12] = 1
+    file = write_nifti(tmp_path / "a.nii", values)
+    for smooth, lost in [("0.7", True), ("0", False)]:
+        command = [sys.executable, script, file, tmp_path / "m.ply", "--smooth", smooth]
+        ended = subprocess.run(command, capture_output=True, text=True, check=True)
+        assert ("smoothing removes thin parts; keep them with --smooth 0" in ended.stderr) == lost, ended.stderr
