@@ -29,14 +29,38 @@ void explain(PyObject* args, PyObject* kwargs) {
   error.restore();
 }
 
+/// Returns true if an object of our classes lacks its value, because no constructor was called.
+/// pybind11 would make one of uninitialized memory.
+bool lacks_its_value(PyObject* object) {
+  auto* const base = reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base);
+  if (!PyObject_TypeCheck(object, base)) return false;
+  const auto* const instance = reinterpret_cast<py::detail::instance*>(object);
+  return instance->simple_layout && !instance->simple_holder_constructed;
+}
+
+bool is_constructor(PyObject* capsule) {
+  const void* const record = PyCapsule_GetPointer(capsule, PyCapsule_GetName(capsule));
+  return static_cast<const py::detail::function_record*>(record)->is_constructor;
+}
+
 PyObject* explained(PyObject* self, PyObject* args, PyObject* kwargs) {
+  PyObject* const object = PyTuple_GET_SIZE(args) > 0 ? PyTuple_GET_ITEM(args, 0) : nullptr;
+  if (object != nullptr && lacks_its_value(object) && !is_constructor(self)) {
+    PyErr_Format(PyExc_TypeError, "%s: call __init__ first; in a subclass, super().__init__(...)",
+                 Py_TYPE(object)->tp_name);
+    return nullptr;
+  }
   PyObject* const result = pybind_call(self, args, kwargs);
   if (result == nullptr && PyErr_ExceptionMatches(PyExc_TypeError)) explain(args, kwargs);
   return result;
 }
 
-/// Calls a function through explained(), if pybind11 has made it.
+/// Calls a function, or those of a property, through explained(), if pybind11 has made it.
 void explain_errors_of(py::handle member) {
+  if (PyObject_TypeCheck(member.ptr(), &PyProperty_Type)) {
+    for (const char* const part : {"fget", "fset"}) explain_errors_of(member.attr(part));
+    return;
+  }
   PyObject* function = member.ptr();
   py::object of_static;
   if (PyInstanceMethod_Check(function)) {

@@ -130,3 +130,14 @@ def test_every_function_of_the_module_is_explained():
             called += 1
             assert "incompatible" not in str(raised.value), str(raised.value)
     assert called > 60
+
+
+def test_an_object_without_a_constructor_is_refused():
+    class Early(keepout.MotionConstraint):
+        def __init__(self):
+            self.first = self.margin
+
+    bare = keepout.MotionConstraint.__new__(keepout.MotionConstraint)
+    for use in (lambda: bare.step((0, 0, 60), (0, 0, -1)), lambda: bare.margin, Early):
+        with pytest.raises(TypeError, match=r"call __init__ first; in a subclass, super\(\).__init__"):
+            use()
