@@ -15,6 +15,7 @@
 #include "keepout/mesh/doctor.h"
 #include "record/drawn_mesh.h"
 #include "record/record.h"
+#include "record/report_page.h"
 #include "shared/columns.h"
 #include "shared/fact_row.h"
 #include "shared/findings.h"
@@ -245,19 +246,32 @@ Json record_of(const InspectOptions& options, const Inspection& inspection) {
   return record;
 }
 
+/// Returns what the page shows, before its name.
+std::string page_text(const Json& record, const Inspection& inspection) {
+  if (!missing_template(record).empty()) return "Page, with tables, no pictures: ";
+  const auto is_marked = [](const Finding& finding) { return finding.places.groups > 0; };
+  return std::ranges::any_of(inspection.findings, is_marked) ? "Page with the faults marked: "
+                                                             : "Page: ";
+}
+
 }  // namespace
 
 void inspect(const InspectOptions& options, std::ostream& out) {
   const RecordFiles files{.json = {}, .page = options.page};
   OutputFiles outputs = files.open({options.mesh});
   const Inspection inspection = examine_file(options);
-  if (options.page) write_record(outputs, record_of(options, inspection), files);
+  std::string page;
+  if (options.page) {
+    const Json record = record_of(options, inspection);
+    write_record(outputs, record, files);
+    page = page_text(record, inspection) + options.page->string();
+  }
   if (options.json) {
     print_json(options, inspection, out);
     return;
   }
   print_text(options, inspection, out);
-  if (options.page) out << "\nPage with the faults marked: " << options.page->string() << '\n';
+  if (options.page) out << '\n' << page << '\n';
 }
 
 }  // namespace keepout::app

@@ -178,7 +178,7 @@ TEST_F(Inspect, APageIsMadeOfTheMeshAndItsFaults) {
   const std::filesystem::path page = folder.path() / "page.html";
   std::ostringstream out;
   inspect({.mesh = file, .page = page, .command = "keepout inspect mesh.stl"}, out);
-  EXPECT_CONTAINS(out.str(), "Page with the faults marked: " + page.string());
+  EXPECT_CONTAINS(out.str(), "\nPage, with tables, no pictures: " + page.string() + "\n");
   // Without the front end of pages a plain page, and the record beside it.
   EXPECT_CONTAINS(folder.contents("page.html"), "boundary_edges");
   const nlohmann::json record = nlohmann::json::parse(folder.contents("page.html.json"));

@@ -51,11 +51,14 @@ function run(name, ...args) {
 const experimentsFile = join(folder, "experiments.json");
 writeFileSync(experimentsFile, JSON.stringify(experimentsRecord));
 
-/** A box without one of its triangles, with another one turned, and a piece of a triangle's edge. */
+/**
+ * A box without one of its triangles, with another one turned, and a piece of a triangle's edge. One of its
+ * corners makes the middle of an edge a coordinate near 1e-15 mm.
+ */
 const faultyFile = join(folder, "faulty.obj");
 writeFileSync(
   faultyFile,
-  `v -20 -20 -20\nv 20 -20 -20\nv 20 20 -20\nv -20 20 -20
+  `v -20.000000000000004 -20 -20\nv 20 -20 -20\nv 20 20 -20\nv -20 20 -20
 v -20 -20 20\nv 20 -20 20\nv 20 20 20\nv -20 20 20
 f 1 3 2\nf 1 4 3\nf 5 7 8\nf 1 6 2\nf 1 6 5\nf 2 3 7
 f 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\nf 4 4 1\n`,
@@ -162,7 +165,8 @@ function isOf(record, { text, from, role, unit: apart = "" }) {
   const exact = (depth ? -value : value) * scaleOf(keys, unit.replace(" deep", ""));
   const half = 0.5 * 10 ** (power - decimals);
   const isNear = Math.abs(shown - exact) <= half + 1e-9 * Math.abs(exact);
-  return isNear && (exact === 0) === (shown === 0);
+  const isCoordinate = keys.includes("at") || keys.includes("bounds");
+  return isNear && (isCoordinate || (exact === 0) === (shown === 0));
 }
 
 /** The page's own words that have digits. */
@@ -175,6 +179,7 @@ const ownWords = [
   "0.000001 mm",
   "0.05 mm",
   "1 mm",
+  "1 nm",
   "Li et al. 2020",
   "i7-8700",
 ];
@@ -527,6 +532,133 @@ test("faults of a mesh are marked where they are", { skip: given || !inspected }
     assert.ok(reds[0] > 5, "nothing red in the ring");
   }
   assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
+
+test("coordinates have a fixed number of digits", { skip: given || !inspected }, async () => {
+  const tab = await opened(inspected.file, large);
+  const cells = await tab.$$eval('td[data-from*="/at/"]', (all) =>
+    all.map(({ textContent, dataset }) => [textContent, dataset.from]),
+  );
+  assert.deepEqual(
+    cells.filter(([text]) => !/^-?\d+\.\d{4}$/.test(text) || text === "-0.0000"),
+    [],
+  );
+  const tiny = cells.filter(([, from]) => Math.abs(valueAt(inspected.record, from)) < 1e-12);
+  assert.ok(tiny.some(([, from]) => valueAt(inspected.record, from) !== 0));
+  await tab.close();
+});
+
+/** A plate with two small holes that are close together and one in a corner. */
+function plateWithHoles() {
+  const [side, holes] = [21, ["10,10", "10,12", "19,1"]];
+  const vertex = (i, j) => i * side + j + 1;
+  const lines = [];
+  for (let i = 0; i < side; ++i) for (let j = 0; j < side; ++j) lines.push(`v ${i} ${j} 0`);
+  for (let i = 0; i + 1 < side; ++i) {
+    for (let j = 0; j + 1 < side; ++j) {
+      if (holes.includes(`${i},${j}`)) continue;
+      lines.push(`f ${vertex(i, j)} ${vertex(i + 1, j)} ${vertex(i + 1, j + 1)}`);
+      lines.push(`f ${vertex(i, j)} ${vertex(i + 1, j + 1)} ${vertex(i, j + 1)}`);
+    }
+  }
+  return `${lines.join("\n")}\n`;
+}
+
+test("each number is at its ring, and close ones share a label", { skip: given }, async () => {
+  writeFileSync(join(folder, "plate.obj"), plateWithHoles());
+  const tab = await opened(run("plate", "inspect", "plate.obj"), small);
+  await assertDrawn(tab);
+  const hint = await tab.$eval(".hint", (one) => one.textContent);
+  assert.ok(hint.startsWith("Drag to turn. "), hint);
+  /** The numbers of the rings in the picture, and the texts of labels beside their rings. */
+  const labels = () =>
+    tab.$eval(".picture", (picture) => {
+      const { clientWidth, clientHeight } = picture;
+      const rings = [...picture.querySelectorAll(".ring")].map((ring, number) => {
+        const [x, y] = ["cx", "cy"].map((at) => Number(ring.firstChild.getAttribute(at)));
+        const isIn = x >= 0 && x <= clientWidth && y >= 0 && y <= clientHeight;
+        return { number: number + 1, x, y, isIn, text: ring.lastChild };
+      });
+      const texts = rings
+        .map(({ text }) => text)
+        .filter((text) => text.getAttribute("display") !== "none");
+      const isBeside = (text, number) => {
+        const { x, y } = rings[number - 1];
+        const box = text.getBBox();
+        const far = [x - box.x - box.width, box.x - x, y - box.y - box.height, box.y - y];
+        return Math.max(...far) < 42;
+      };
+      return {
+        inPicture: rings.filter(({ isIn }) => isIn).map(({ number }) => number),
+        texts: texts.map(({ textContent }) => textContent),
+        apart: texts.flatMap((text) =>
+          text.textContent.split(", ").filter((number) => !isBeside(text, Number(number))),
+        ),
+      };
+    });
+  const numbersOf = ({ texts }) => texts.flatMap((text) => text.split(", ").map(Number)).sort();
+  const all = await labels();
+  assert.deepEqual(numbersOf(all), [1, 2, 3, 4]);
+  assert.ok(
+    all.texts.some((text) => text.includes(", ")),
+    `no label is shared: ${all.texts}`,
+  );
+  assert.deepEqual(all.apart, []);
+  await tab.focus(".picture");
+  for (let i = 0; i < 12; ++i) await tab.keyboard.press("+");
+  await sleep(500);
+  const near = await labels();
+  assert.ok(near.inPicture.length < 4, "no ring left the picture");
+  assert.deepEqual(numbersOf(near), near.inPicture);
+  assert.deepEqual(near.apart, []);
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
+
+test("the page of a convex tool names the tool and lower bounds of depths", {
+  skip: given,
+}, async () => {
+  const file = run(
+    "whole_tool",
+    ..."simulate cube --strokes 1 --cycles 200 --tool capsule:0,0,0:0,0,20:1.5".split(" "),
+  );
+  const tab = await opened(file, large);
+  const text = await tab.$eval("main", (main) => main.textContent);
+  assert.match(text, /tool to surface \[mm\]/);
+  assert.match(text, /touching or inside, at least this deep/);
+  assert.doesNotMatch(text, /tip to surface|inside the anatomy|deepest inside/);
+  const depths = text.match(/.{9}[\d.]+\s.m deep/g);
+  assert.ok(depths.length > 1);
+  assert.deepEqual(
+    depths.filter((depth) => !depth.startsWith("at least ")),
+    [],
+  );
+  await assertNumbers(tab, recordOf(file), "body");
+  assert.ok((await assertTips(tab, recordOf(file))) > 0);
+  assert.deepEqual(tab.faults, []);
+  await tab.close();
+});
+
+test("the widest table of figures fits a page of 1300 px", { skip: given }, async () => {
+  const { record } = pages.find(({ name }) => name === "simulate");
+  const wide = { ...record, guides: ["ball:0,0,0:30"] };
+  wide.runs = record.runs.map((run) => ({
+    ...run,
+    summary: {
+      ...run.summary,
+      ...{ cycles: 24000, limited: 22452, stopped: 15328, cycles_inside: 15328 },
+      ...{ guides_left: 13667, farthest_out_mm: 242.123, closest_approach_mm: 0.200123 },
+      ...{ p50_us: 21.21, p99_us: 47.61, p999_us: 8112.5, max_us: 12122.1, rate_khz: 1047.2 },
+    },
+  }));
+  writeFileSync(join(folder, "wide.json"), JSON.stringify(wide));
+  const tab = await opened(run("wide", "report", "wide.json"), { width: 1300, height: 900 });
+  const [needed, available] = await tab.$eval(".scroll", (one) => [
+    one.scrollWidth,
+    one.clientWidth,
+  ]);
+  assert.equal(needed, available);
   await tab.close();
 });
 

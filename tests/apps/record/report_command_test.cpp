@@ -94,6 +94,18 @@ TEST_F(Report, WhereHalfOfItsFrontEndIsMissingNothingIsLost) {
   }
 }
 
+TEST_F(Report, OfAMeshIsNamedByWhatItShows) {
+  Surface open = make_cube(20.0);
+  open.triangles.pop_back();
+  write_binary_stl(folder_.file("open.stl"), open);
+  const auto said = [&](const std::string& mesh, const std::string& environment) {
+    return succeeded(run("inspect " + mesh + " --out r.html", environment)).output;
+  };
+  EXPECT_CONTAINS(said("cube.stl", "KEEPOUT_WEB=web "), "\nPage: r.html\n");
+  EXPECT_CONTAINS(said("open.stl", "KEEPOUT_WEB=web "), "\nPage with the faults marked: r.html\n");
+  EXPECT_CONTAINS(said("open.stl", without), "\nPage, with tables, no pictures: r.html\n");
+}
+
 TEST_F(Report, IsRefusedOfWhatIsNoRecord) {
   folder_.write("none.json", "{\"rows\": []}");
   folder_.write("cut.json", "{\"keepout_record\": \"bench\", ");

@@ -5,7 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { drawn, make } from "../page/elements.ts";
 import { type Graphics, makeGraphics } from "../page/graphics.ts";
 import type { Anatomy, Outlook } from "./anatomy.ts";
-import { type Mark, placeMark, scaleBar } from "./marks.ts";
+import { type Mark, placeMarks, scaleBar } from "./marks.ts";
 import { GraphicsPainter, type Layer, type Painter } from "./painting.ts";
 import { StillPainter } from "./still.ts";
 
@@ -228,17 +228,18 @@ export class AnatomyView {
     const { camera } = this.outlook;
     // On paper the picture has another size, but is not drawn anew.
     scale.ownerSVGElement?.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    for (const mark of marks) placeMark(mark, camera, width, height);
+    placeMarks(marks, camera, width, height);
     scaleBar(scale, (camera.top - camera.bottom) / camera.zoom / height, width, height);
   }
 }
 
-/** What can be done with the pictures, and, where it is so, why they are plain. */
-export const hint = (): HTMLElement =>
+/** What a reader can do with so many pictures, and without WebGL why they are plain. */
+export const hint = (pictures: number): HTMLElement =>
   make(
     "p",
     { class: "hint" },
-    "Drag to turn: all turn together. Ctrl and the wheel zoom, or the wheel alone in a picture that was clicked; so do two fingers. ",
+    pictures > 1 ? "Drag to turn: all turn together. " : "Drag to turn. ",
+    "Ctrl and the wheel zoom, or the wheel alone in a picture that was clicked; so do two fingers. ",
     "Arrow keys turn, + and − zoom, Home or a double click goes back.",
     ...(sharedGraphics() ? [] : [" There is no WebGL here: the pictures are plain."]),
   );

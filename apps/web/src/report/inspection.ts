@@ -10,7 +10,7 @@ import { widths } from "./paths.ts";
 import { below, type ReportRecord, valueAt } from "./record.ts";
 import { lead, panels, section } from "./report_page.ts";
 import { ordinal, pictureGrid } from "./runs.ts";
-import { paragraphs, show, shown, trimmed } from "./shown.ts";
+import { type Format, paragraphs, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, scrolled, table } from "./table.ts";
 
@@ -39,14 +39,15 @@ export async function inspectionSections(main: HTMLElement, record: ReportRecord
     ...finding,
     from: below("/inspection/findings", number),
   }));
+  const coordinate = coordinates(anatomy);
   const marked = findings.filter(({ places }) => places.length > 0);
   main.append(
     ...paragraphs("/inspection/notices", "account"),
     ...paragraphs("/inspection/warnings", "account"),
     ...findings.filter(({ places }) => places.length === 0).map(unmarked),
     pictures(anatomy, marked),
-    ...(marked.length > 0 ? [faultTable(marked)] : []),
-    facts(),
+    ...(marked.length > 0 ? [faultTable(marked, coordinate)] : []),
+    facts(coordinate),
   );
 }
 
@@ -95,8 +96,8 @@ function pictures(anatomy: Anatomy, findings: readonly Located[]): HTMLElement {
     " of each kind. Faults that share vertices are one group. Rings are around one fault of each of the first groups, by their numbers in the table. Dark: the back of triangles.",
   ];
   return findings.length > 0
-    ? section("Where the faults are", lead(...words), group, hint())
-    : section("The mesh", group, hint());
+    ? section("Where the faults are", lead(...words), group, hint(findings.length))
+    : section("The mesh", group, hint(1));
 }
 
 /** From where the first fault is seen, and a little from above and the side. */
@@ -136,15 +137,17 @@ const rings = ({ placed }: Anatomy, { from, groups, places }: Located): Mark[] =
   places.slice(0, Math.min(groups, mostRings)).map(({ at }, number) => {
     const pointer = below(from, "places", number);
     const label = drawn("tspan", { "data-from": pointer, "data-ordinal": "" }, String(number + 1));
-    return mark("ring bad", placed(at), 13, label);
+    return mark("ring numbered bad", placed(at), 13, label);
   });
 
-/** A coordinate in mm. */
-const coordinate = (mm: number): string =>
-  mm === 0 || Math.abs(mm) >= 1e-6 ? trimmed(mm) : "under\u00a01\u00a0nm";
+/** Coordinates in mm, all with so many decimals that the size of the mesh has six digits. */
+function coordinates({ size }: Anatomy): Format {
+  const decimals = Math.min(Math.max(5 - Math.floor(Math.log10(size)), 0), 12);
+  return (mm) => mm.toFixed(decimals).replace(/^-(?=[0.]*$)/, "");
+}
 
 /** The first faults of each kind and where they are. */
-function faultTable(findings: readonly Located[]): HTMLElement {
+function faultTable(findings: readonly Located[], coordinate: Format): HTMLElement {
   const keyOf = (row: string) => row.replace(/\/places\/\d+$/, "/key");
   const columns: readonly Column[] = [
     { heading: "fault", from: "", look: "name", content: (row) => [shown(keyOf(row))] },
@@ -164,9 +167,9 @@ function faultTable(findings: readonly Located[]): HTMLElement {
 }
 
 /** What the mesh is made of. */
-function facts(): HTMLElement {
+function facts(coordinate: Format): HTMLElement {
   const about = "/inspection";
-  const names: readonly (readonly [string, string, ((value: number) => string)?])[] = [
+  const names: readonly (readonly [string, string, Format?])[] = [
     ["triangles", "triangles", grouped],
     ["vertices", "vertices", grouped],
     ["edges", "edges", grouped],

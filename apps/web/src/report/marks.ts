@@ -2,48 +2,170 @@
 /** What lies over a picture of anatomy: balls, rings and labels at places of it, and a scale bar. */
 import type * as three from "three";
 import { drawn } from "../page/elements.ts";
+import { extremes } from "./extremes.ts";
 
 /** Something at a place of the anatomy. */
 export interface Mark {
   readonly element: SVGGElement;
+  readonly label: SVGTSpanElement | null;
   place: three.Vector3;
 }
 
-/** A circle at a place. `label`: what it is called, beside it, or with a ball below. */
+/** A mark and where it is in a picture. [px] */
+interface Spot {
+  readonly mark: Mark;
+  readonly x: number;
+  readonly y: number;
+}
+
+/** A rectangle of a picture. [px] */
+interface Box {
+  readonly left: number;
+  readonly right: number;
+  readonly top: number;
+  readonly bottom: number;
+}
+
+/** A circle at a place. `label`: its text, beside a ring or below a ball. */
 export function mark(
   kind: string,
   place: three.Vector3,
   radius: number,
   label: SVGTSpanElement | null = null,
 ): Mark {
-  const text = label ? [drawn("text", {}, drawn("tspan", {}), label)] : [];
+  const text = label ? [drawn("text", {}, label)] : [];
   const circle = drawn("circle", { r: String(radius) });
-  return { element: drawn("g", { class: kind }, circle, ...text), place };
+  return { element: drawn("g", { class: kind }, circle, ...text), label, place };
 }
 
-/** Puts a mark where its place is seen; its label stays in the picture, and points the way out of it. */
-export function placeMark(
-  { element, place }: Mark,
+const circleOf = ({ element }: Mark) => element.firstElementChild as SVGCircleElement;
+const has = ({ element }: Mark, kind: string) => element.classList.contains(kind);
+const textOf = ({ element }: Mark) => element.lastElementChild as SVGTextElement;
+
+/**
+ * Puts the marks of a picture where their places are seen. Rings that are close share a label. The label
+ * of a mark outside the picture points to it, but the number of a ring ("numbered") is hidden.
+ */
+export function placeMarks(
+  marks: readonly Mark[],
   camera: three.Camera,
   width: number,
   height: number,
 ): void {
-  const seen = place.clone().project(camera);
-  const [x, y] = [((seen.x + 1) * width) / 2, ((1 - seen.y) * height) / 2];
-  const [circle, text] = element.children as unknown as [SVGCircleElement, SVGTextElement?];
-  circle.setAttribute("cx", x.toFixed(1));
-  circle.setAttribute("cy", y.toFixed(1));
-  if (!text) return;
+  const labeled: Spot[] = [];
+  for (const mark of marks) {
+    const seen = mark.place.clone().project(camera);
+    const [x, y] = [((seen.x + 1) * width) / 2, ((1 - seen.y) * height) / 2];
+    circleOf(mark).setAttribute("cx", x.toFixed(1));
+    circleOf(mark).setAttribute("cy", y.toFixed(1));
+    if (mark.label) labeled.push({ mark, x, y });
+  }
+  const picture = { left: 0, right: width, top: 0, bottom: height };
+  const rings = labeled.filter(
+    ({ mark, x, y }) =>
+      has(mark, "ring") && overlap(picture, { left: x, right: x, top: y, bottom: y }),
+  );
+  for (const spot of labeled) {
+    if (rings.includes(spot)) continue;
+    if (has(spot.mark, "numbered")) textOf(spot.mark).setAttribute("display", "none");
+    else placeLabel(spot, width, height);
+  }
+  labelRings(groupsOf(rings), width, height);
+}
+
+/** Puts the label of a mark below it; where the mark is outside the picture, it points the way. */
+function placeLabel({ mark, x, y }: Spot, width: number, height: number): void {
   const arrow = y > height ? "↓ " : y < 0 ? "↑ " : x > width ? "→ " : x < 0 ? "← " : "";
-  (text.firstChild as SVGTSpanElement).textContent = arrow;
   const isLeft = x > 0.55 * width;
-  const isBeside = element.classList.contains("ring");
-  const [dx, dy] = isBeside ? [24, 5] : [14, 28];
-  const within = (value: number, low: number, high: number) =>
-    Math.min(Math.max(value, low), high).toFixed(1);
-  text.setAttribute("text-anchor", isLeft ? "end" : "start");
-  text.setAttribute("x", within(x + (isLeft ? -dx : dx), 0.04 * width, 0.96 * width));
-  text.setAttribute("y", within(y + dy, 0.08 * height, 0.84 * height));
+  const within = (value: number, low: number, high: number) => Math.min(Math.max(value, low), high);
+  write(
+    [mark],
+    isLeft ? "end" : "start",
+    within(x + (isLeft ? -14 : 14), 0.04 * width, 0.96 * width),
+    within(y + 28, 0.08 * height, 0.84 * height),
+    arrow,
+  );
+}
+
+/** Writes the labels of marks at a place, with commas between them, as the text of the first. */
+function write(marks: readonly Mark[], anchor: string, x: number, y: number, before = ""): void {
+  for (const one of marks) textOf(one).setAttribute("display", "none");
+  const text = textOf(marks[0] as Mark);
+  const labels = marks.map(({ label }) => label as SVGTSpanElement);
+  text.replaceChildren(
+    before,
+    ...labels.flatMap((label, place) => (place === 0 ? [label] : [", ", label])),
+  );
+  text.removeAttribute("display");
+  text.setAttribute("text-anchor", anchor);
+  text.setAttribute("x", x.toFixed(1));
+  text.setAttribute("y", y.toFixed(1));
+}
+
+/** Rings so close that they share a label, in their order. */
+function groupsOf(rings: readonly Spot[]): Spot[][] {
+  let groups: Spot[][] = [];
+  for (const ring of rings) {
+    const isNear = (group: readonly Spot[]) =>
+      group.some(({ x, y }) => Math.hypot(x - ring.x, y - ring.y) < 20);
+    const joined = [...groups.filter(isNear).flat(), ring];
+    joined.sort((a, b) => rings.indexOf(a) - rings.indexOf(b));
+    groups = [...groups.filter((group) => !isNear(group)), joined];
+  }
+  return groups;
+}
+
+const overlap = (a: Box, b: Box): boolean =>
+  a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom;
+
+/** Puts the label of each group on that side of it where it covers the fewest other things. */
+function labelRings(groups: readonly (readonly Spot[])[], width: number, height: number): void {
+  const rings = groups.map(boxOf);
+  const scale = { left: 0, right: 0.3 * width, top: 0.96 * height - 26, bottom: height };
+  const others: Box[] = [...rings, scale];
+  groups.forEach((group, number) => {
+    const ring = rings[number] as Box;
+    const texts = group.map(({ mark }) => mark.label?.textContent ?? "");
+    const wide = 9 * texts.join(", ").length;
+    const [low, tall, gap] = [4, 17, 8];
+    const [x, y] = [(ring.left + ring.right) / 2, (ring.top + ring.bottom) / 2];
+    const right = ["start", ring.right + gap, y + 5] as const;
+    const left = ["end", ring.left - gap, y + 5] as const;
+    const sides = [
+      ...(x > 0.55 * width ? [left, right] : [right, left]),
+      ["middle", x, ring.top - gap] as const,
+      ["middle", x, ring.bottom + gap + tall - low] as const,
+    ].map(([anchor, at, base]) => {
+      const from = at - (anchor === "start" ? 0 : anchor === "end" ? wide : wide / 2);
+      const [top, bottom] = [base + low - tall, base + low];
+      const box = { left: from, right: from + wide, top, bottom };
+      const isOut = from < 0 || box.right > width || top < 0 || bottom > height;
+      const covered = others.filter((other) => other !== ring && overlap(other, box)).length;
+      return { anchor, at, base, box, cost: covered + (isOut ? groups.length + 1 : 0) };
+    });
+    const least = Math.min(...sides.map(({ cost }) => cost));
+    const best = sides.find(({ cost }) => cost === least) as (typeof sides)[number];
+    others.push(best.box);
+    write(
+      group.map(({ mark }) => mark),
+      best.anchor,
+      best.at,
+      best.base,
+    );
+  });
+}
+
+/** The bounds of the circles of rings. */
+function boxOf(group: readonly Spot[]): Box {
+  const [left, right] = extremes(group.map(({ x }) => x));
+  const [top, bottom] = extremes(group.map(({ y }) => y));
+  const radius = Number(circleOf((group[0] as Spot).mark).getAttribute("r"));
+  return {
+    left: left - radius,
+    right: right + radius,
+    top: top - radius,
+    bottom: bottom + radius,
+  };
 }
 
 /** A bar of a round length, so that a reader can tell millimetres from centimetres. */

@@ -85,7 +85,7 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     rows.map((row) => `/summaries/${row}`),
     columns,
     group,
-    hint(),
+    hint(rows.length),
   );
 }
 

@@ -9,7 +9,7 @@ import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
-import { millimetres, rounded, show, shown } from "./shown.ts";
+import { deep, millimetres, rounded, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
@@ -97,7 +97,7 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
       " is the body that the mesh reaches into farthest, also where the surface hides it.",
     ),
     content,
-    hint(),
+    hint(runs.length),
   );
 }
 
@@ -137,7 +137,7 @@ function strokeView(
         };
       });
       const at = `${from}/runs/${number}/clearance_mm/${cycle}/${nearest}`;
-      const how = (mm: number) => (mm < 0 ? `${millimetres(-mm)} deep` : millimetres(mm));
+      const how = (mm: number) => (mm < 0 ? deep(mm) : millimetres(mm));
       if (Number.isFinite(least)) {
         now.replaceChildren(shown(`/bodies/${nearest}/name`), " ", shown(at, how));
       } else now.replaceChildren("clear");

@@ -38,6 +38,9 @@ export function millimetres(mm: number): string {
   return size >= 1e-6 ? `${rounded(1e6 * mm)}\u00a0nm` : "under\u00a01\u00a0nm";
 }
 
+/** How deep something is, by a clearance below zero: "1.50 mm deep". */
+export const deep: Format = (clearance) => `${millimetres(-clearance)} deep`;
+
 /** A share of one as a percentage without its sign. */
 export const percent: Format = (share) => mean(100 * share);
 

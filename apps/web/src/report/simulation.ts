@@ -44,7 +44,7 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
   const view = new AnatomyView(group, anatomy, anatomy.corners, wholeView(record, anatomy));
   record.runs.forEach((run, number) => {
     const layer = { lengths: strokes(record, anatomy, run, number), cut: null };
-    const description = `The anatomy with the paths of the tool tip, ${run.name}; in the colour of alarm where the tip is where it must not be.`;
+    const description = `The anatomy with the paths of the tool tip, ${run.name}; in red where ${record.has_convex_tool ? "the tool touches the surface or is inside" : "the tip is where it must not be"}.`;
     const bad = record.has_convex_tool ? "touched" : "went in";
     const [verdict, words] = run.kept_out ? ["good", "stayed out"] : ["bad", bad];
     view.add(
@@ -60,7 +60,7 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
         : []),
     );
   });
-  return make("section", {}, group, hint());
+  return make("section", {}, group, hint(record.runs.length));
 }
 
 /** A ring around the worst place of a rule that let the tool in, so that a small place is found. */
@@ -134,7 +134,7 @@ const figures = ({ has_convex_tool, guides }: SimulationRecord): HTMLElement =>
     "The figures",
     [
       has_convex_tool
-        ? "A contact is a cycle in which the tool touched or cut the surface. "
+        ? "A contact is a cycle in which the tool touched or cut the surface. The closest approach is that of the whole tool. "
         : "A crossing is a move after which, or during which, the tip was on the other side of the surface. ",
       ...(guides?.length
         ? [
@@ -146,8 +146,13 @@ const figures = ({ has_convex_tool, guides }: SimulationRecord): HTMLElement =>
     entries("/runs"),
     [
       { ...named("rule", "/name"), content: (row) => [runName(Number(lastKey(row)))] },
-      harm("deepest inside", "/summary/deepest_mm", millimetres),
-      harm("cycles inside", "/summary/cycles_inside"),
+      // A convex tool and an open surface have no depth.
+      ...(valueAt("/runs/0/summary/deepest_mm") === null
+        ? []
+        : [
+            harm("deepest inside", "/summary/deepest_mm", millimetres),
+            harm("cycles inside", "/summary/cycles_inside"),
+          ]),
       harm(has_convex_tool ? "contacts" : "crossings", "/summary/crossings"),
       ...(guides?.length
         ? [
@@ -179,23 +184,27 @@ function speed(record: SimulationRecord): HTMLElement[] {
   ];
 }
 
-/** How it was told where the tip, or a convex tool, is. */
+/** How the check knows where the tip, or a convex tool, is. */
 function judgement({ mesh, has_convex_tool }: SimulationRecord): string {
   if (has_convex_tool) {
-    return "The clearance of the whole tool is the distance of its convex hull from the triangles, by a computation that shares nothing with the rule. A motion counts as a contact unless the distances on its way prove that the tool did not touch.";
+    return "The clearance of the whole tool is the distance of its convex hull from the triangles, by a computation that shares nothing with the rule. A tool that touches the surface or is inside is at least as deep as the number says. A motion counts as a contact unless the distances on its way prove that the tool did not touch; a distance up to 1 nm counts as touching.";
   }
   return mesh.surface === "closed"
     ? "Inside or outside is told by counting how often a ray from the tip passes through the surface, which shares nothing with the rules."
     : "The surface has holes, so it has no inside: only crossings count. On which side of the surface the tip is, is told by the angle-weighted normal at the nearest point of it (the pseudonormal), which no rule uses. The tip may go around a rim; sliding around one in contact counts as a crossing.";
 }
 
+/** Where the distances of a tip come from. */
+const distances =
+  " Distances come from a search tree (a PD-tree) and a closest-point computation that the rules may use too. The tests compare both with brute force and with an independent computation in quadruple precision. A depth up to 1 nm counts as touching, not as inside.";
+
 function measurement(record: SimulationRecord): HTMLElement {
   return section(
     "How this was measured",
     method(
-      "A seeded random hand moves over the anatomy and pushes into it, cycle by cycle. Each rule gets the very same hand; it may shorten or turn each motion before the tool follows. In every cycle it is then checked where the tip really is. ",
+      "A simulated operator moves over the anatomy and pushes into it; its random motions are seeded. Every rule gets the same commanded motions, and may shorten or turn each before the tool follows. After every cycle an independent check finds where the tool really is. ",
       judgement(record),
-      " Distances come from a search tree (a PD-tree) and a closest-point computation that the rules may use too; the tests hold both to brute force and to an independent computation in quadruple precision. Depths up to a nanometre count as touching, not as inside.",
+      ...(record.has_convex_tool ? [] : [distances]),
     ),
     method(
       "Times are of the step alone, on the machine named below, with whatever else that machine did meanwhile.",

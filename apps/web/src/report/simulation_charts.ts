@@ -4,9 +4,10 @@ import * as Plot from "@observablehq/plot";
 import { drawn, make } from "../page/elements.ts";
 import { chart, Legend, type Look, levelMarks, logarithmic, tickText, tipOf } from "./charts.ts";
 import { extremes } from "./extremes.ts";
+import { valueAt } from "./record.ts";
 import { panels } from "./report_page.ts";
 import { ordinal, runColor } from "./runs.ts";
-import { microseconds, millimetres, shown } from "./shown.ts";
+import { deep, microseconds, millimetres, show, shown } from "./shown.ts";
 import type { Moment, SimulationRecord, Stroke } from "./simulation_record.ts";
 
 /** A cycle in a plot: what is drawn of it, and where in the record that is. */
@@ -41,7 +42,40 @@ const lines = (points: readonly Point[]): Plot.Markish[] => [
   }),
 ];
 
-/** How far the tip is from the surface over the time of a stroke: all of it, and near the surface. */
+/** Shows a depth. That of a convex tool is a lower bound: its clearance ends at minus its radius. */
+export function showDepth<Shown extends Element>(
+  element: Shown,
+  { has_convex_tool }: SimulationRecord,
+  from: string,
+): Shown {
+  if (!has_convex_tool) return show(element, from, deep);
+  element.append("at least ", show(element.cloneNode() as Shown, from, deep));
+  return element;
+}
+
+/** A clearance; below zero, that of a convex tool is a depth. */
+export const shownClearance = (record: SimulationRecord, from: string): HTMLSpanElement =>
+  record.has_convex_tool && Number(valueAt(from)) < 0
+    ? showDepth(make("span"), record, from)
+    : shown(from, millimetres);
+
+/** The words for the clearance: of the tip, or of a whole convex tool. */
+const wordsOf = ({ has_convex_tool, mesh }: SimulationRecord) =>
+  has_convex_tool
+    ? {
+        clearance: "tool to surface",
+        below: `touching${mesh.surface === "closed" ? " or inside" : ""}, at least this deep`,
+        description:
+          "Distance of the whole tool to the surface over the time of one stroke, for each rule; below zero the tool touches the surface or is inside, at least as deep as drawn.",
+      }
+    : {
+        clearance: "tip to surface",
+        below: mesh.surface === "closed" ? "inside the anatomy" : null,
+        description:
+          "Distance of the tool tip to the surface over the time of one stroke, for each rule; below zero the tip is inside the anatomy.",
+      };
+
+/** How far the tool is from the surface over the time of a stroke: all of it, and near the surface. */
 export function clearanceCharts(record: SimulationRecord, stroke: number) {
   const legend = legendOf(record.runs.keys());
   const points = record.runs.flatMap(({ strokes }, run) =>
@@ -71,16 +105,16 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
       return line;
     };
   };
-  const isClosed = record.mesh.surface === "closed";
+  const words = wordsOf(record);
   const level = (y: number, text: string, dy = -8) =>
     levelMarks("y", y, text, { frameAnchor: "right", dy, textAnchor: "end" });
   const draw = (domain: readonly [number, number], kept: number) => (): Plot.PlotOptions => ({
     height: 340,
     marginLeft: 52,
     x: { label: "time [s]", domain: extremes(points.map(({ x }) => x)), grid: true },
-    y: { label: "tip to surface [mm]", domain, grid: true },
+    y: { label: `${words.clearance} [mm]`, domain, grid: true },
     marks: [
-      ...(isClosed && domain[0] < 0
+      ...(words.below && domain[0] < 0
         ? [
             Plot.rectY([0], {
               y1: domain[0],
@@ -90,7 +124,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
               fill: "var(--alarm)",
               fillOpacity: 0.08,
             }),
-            Plot.text(["inside the anatomy"], {
+            Plot.text([words.below], {
               ...{ frameAnchor: "bottom-left", dx: 8, dy: -8, fill: "var(--alarm)" },
             }),
           ]
@@ -107,7 +141,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
       [shown(`/runs/${run}/name`)],
       [
         ["cycle", ordinal(`${from}/tip/${cycle}`)],
-        ["tip to surface", shown(`${from}/clearance_mm/${cycle}`, millimetres)],
+        [words.clearance, shownClearance(record, `${from}/clearance_mm/${cycle}`)],
       ],
     );
   };
@@ -121,10 +155,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
   // Where no rule failed, no more than a reader cares for: rules that only touch leave no room.
   const around = Math.max(-deepest, ...guarded, record.kept_mm, deepest === 0 ? 0.1 : 0);
   const both = [
-    [
-      "Distance of the tool tip to the surface over the time of one stroke, for each rule; below zero the tip is inside the anatomy.",
-      draw([low - room, high + room], 0),
-    ],
+    [words.description, draw([low - room, high + room], 0)],
     [
       "The same distances, enlarged around the surface.",
       draw([deepest - 0.5 * around, 2.5 * around], record.kept_mm),

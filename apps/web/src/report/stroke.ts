@@ -7,10 +7,11 @@ import { type Cut, closeUp, hang, markedCycle } from "./cut.ts";
 import { extremes } from "./extremes.ts";
 import { mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
+import { valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { ordinal, pictureGrid, runColor, runName } from "./runs.ts";
 import { millimetres, show } from "./shown.ts";
-import { clearanceCharts } from "./simulation_charts.ts";
+import { clearanceCharts, showDepth, shownClearance } from "./simulation_charts.ts";
 import {
   type Run,
   type SimulationRecord,
@@ -41,15 +42,13 @@ export function strokeSection(record: SimulationRecord, anatomy: Anatomy): HTMLE
       "Stroke ",
       chooser,
       " along the path of the tip; at first it is the one that tells most. ",
-      ...(isClosed ? ["Hatched is the anatomy; "] : []),
-      ...(record.has_convex_tool
-        ? [make("b", {}, "red"), " is where the tool, which is not drawn, touches the surface. "]
+      ...(isClosed ? ["The anatomy is hatched. "] : []),
+      make("b", {}, "Red"),
+      record.has_convex_tool
+        ? " is where the tool, which is not drawn, touches the surface or is inside. Distances are those of the whole tool. "
         : isClosed
-          ? [make("b", {}, "red"), " is where the tip is inside it. "]
-          : [
-              make("b", {}, "Red"),
-              " is where the tip has passed through the surface an odd number of times. ",
-            ]),
+          ? " is where the tip is inside it. "
+          : " is where the tip has passed through the surface an odd number of times. ",
       "The label is at the worst moment, the balls are where the tip and, hollow, the hand are at the time chosen below.",
     ),
     content,
@@ -89,7 +88,7 @@ function strokeView(
   const group = pictureGrid(record.runs.length);
   const view = new AnatomyView(group, anatomy, near, frame, true);
   const followed = record.runs.map((run, number) => {
-    const { tip, clearance_mm, outcome } = run.strokes[stroke] as Stroke;
+    const { tip, outcome } = run.strokes[stroke] as Stroke;
     const path = tip.map(anatomy.placed);
     const hand = (record.hand[stroke] ?? []).map(anatomy.placed);
     const worst = markedCycle(record, number, moment, frame, anatomy);
@@ -98,11 +97,7 @@ function strokeView(
     const lengths = coloured(good, bad, runColor(number), widths.near);
     const cut = cuts[number] as Cut;
     const at = (cycle: number) => path[cycle] as (typeof path)[number];
-    const label = distance(
-      clearanceAt(number, stroke, worst),
-      clearance_mm[worst] as number,
-      isBad[worst] === true,
-    );
+    const label = distance(record, clearanceAt(number, stroke, worst), isBad[worst] === true);
     const kind = isBad[worst] ? "worst bad" : "worst";
     const marks = {
       worst: mark(kind, at(worst), 5, label),
@@ -118,7 +113,7 @@ function strokeView(
     return (cycle: number) => {
       marks.tool.place = at(cycle);
       marks.hand.place = hand[cycle] ?? at(cycle);
-      const clearance = show(make("span"), clearanceAt(number, stroke, cycle), millimetres);
+      const clearance = shownClearance(record, clearanceAt(number, stroke, cycle));
       now.replaceChildren(clearance, `, ${outcomes[outcome[cycle] as string]}`);
     };
   });
@@ -141,12 +136,14 @@ function strokeView(
 const clearanceAt = (run: number, stroke: number, cycle: number): string =>
   `/runs/${run}/strokes/${stroke}/clearance_mm/${cycle}`;
 
-/** How deep or how far away the tip is. Past an open surface, the distance tells no depth. */
-function distance(from: string, clearance: number, isBad: boolean): SVGTSpanElement {
+/** The depth or distance of a tool. Past an open surface the distance of a tip is not a depth. */
+function distance(record: SimulationRecord, from: string, isBad: boolean): SVGTSpanElement {
   const label = drawn("tspan", {});
-  if (isBad && clearance < 0) return show(label, from, (mm) => `${millimetres(-mm)} deep`);
+  const clearance = Number(valueAt(from));
+  if (isBad && clearance < 0) return showDepth(label, record, from);
   if (!isBad && Math.abs(clearance) > touching)
     return show(label, from, (mm) => `${millimetres(mm)} away`);
-  label.textContent = isBad ? "passed through" : "touching";
+  const passed = record.has_convex_tool ? "touched" : "passed through";
+  label.textContent = isBad ? passed : "touching";
   return label;
 }
