@@ -60,7 +60,7 @@ TEST_F(Live, ThePageHasTheSettingsAndEveryBitOfTheMeshes) {
   write_binary_stl(folder_.file("heart of a pig.stl"), make_shape("sphere"));
   succeeded(
       run("cube 'heart of a pig.stl' --activation none --radius 4 --tool-radius 0.5 --margin 0.25 "
-          "--max-step 0.125 --guide ball:0,0,0:9 high=half_space:0,0,-9:0,0,1"));
+          "--max-step 0.125 --guide ball:0,0,0:9 --guide high=half_space:0,0,-9:0,0,1"));
   nlohmann::json told = settings();
   const nlohmann::json meshes = told.at("meshes");
   told.erase("meshes");

@@ -33,7 +33,7 @@ TEST(SimulateGuides, EveryRuleKeepsTheTipInAndTheHandAloneDoesNot) {
   const test::CommandFolder folder;
   const Json record = record_of(folder,
                                 "cube --strokes 4 --cycles 400 --guide corridor=slab:0,0,0:1,0,0:4 "
-                                "half_space:0,0,20:0,0,1 --tool-radius 1");
+                                "--guide half_space:0,0,20:0,0,1 --tool-radius 1");
   EXPECT_EQ(record["guides"].size(), 2U);
   EXPECT_CONTAINS(record["headline"].get<std::string>(), "left no guide by more than promised");
   EXPECT_CONTAINS(record["settings"]["guides"].get<std::string>(), "corridor=slab");
@@ -124,7 +124,7 @@ TEST(SimulateGuides, OfAnInstrumentAreKeptInEachModeThatHasThem) {
   const Json record = record_of(
       folder,
       "gear --robot psm --strokes 3 --cycles 200 --speed 5 --guide axis:6:0,1,0:0,0,1:2.5 "
-      "tip=point:6:0,10.2,0:half_space:0,0,0:0,0,1");
+      "--guide tip=point:6:0,10.2,0:half_space:0,0,0:0,0,1");
   EXPECT_CONTAINS(record["headline"].get<std::string>(), "off the anatomy, and in its guides");
   std::size_t left = 0;
   for (const Json& row : record["rows"]) {
@@ -151,7 +151,7 @@ TEST(SimulateTool, TwoRunsWithGuidesDifferInTimesOnly) {
   for (const char* extent : {"--refine 3", "--refine 0 --branches 3"}) {
     const std::string arguments = std::string(
                                       "cube --strokes 3 --cycles 200 --guide slab:0,0,0:1,0,0:4 "
-                                      "half_space:0,0,20:0,0,1 --tool blade:20:6:1 ") +
+                                      "--guide half_space:0,0,20:0,0,1 --tool blade:20:6:1 ") +
                                   extent;
     const Json first = record_of(folder, arguments);
     EXPECT_TRUE(without_times(first) == without_times(record_of(folder, arguments))) << extent;

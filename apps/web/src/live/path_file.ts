@@ -62,7 +62,7 @@ export function replayCommand({ mesh, settings }: PathHeader, file: string): str
     `keepout replay ${mesh} --closed-loop --poses ${file} --out steps.csv --activation ${rule}` +
     ` --radius ${settings.radius} --tool-radius ${settings.toolRadius} --margin ${settings.margin}` +
     ` --max-step ${settings.maxStep}` +
-    (settings.guides.length > 0 ? ` --guide ${settings.guides.map(shellWord).join(" ")}` : "")
+    settings.guides.map((guide) => ` --guide ${shellWord(guide)}`).join("")
   );
 }
 
