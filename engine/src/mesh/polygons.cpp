@@ -76,6 +76,28 @@ bool is_ear(const std::vector<Vec2>& points, const std::vector<std::size_t>& lef
   });
 }
 
+/// The points without those that equal the next one.
+std::vector<Vec2> without_doubled(const std::vector<Vec2>& points) {
+  std::vector<Vec2> distinct;
+  distinct.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i] != points[(i + 1) % points.size()]) distinct.push_back(points[i]);
+  }
+  return distinct;
+}
+
+/// The place of a corner that can be cut off: one that equals the next one, else an ear.
+/// left.size() if there is none.
+std::size_t place_to_cut(const std::vector<Vec2>& points, const std::vector<std::size_t>& left) {
+  const std::size_t n = left.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (points[left[i]] == points[left[(i + 1) % n]]) return i;
+  }
+  std::size_t i = 0;
+  while (i < n && !is_ear(points, left, i)) ++i;
+  return i;
+}
+
 /// False, and nothing is appended, if the polygon is not convex and has too many corners.
 bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertices,
                  std::vector<Corners>& triangles) {
@@ -86,11 +108,11 @@ bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertic
   const std::vector<Vec2> points = projected(polygon, vertices);
   std::vector<std::size_t> left(polygon.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
-  if (!is_convex(points)) {
+  // Both sides of a doubled corner have no area, so a reflex one would pass for convex.
+  if (!is_convex(without_doubled(points))) {
     if (polygon.size() > most_ear_corners) return false;
     while (left.size() > 3) {
-      std::size_t i = 0;
-      while (i < left.size() && !is_ear(points, left, i)) ++i;
+      const std::size_t i = place_to_cut(points, left);
       if (i == left.size()) break;
       const std::size_t n = left.size();
       triangles.push_back(

@@ -38,7 +38,8 @@ class Polygons {
 
   /// Cuts each polygon into two triangles less than it has corners, wound as it is, and appends
   /// them to the surface: a fan where it is convex, else ears (Meisters 1975), as seen along its
-  /// mean normal. What crosses itself or has no area is cut somehow. Warns of what was left out.
+  /// mean normal. A corner that equals the next one gets a degenerate triangle. What crosses itself
+  /// or has no area is cut somehow. Warns of what was left out.
   ///
   /// Throws Error if the surface then has no triangles, if it has too many to be numbered, and for
   /// a polygon that is not convex and has more than 1000 corners, as ears take a time that grows

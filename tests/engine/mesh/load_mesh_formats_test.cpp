@@ -31,6 +31,31 @@ TEST_F(LoadMesh, PolygonsAreCutIntoTrianglesWoundAlike) {
   for (TriangleId t = 0; t < 4; ++t) EXPECT_EQ(obj.mesh->normal(t), Vec3(0, 0, 1)) << t;
 }
 
+TEST_F(LoadMesh, AConcavePolygonWithADoubledCornerIsFilledOnce) {
+  // An L of area 700 whose corner `doubled` is there twice, begun at the corner `first`.
+  const std::vector<Vec3> corners{{40, 0, 0},  {40, 10, 0}, {10, 10, 0},
+                                  {10, 40, 0}, {0, 40, 0},  {0, 0, 0}};
+  for (std::size_t doubled = 0; doubled < corners.size(); ++doubled) {
+    for (std::size_t first = 0; first < corners.size(); ++first) {
+      std::string vertices, face = "f";
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const std::size_t corner = (first + i) % corners.size();
+        for (int times = corner == doubled ? 2 : 1; times > 0; --times) {
+          vertices += "v " + row(corners[corner]);
+          face += " " + std::to_string(std::count(vertices.begin(), vertices.end(), 'v'));
+        }
+      }
+      const LoadedMesh loaded = load("mesh.obj", vertices + face + "\n");
+      EXPECT_EQ(loaded.mesh->triangle_count(), 5u) << doubled << " from " << first;
+      EXPECT_DOUBLE_EQ(area_of(*loaded.mesh), 700.0) << doubled << " from " << first;
+      for (TriangleId t = 0; t < 5; ++t) {
+        const Triangle c = loaded.mesh->triangle(t);
+        EXPECT_GE((c[1] - c[0]).cross(c[2] - c[0]).z(), 0.0) << doubled << " from " << first;
+      }
+    }
+  }
+}
+
 TEST_F(LoadMesh, PolygonsOfAnySizeAreRead) {
   std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 12\nproperty double x\nproperty double y\n"
