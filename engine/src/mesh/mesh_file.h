@@ -89,8 +89,8 @@ std::optional<Surface> read_binary_stl(const MeshSource& source, unsigned thread
 /// header declares; other properties and elements are passed over.
 MeshFile read_ply(const MeshSource& source);
 
-// Coordinates of text are floats where all of its numerals may have been printed from floats, and
-// doubles elsewhere.
+// Coordinates of text are floats if all numerals of the file may have been printed from floats, and
+// doubles otherwise.
 
 MeshFile read_text_stl(const MeshSource& source);
 MeshFile read_obj(const MeshSource& source);

@@ -200,15 +200,19 @@ class VtpArrays {
           numbers.push_back(is_single ? double{lines.number<float>(word)} : lines.coordinate(word));
         }
       }
-      if (!lines.has_only_floats()) return numbers;
-      for (double& x : numbers) x = static_cast<float>(x);
+      if (!lines.has_only_floats()) has_only_floats_ = false;
       return numbers;
     }
     for_each_number(array, type, [&](const char* bytes, bool swapped) {
-      numbers.push_back(real_at(bytes, type, swapped));
+      const double number = real_at(bytes, type, swapped);
+      if (number != static_cast<float>(number)) has_only_floats_ = false;
+      numbers.push_back(number);
     });
     return numbers;
   }
+
+  /// True if all real numbers so far are floats, or may have been printed from floats.
+  bool has_only_floats() const noexcept { return has_only_floats_; }
 
   std::vector<std::uint64_t> wholes(const VtpArray& array) {
     const NumberType& type = type_of(array);
@@ -295,6 +299,7 @@ class VtpArrays {
   const MeshSource& source_;
   const VtpDocument& document_;
   std::uint64_t unread_;  // bytes of the file: many arrays at one place would take any memory
+  bool has_only_floats_ = true;
 };
 
 void add_points(const VtpPiece& piece, VtpArrays& arrays, const MeshSource& source,
@@ -346,6 +351,8 @@ MeshFile read_vtp(const MeshSource& source) {
     add_cells(VtkCellKind::strips, piece.strips, first, piece.points, arrays, source, cells);
     cells.leave_out(piece.left_out);
   }
+  // Pieces share the vertices of a seam, so all pieces are rounded, or none.
+  if (arrays.has_only_floats()) mesh.round_to_floats();
   cells.cut_into(mesh, source);
   return mesh;
 }

@@ -184,6 +184,32 @@ TEST_F(LoadMesh, VtpPiecesAreJoined) {
   EXPECT_EQ(loaded.mesh->triangle(1)[0], loaded.mesh->triangle(0)[2]);
 }
 
+/// A VTP file of Float64 with a piece for each of the coordinates of a triangle.
+std::string vtp_of_triangles(const std::vector<std::string>& triangles) {
+  std::string text = "<VTKFile type=\"PolyData\"><PolyData>\n";
+  for (const std::string& coordinates : triangles) {
+    text +=
+        "<Piece NumberOfPoints=\"3\" NumberOfPolys=\"1\"><Points><DataArray type=\"Float64\">" +
+        coordinates +
+        "</DataArray></Points>\n<Polys><DataArray type=\"Int32\" Name=\"connectivity\">0 1 2"
+        "</DataArray><DataArray type=\"Int32\" Name=\"offsets\">3</DataArray></Polys></Piece>\n";
+  }
+  return text + "</PolyData></VTKFile>\n";
+}
+
+TEST_F(LoadMesh, VtpPiecesAreRoundedTogether) {
+  const std::string seam = "0.1 0.2 0.3 40.1 0.2 0.3 ";
+  // The numerals of the first piece may have been printed from floats.
+  const LoadedMesh doubles = load_unchecked(
+      "mesh.vtp", vtp_of_triangles({seam + "0.1 40.2 0.3", seam + "0.1 40.2 0.300000000001"}));
+  EXPECT_EQ(doubles.mesh->vertex_count(), 4u);
+  EXPECT_EQ(doubles.mesh->vertex(0), Vec3(0.1, 0.2, 0.3));
+  const LoadedMesh floats =
+      load_unchecked("mesh.vtp", vtp_of_triangles({seam + "0.1 40.2 0.3", seam + "0.1 40.2 0.7"}));
+  EXPECT_EQ(floats.mesh->vertex_count(), 4u);
+  EXPECT_EQ(floats.mesh->vertex(0), Vec3(0.1f, 0.2f, 0.3f));
+}
+
 TEST_F(LoadMesh, VtpThatIsMalformedIsAnErrorThatSaysWhere) {
   const std::string good = as_vtp(tetrahedron(), {});
   expect_faults("mesh.vtp", good,

@@ -76,9 +76,11 @@ std::string lower_extension(const std::filesystem::path& path);
 /// warning for a size that is none of anatomy in mm, for an open surface, and for an inconsistent
 /// winding.
 ///
-/// Coordinates of binary files are exact. Those of text are the doubles nearest to the numerals; or
-/// the nearest floats, where a PLY file declares floats, or where all numerals of a file may have
-/// been printed from floats: with nine digits, these are the floats of its binary twin.
+/// Coordinates of binary files are exact. Those of text are the floats nearest to the numerals if a
+/// PLY, VTK or VTP file declares floats, or if all numerals of a file may have been printed from
+/// floats: with nine digits, these are the floats of its binary twin. Otherwise they are the
+/// nearest doubles. The numerals are judged once per file, so pieces of a VTP file fit together at
+/// a seam.
 ///
 /// Throws Error for a unit or a scale that is none. Throws Error, naming the file, the line where
 /// there is one, what is wrong and what to do. A file that was cut short is an error; or a warning,
