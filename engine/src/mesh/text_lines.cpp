@@ -164,6 +164,12 @@ std::uint64_t TextLines::whole_number(std::string_view word) const {
   return value;
 }
 
+std::string lower(std::string_view word) {
+  std::string text(word);
+  for (char& c : text) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
 std::string in_quotes(std::string_view word) {
   constexpr std::size_t longest = 24;
   std::string text = "'";

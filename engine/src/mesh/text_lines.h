@@ -87,6 +87,9 @@ class TextLines {
 /// Where counts tell of all other losses.
 inline constexpr std::string_view last_number_lost = "its last number may be another";
 
+/// The word in lower case (ASCII).
+std::string lower(std::string_view word);
+
 /// The word in quotes, fit for a message: short, and without control characters.
 std::string in_quotes(std::string_view word);
 

@@ -37,12 +37,6 @@ constexpr std::array<NamedType, 13> types{{{"char", {1, true, true}},
 
 constexpr const char* cut_short = ", so it was cut short; copy or export it again";
 
-std::string lower(std::string_view word) {
-  std::string text(word);
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 /// Reads a legacy VTK file: lines with keywords, and numbers behind them, as text or as bytes in
 /// big-endian order.
 class LegacyVtk {

@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +60,9 @@ class ByteStream {
     return is_base64_ ? left / 4 * 3 + 3 : left;
   }
 
+  /// True if nothing but blanks follows.
+  bool is_at_end() { return is_base64_ ? decoded_ == 0 && !find_character() : position_ == end_; }
+
   /// So many bytes of the file were used.
   std::uint64_t taken() const noexcept { return position_ - begin_ - (buffer_.size() - used_); }
 
@@ -89,19 +93,25 @@ class ByteStream {
   }
 
  private:
-  char next_character() {
+  /// Moves on to the next character that is no blank; false if there is none.
+  bool find_character() {
     constexpr std::uint64_t at_once = std::uint64_t{1} << 16;
-    while (true) {
+    constexpr std::string_view blanks = " \n\r\t";
+    for (;; ++used_) {
       if (used_ == buffer_.size()) {
         buffer_.resize(static_cast<std::size_t>(std::min(at_once, end_ - position_)));
-        if (buffer_.empty()) fail("ends too early" + std::string(cut_short));
+        used_ = 0;
+        if (buffer_.empty()) return false;
         source_.read(position_, buffer_.data(), buffer_.size());
         position_ += buffer_.size();
-        used_ = 0;
       }
-      const char c = buffer_[used_++];
-      if (c != ' ' && c != '\n' && c != '\r' && c != '\t') return c;
+      if (blanks.find(buffer_[used_]) == std::string_view::npos) return true;
     }
+  }
+
+  char next_character() {
+    if (!find_character()) fail("ends too early" + std::string(cut_short));
+    return buffer_[used_++];
   }
 
   /// Four characters stand for three bytes, or fewer if they end with '='.
@@ -137,19 +147,27 @@ class ByteStream {
   std::size_t decoded_ = 0;  // bytes of the group that were not read yet
 };
 
-std::vector<char> read_plain(ByteStream& stream, const VtpDocument& document) {
+[[noreturn]] void refuse_surplus(const ByteStream& stream, std::uint64_t most) {
+  stream.fail("holds more than the " + std::to_string(most) + " bytes that belong in it" +
+              cut_short);
+}
+
+std::vector<char> read_plain(ByteStream& stream, const VtpDocument& document, std::uint64_t most) {
   const std::uint64_t size = stream.read_count(document);
   if (size > stream.left()) {
     stream.fail("declares " + std::to_string(size) + " bytes, more than the file has room for" +
                 cut_short);
   }
+  if (size > most) refuse_surplus(stream, most);
   std::vector<char> bytes(static_cast<std::size_t>(size));
   stream.read(bytes.data(), bytes.size());
   return bytes;
 }
 
-/// Reads blocks of data, each compressed by zlib.
-std::vector<char> read_compressed(ByteStream& stream, const VtpDocument& document) {
+/// Reads blocks of data, each compressed by zlib. Unpacks none if all have more than `most` bytes:
+/// a small file would take any memory.
+std::vector<char> read_compressed(ByteStream& stream, const VtpDocument& document,
+                                  std::uint64_t most) {
   std::vector<char> bytes;
   const std::uint64_t blocks = stream.read_count(document);
   if (blocks == 0) return bytes;
@@ -161,12 +179,21 @@ std::vector<char> read_compressed(ByteStream& stream, const VtpDocument& documen
   }
   std::vector<std::uint64_t> packed(static_cast<std::size_t>(blocks));
   for (std::uint64_t& count : packed) count = stream.read_count(document);
+  const auto unpacked_size = [&](std::size_t b) {
+    return b + 1 == packed.size() && last_size > 0 ? last_size : size;
+  };
+  std::uint64_t room = most;
+  for (std::size_t b = 0; b < packed.size(); ++b) {
+    if (packed[b] > stream.left() || unpacked_size(b) > most_unpacked * packed[b]) {
+      stream.fail("block " + std::to_string(b) + " has an impossible size" + cut_short);
+    }
+    if (unpacked_size(b) > room) refuse_surplus(stream, most);
+    room -= unpacked_size(b);
+  }
   std::vector<char> block;
   for (std::size_t b = 0; b < packed.size(); ++b) {
-    const std::uint64_t unpacked = b + 1 == packed.size() && last_size > 0 ? last_size : size;
-    // No more comes out of zlib for each byte, so a damaged size is found before memory is taken.
-    constexpr std::uint64_t most = 1032;
-    if (packed[b] > stream.left() || unpacked > most * packed[b]) {
+    const std::uint64_t unpacked = unpacked_size(b);
+    if (packed[b] > stream.left()) {
       stream.fail("block " + std::to_string(b) + " has an impossible size" + cut_short);
     }
     block.resize(static_cast<std::size_t>(packed[b]));
@@ -189,7 +216,9 @@ class VtpArrays {
   VtpArrays(const MeshSource& source, const VtpDocument& document)
       : source_(source), document_(document), unread_(source.size()) {}
 
-  std::vector<double> reals(const VtpArray& array) {
+  /// The numbers of an array in which `count` belong. There may be others in a text, and fewer
+  /// elsewhere: the caller must check.
+  std::vector<double> reals(const VtpArray& array, std::uint64_t count) {
     const NumberType& type = type_of(array);
     std::vector<double> numbers;
     if (array.format == VtpArray::Format::text) {
@@ -203,7 +232,7 @@ class VtpArrays {
       if (!lines.has_only_floats()) has_only_floats_ = false;
       return numbers;
     }
-    for_each_number(array, type, [&](const char* bytes, bool swapped) {
+    for_each_number(array, type, count, [&](const char* bytes, bool swapped) {
       const double number = real_at(bytes, type, swapped);
       if (number != static_cast<float>(number)) has_only_floats_ = false;
       numbers.push_back(number);
@@ -214,7 +243,8 @@ class VtpArrays {
   /// True if all real numbers so far are floats, or may have been printed from floats.
   bool has_only_floats() const noexcept { return has_only_floats_; }
 
-  std::vector<std::uint64_t> wholes(const VtpArray& array) {
+  /// Like reals().
+  std::vector<std::uint64_t> wholes(const VtpArray& array, std::uint64_t count) {
     const NumberType& type = type_of(array);
     if (!type.whole) fail(array, "must have integers, not " + in_quotes(array.type));
     std::vector<std::uint64_t> numbers;
@@ -227,7 +257,7 @@ class VtpArrays {
       }
       return numbers;
     }
-    for_each_number(array, type, [&](const char* bytes, bool swapped) {
+    for_each_number(array, type, count, [&](const char* bytes, bool swapped) {
       const std::int64_t number = whole_at(bytes, type, swapped);
       if (number < 0) fail(array, "has a number below 0; the file is damaged");
       numbers.push_back(static_cast<std::uint64_t>(number));
@@ -235,8 +265,9 @@ class VtpArrays {
     return numbers;
   }
 
-  /// The first string of an array. As text, each of its characters is a number.
-  std::string string(const VtpArray& array) {
+  /// The strings of an array, each of which ends with a NUL. As text, each of their characters is a
+  /// number.
+  std::vector<std::string> strings(const VtpArray& array) {
     std::string text;
     if (array.format == VtpArray::Format::text) {
       TextLines lines = text_of(array);
@@ -246,10 +277,23 @@ class VtpArrays {
         }
       }
     } else {
-      const std::vector<char> bytes = bytes_of(array);
+      constexpr std::uint64_t longest = std::uint64_t{1} << 16;
+      const std::vector<char> bytes = bytes_of(array, longest);
       text.assign(bytes.begin(), bytes.end());
     }
-    return text.substr(0, text.find('\0'));
+    std::vector<std::string> strings;
+    for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
+      end = std::min(text.find('\0', begin), text.size());
+      strings.push_back(text.substr(begin, end - begin));
+    }
+    return strings;
+  }
+
+  /// True if the array has no numbers.
+  bool is_empty(const VtpArray& array) const {
+    if (array.format == VtpArray::Format::text) return !text_of(array).next();
+    ByteStream stream = stream_of(array);
+    return stream.is_at_end() || stream.read_count(document_) == 0;
   }
 
   [[noreturn]] void fail(const VtpArray& array, const std::string& what) const {
@@ -269,28 +313,37 @@ class VtpArrays {
     return TextLines(std::move(text), source_.name(), {.first_line = array.line});
   }
 
-  std::vector<char> bytes_of(const VtpArray& array) {
-    std::uint64_t begin = array.begin;
-    std::uint64_t end = array.end;
-    const bool is_appended = array.format == VtpArray::Format::appended;
-    if (is_appended) {
-      end = source_.size();
-      if (document_.appended == 0 || array.begin > end - document_.appended) {
-        fail(array, "its data are not in the file" + std::string(cut_short));
-      }
-      begin += document_.appended;
+  ByteStream stream_of(const VtpArray& array) const {
+    if (array.format != VtpArray::Format::appended) {
+      return ByteStream(source_, array.name, array.begin, array.end, true);
     }
-    ByteStream stream(source_, array.name, begin, end, !(is_appended && document_.is_raw));
-    std::vector<char> bytes = document_.is_compressed ? read_compressed(stream, document_)
-                                                      : read_plain(stream, document_);
+    const std::uint64_t end = source_.size();
+    if (document_.appended == 0 || array.begin > end - document_.appended) {
+      fail(array, "its data are not in the file" + std::string(cut_short));
+    }
+    return ByteStream(source_, array.name, document_.appended + array.begin, end,
+                      !document_.is_raw);
+  }
+
+  std::vector<char> bytes_of(const VtpArray& array, std::uint64_t most) {
+    ByteStream stream = stream_of(array);
+    std::vector<char> bytes = document_.is_compressed ? read_compressed(stream, document_, most)
+                                                      : read_plain(stream, document_, most);
+    // Behind a count of 0, VTK writes sizes of blocks that are not there.
+    if (array.format == VtpArray::Format::base64 && !bytes.empty() && !stream.is_at_end()) {
+      fail(array, "has more base64 than the " + std::to_string(bytes.size()) +
+                      " bytes that it declares; the file is damaged");
+    }
     if (stream.taken() > unread_) fail(array, "overlaps another one; the file is damaged");
     unread_ -= stream.taken();
     return bytes;
   }
 
   template <class Take>
-  void for_each_number(const VtpArray& array, const NumberType& type, const Take& take) {
-    const std::vector<char> bytes = bytes_of(array);
+  void for_each_number(const VtpArray& array, const NumberType& type, std::uint64_t count,
+                       const Take& take) {
+    const std::uint64_t most = std::min(count, UINT64_MAX / type.size) * type.size;
+    const std::vector<char> bytes = bytes_of(array, most);
     if (bytes.size() % type.size != 0) fail(array, "has half a number" + std::string(cut_short));
     const bool swapped = document_.is_big_endian != (std::endian::native == std::endian::big);
     for (std::size_t i = 0; i < bytes.size(); i += type.size) take(bytes.data() + i, swapped);
@@ -302,10 +355,19 @@ class VtpArrays {
   bool has_only_floats_ = true;
 };
 
+/// Fails if an array holds anything although its Piece declares a `count` of 0, or none.
+void check_is_empty(const std::optional<VtpArray>& array, const std::string& count,
+                    const VtpArrays& arrays) {
+  if (!array || arrays.is_empty(*array)) return;
+  arrays.fail(*array, "holds numbers, but the " + count +
+                          " of its Piece is 0 or missing; the file is damaged");
+}
+
 void add_points(const VtpPiece& piece, VtpArrays& arrays, const MeshSource& source,
                 std::vector<Vec3>& points) {
+  if (piece.points == 0) return check_is_empty(piece.coordinates, "NumberOfPoints", arrays);
   if (!piece.coordinates) source.fail("a Piece has no array in its Points; check the export");
-  const std::vector<double> numbers = arrays.reals(*piece.coordinates);
+  const std::vector<double> numbers = arrays.reals(*piece.coordinates, 3 * piece.points);
   if (numbers.size() / 3 != piece.points || numbers.size() % 3 != 0) {
     arrays.fail(*piece.coordinates, "has " + std::to_string(numbers.size()) +
                                         " numbers, which must be three for each of " +
@@ -321,18 +383,22 @@ void add_points(const VtpPiece& piece, VtpArrays& arrays, const MeshSource& sour
 
 void add_cells(VtkCellKind kind, const VtpCellArrays& cells, std::uint64_t first,
                std::uint64_t points, VtpArrays& arrays, const MeshSource& source, VtkCells& all) {
-  if (cells.count == 0) return;
+  if (cells.count == 0) {
+    const bool is_of_polygons = kind == VtkCellKind::polygons;
+    return check_is_empty(cells.corners, is_of_polygons ? "NumberOfPolys" : "NumberOfStrips",
+                          arrays);
+  }
   if (!cells.ends || !cells.corners) {
     source.fail(
         "a Piece has cells, but not both of their arrays, connectivity and offsets; check "
         "the export");
   }
-  const std::vector<std::uint64_t> ends = arrays.wholes(*cells.ends);
+  const std::vector<std::uint64_t> ends = arrays.wholes(*cells.ends, cells.count);
   if (ends.size() != cells.count) {
     arrays.fail(*cells.ends, "has " + std::to_string(ends.size()) + " numbers for " +
                                  std::to_string(cells.count) + " cells" + cut_short);
   }
-  all.add(kind, ends, arrays.wholes(*cells.corners), first, points, source);
+  all.add(kind, ends, arrays.wholes(*cells.corners, ends.back()), first, points, source);
 }
 
 }  // namespace
@@ -342,9 +408,12 @@ MeshFile read_vtp(const MeshSource& source) {
   VtpArrays arrays(source, document);
   MeshFile mesh;
   VtkCells cells;
-  if (document.space) mesh.comments.push_back("SPACE=" + arrays.string(*document.space));
+  for (const VtpArray& array : document.spaces) {
+    for (const std::string& space : arrays.strings(array)) {
+      mesh.comments.push_back("SPACE=" + space);
+    }
+  }
   for (const VtpPiece& piece : document.pieces) {
-    if (piece.points == 0) continue;
     const std::uint64_t first = mesh.surface.vertices.size();
     add_points(piece, arrays, source, mesh.surface.vertices);
     add_cells(VtkCellKind::polygons, piece.polygons, first, piece.points, arrays, source, cells);

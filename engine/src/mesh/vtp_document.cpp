@@ -16,6 +16,8 @@
 namespace keepout {
 namespace {
 
+using namespace std::string_view_literals;
+
 constexpr const char* cut_short = "; the file is damaged, or was cut short";
 
 /// Listens to Expat while it reads the document.
@@ -95,6 +97,10 @@ class VtpListener {
     if (!text.empty() && (error != std::errc{} || end != text.data() + text.size())) {
       fail(std::string(name) + " must be a whole number, not " + in_quotes(text) + cut_short);
     }
+    if (value > most_unpacked * source_.size()) {
+      fail(std::string(name) + " is " + std::string(text) + ", more than the file has room for" +
+           cut_short);
+    }
     return value;
   }
 
@@ -107,12 +113,7 @@ class VtpListener {
       piece.points = count(attributes, "NumberOfPoints");
       piece.polygons.count = count(attributes, "NumberOfPolys");
       piece.strips.count = count(attributes, "NumberOfStrips");
-      const std::uint64_t vertices = count(attributes, "NumberOfVerts");
-      const std::uint64_t lines = count(attributes, "NumberOfLines");
-      if (vertices > source_.size() || lines > source_.size()) {
-        fail("declares more vertices or lines than the file has room for" + std::string(cut_short));
-      }
-      piece.left_out = vertices + lines;
+      piece.left_out = count(attributes, "NumberOfVerts") + count(attributes, "NumberOfLines");
     } else if (name == "DataArray" || name == "Array") {
       start_array(attributes);
     } else if (name == "AppendedData") {
@@ -134,7 +135,11 @@ class VtpListener {
       fail("a VTKFile of " + in_quotes(type) +
            ", and only PolyData is a surface; extract the surface and save that");
     }
-    document_.is_big_endian = attribute(attributes, "byte_order") == "BigEndian";
+    const std::string_view order = attribute(attributes, "byte_order");
+    if (!order.empty() && order != "LittleEndian" && order != "BigEndian") {
+      fail("byte_order must be LittleEndian or BigEndian, not " + in_quotes(order) + cut_short);
+    }
+    document_.is_big_endian = order == "BigEndian";
     const std::string_view counts = attribute(attributes, "header_type");
     if (!counts.empty() && counts != "UInt32" && counts != "UInt64") {
       fail("header_type must be UInt32 or UInt64, not " + in_quotes(counts) + cut_short);
@@ -148,27 +153,36 @@ class VtpListener {
     }
   }
 
-  /// Where an array belongs that is of interest; nullptr for any other.
-  std::optional<VtpArray>* place_of(std::string_view name) {
+  /// Adds an array to the document; returns nullptr if it is not of interest.
+  VtpArray* add_array(std::string_view name, std::string_view type) {
     const std::string_view parent = parents_.back();
-    if (parent == "FieldData") return name == "SPACE" ? &document_.space : nullptr;
+    if (parent == "FieldData") {
+      const bool is_space = lower(name) == "space" && type == "String";
+      return is_space ? &document_.spaces.emplace_back() : nullptr;
+    }
     if (document_.pieces.empty()) return nullptr;
     VtpPiece& piece = document_.pieces.back();
-    if (parent == "Points") return &piece.coordinates;
+    if (parent == "Points") return add_once(name, piece.coordinates);
     if (parent != "Polys" && parent != "Strips") return nullptr;
     VtpCellArrays& cells = parent == "Polys" ? piece.polygons : piece.strips;
-    return name == "offsets" ? &cells.ends : name == "connectivity" ? &cells.corners : nullptr;
+    return name == "offsets"        ? add_once(name, cells.ends)
+           : name == "connectivity" ? add_once(name, cells.corners)
+                                    : nullptr;
+  }
+
+  VtpArray* add_once(std::string_view name, std::optional<VtpArray>& place) const {
+    if (place) fail("the array " + in_quotes(name) + " is there twice; check the export");
+    return &place.emplace();
   }
 
   void start_array(Attributes attributes) {
     const std::string_view name = attribute(attributes, "Name");
-    std::optional<VtpArray>* const place = place_of(name);
-    if (place == nullptr) return;
-    if (place->has_value())
-      fail("the array " + in_quotes(name) + " is there twice; check the export");
-    VtpArray& array = place->emplace();
+    const std::string_view type = attribute(attributes, "type");
+    VtpArray* const added = add_array(name, type);
+    if (added == nullptr) return;
+    VtpArray& array = *added;
     array.name = parents_.back() + " " + std::string(name);
-    array.type = attribute(attributes, "type");
+    array.type = type;
     const std::string_view format = attribute(attributes, "format");
     if (format == "appended") {
       array.format = VtpArray::Format::appended;
@@ -225,6 +239,10 @@ class VtpListener {
 }  // namespace
 
 VtpDocument read_vtp_document(const MeshSource& source) {
+  const std::string beginning = source.contents(2);
+  for (const std::string_view utf16 : {"\xFE\xFF"sv, "\xFF\xFE"sv, "<\0"sv, "\0<"sv}) {
+    if (beginning == utf16) source.fail("is in UTF-16, which is not read; save it in UTF-8");
+  }
   const std::unique_ptr<XML_ParserStruct, void (*)(XML_Parser)> parser(XML_ParserCreate(nullptr),
                                                                        XML_ParserFree);
   if (!parser) throw std::bad_alloc();

@@ -43,19 +43,24 @@ struct VtpPiece {
   VtpCellArrays strips;
 };
 
+/// zlib unpacks a byte to no more bytes than this, so a damaged size is found before memory is
+/// taken.
+constexpr std::uint64_t most_unpacked = 1032;
+
 /// What is read of the XML.
 struct VtpDocument {
   bool is_big_endian = false;
-  bool is_compressed = false;  // by zlib
-  std::size_t count_size = 4;  // of the counts before binary data [bytes]
-  bool is_raw = false;         // the appended data, which are in base64 otherwise
-  std::uint64_t appended = 0;  // where they begin in the file; 0: there are none
-  std::optional<VtpArray> space;
+  bool is_compressed = false;    // by zlib
+  std::size_t count_size = 4;    // of the counts before binary data [bytes]
+  bool is_raw = false;           // the appended data, which are in base64 otherwise
+  std::uint64_t appended = 0;    // where they begin in the file; 0: there are none
+  std::vector<VtpArray> spaces;  // of strings that name the anatomical space
   std::vector<VtpPiece> pieces;
 };
 
 /// Reads the XML by Expat, up to the appended data. Throws Error, with the line, where it is not
-/// well-formed, where it is not of PolyData, and for a compression other than zlib.
+/// well-formed, where it is not of PolyData, and for a compression other than zlib. Throws Error
+/// for UTF-16, as the arrays are read from the bytes of the file.
 VtpDocument read_vtp_document(const MeshSource& source);
 
 }  // namespace keepout

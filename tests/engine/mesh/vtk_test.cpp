@@ -169,6 +169,25 @@ TEST_F(LoadMesh, AVtpFieldNamesTheSpace) {
   }
 }
 
+TEST_F(LoadMesh, AVtpFieldNamesTheSpaceInAnyCaseAndMayContradictItself) {
+  const std::string vtp = as_vtp(tetrahedron(), {.space = "LPS"});
+  EXPECT_EQ(load("mesh.vtp", replaced(vtp, "\"SPACE\"", "\"Space\"")).stated, AnatomicalSpace::lps);
+  // A number of that name is no space.
+  EXPECT_EQ(load("mesh.vtp", replaced(vtp, "type=\"String\"", "type=\"Int8\"")).stated,
+            AnatomicalSpace::unstated);
+  const std::string contradiction = "states that its space is LPS and RAS";
+  const std::string two_strings = as_vtp(tetrahedron(), {.space = std::string("LPS\0RAS", 7)});
+  EXPECT_CONTAINS(complaint("mesh.vtp", two_strings), contradiction);
+  const std::string other = as_vtp(tetrahedron(), {.space = "RAS"});
+  const std::size_t begin = other.find("<FieldData>");
+  const std::size_t end = other.find("<Piece");
+  std::string two_fields = vtp;
+  two_fields.insert(two_fields.find("<Piece"), other.substr(begin, end - begin));
+  EXPECT_CONTAINS(complaint("mesh.vtp", two_fields), contradiction);
+  EXPECT_EQ(load("mesh.vtp", replaced(two_fields, "82 65 83", "76 80 83")).stated,
+            AnatomicalSpace::lps);
+}
+
 /// Returns the part of a VTP file that holds its mesh.
 std::string piece_of(const std::string& vtp) {
   const std::size_t begin = vtp.find("<Piece");
@@ -226,7 +245,12 @@ TEST_F(LoadMesh, VtpThatIsMalformedIsAnErrorThatSaysWhere) {
                  {"UInt64", "UInt16", "header_type"},
                  {"3 6 9 12", "3 6 9 13", "from corner 9 to 13 of 12"},
                  {"3 6 9 12", "3 6 9 x", "line 11: expected a whole number, found 'x'"},
-                 {"Piece", "Peace", "no Piece"}});
+                 {"Piece", "Peace", "no Piece"},
+                 {"LittleEndian", "MiddleEndian",
+                  "byte_order must be LittleEndian or BigEndian, not 'MiddleEndian'"}});
+  std::string utf16 = "\xFF\xFE";
+  for (const char c : good) utf16 += {c, '\0'};
+  EXPECT_CONTAINS(complaint("mesh.vtp", utf16), "UTF-16");
 }
 
 TEST_F(LoadMesh, VtpInACompressionOtherThanZlibIsAnError) {
@@ -258,6 +282,60 @@ TEST_F(LoadMesh, VtpDataThatAreDamagedAreErrors) {
 
   const std::string letters = as_vtp(tetrahedron(), {.format = Mode::base64});
   EXPECT_CONTAINS(complaint("mesh.vtp", replaced(letters, "AAAA", "A*AA")), "'*' is not of base64");
+}
+
+TEST_F(LoadMesh, MoreBase64ThanAVtpArrayDeclaresIsAnError) {
+  for (const bool is_compressed : {false, true}) {
+    const std::string vtp =
+        as_vtp(tetrahedron(), {.format = Mode::base64, .is_compressed = is_compressed});
+    EXPECT_EQ(load("mesh.vtp", replaced(vtp, "\n</DataArray>", " \n\t </DataArray>"))
+                  .mesh->triangle_count(),
+              4u);
+    EXPECT_CONTAINS(complaint("mesh.vtp", replaced(vtp, "\n</DataArray>", "AAAA\n</DataArray>")),
+                    "array 'Points Points': has more base64 than the 48 bytes that it declares");
+  }
+}
+
+TEST_F(LoadMesh, AVtpPieceThatHoldsMoreThanItDeclaresIsAnError) {
+  for (const Mode mode : {Mode::text, Mode::base64, Mode::appended_base64, Mode::appended_raw}) {
+    for (const bool is_compressed : {false, true}) {
+      const std::string piece =
+          as_vtp(tetrahedron(), {.format = mode, .is_compressed = is_compressed});
+      for (const std::string count : {"NumberOfPoints", "NumberOfPolys"}) {
+        const std::string missing = "the " + count + " of its Piece is 0 or missing";
+        EXPECT_CONTAINS(complaint("mesh.vtp", replaced(piece, count + "=\"4", count + "=\"0")),
+                        missing);
+        EXPECT_CONTAINS(complaint("mesh.vtp", replaced(piece, count + "=\"4\"", "")), missing);
+      }
+    }
+  }
+}
+
+TEST_F(LoadMesh, AVtpPieceMayBeEmpty) {
+  for (const Mode mode : {Mode::text, Mode::base64, Mode::appended_base64, Mode::appended_raw}) {
+    const std::string empty = as_vtp({}, {.format = mode});
+    EXPECT_CONTAINS(complaint("mesh.vtp", empty), "no faces");
+  }
+  std::string vtp = as_vtp(tetrahedron(), {});
+  vtp.insert(vtp.find("<Piece"), piece_of(as_vtp({}, {})));
+  EXPECT_EQ(load("mesh.vtp", vtp).mesh->triangle_count(), 4u);
+}
+
+TEST_F(LoadMesh, AVtpArrayIsNotUnpackedIfItHoldsMoreThanItsPieceDeclares) {
+  // A thousand vertices that are packed well, of which the file declares three.
+  Surface surface = single_triangle();
+  surface.vertices.resize(1000, Vec3::Zero());
+  for (const bool is_compressed : {false, true}) {
+    const std::string vtp =
+        as_vtp(surface, {.format = Mode::appended_raw, .is_compressed = is_compressed});
+    EXPECT_EQ(load_unchecked("mesh.vtp", vtp).mesh->triangle_count(), 1u);
+    EXPECT_CONTAINS(
+        complaint("mesh.vtp", replaced(vtp, "NumberOfPoints=\"1000", "NumberOfPoints=\"3")),
+        "array 'Points Points': holds more than the 36 bytes that belong in it");
+  }
+  EXPECT_CONTAINS(complaint("mesh.vtp", replaced(as_vtp(surface, {}), "NumberOfPoints=\"1000",
+                                                 "NumberOfPoints=\"1000000000000000")),
+                  "NumberOfPoints is 1000000000000000, more than the file has room for");
 }
 
 TEST_F(LoadMesh, VtpArraysThatOverlapAreAnError) {
