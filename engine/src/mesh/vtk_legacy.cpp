@@ -21,7 +21,8 @@ using NamedType = std::pair<std::string_view, NumberType>;
 
 /// Types by name. VTK writes ids of this type as int, and long as its own machine has it, which is
 /// taken for one of 64 bits.
-constexpr std::array<NamedType, 13> types{{{"char", {1, true, true}},
+constexpr std::array<NamedType, 14> types{{{"char", {1, true, true}},
+                                           {"signed_char", {1, true, true}},
                                            {"unsigned_char", {1, true, false}},
                                            {"short", {2, true, true}},
                                            {"unsigned_short", {2, true, false}},
@@ -34,6 +35,11 @@ constexpr std::array<NamedType, 13> types{{{"char", {1, true, true}},
                                            {"vtktypeuint64", {8, true, false}},
                                            {"float", {4, false, true}},
                                            {"double", {8, false, true}}}};
+
+/// Words that begin a section, or an array of one.
+constexpr std::array<std::string_view, 10> section_words{
+    "points", "polygons",  "triangle_strips", "vertices", "lines",
+    "field",  "cell_data", "point_data",      "offsets",  "connectivity"};
 
 constexpr const char* cut_short = ", so it was cut short; copy or export it again";
 
@@ -101,12 +107,32 @@ class LegacyVtk {
     }
   }
 
-  /// Moves on to the next line of a section, over METADATA, which ends with a blank line; false at
-  /// the end of the file.
+  /// Moves on to the next line of a section, over METADATA; false at the end of the file.
   bool next_section() {
     while (lines_.next()) {
-      if (lower(lines_.words()[0]) != "metadata") return true;
-      while (lines_.next_line().find_first_not_of(" \t") != std::string_view::npos) continue;
+      if (lower(lines_.words()[0]) != "metadata" || pass_over_metadata()) return true;
+    }
+    return false;
+  }
+
+  /// Moves over METADATA, which ends with a blank line. True if it ended without one: the current
+  /// line begins the next section.
+  bool pass_over_metadata() {
+    std::uint64_t names = 0;  // that follow, one a line, which is blank if a component has none
+    while (lines_.left() > 0) {
+      lines_.next_line();
+      const auto words = lines_.words();
+      const std::string word = words.empty() ? std::string() : lower(words[0]);
+      if (words.size() > 1 && std::ranges::find(section_words, word) != section_words.end()) {
+        return true;
+      }
+      if (names > 0) {
+        --names;
+      } else if (words.empty()) {
+        return false;
+      } else if (word == "component_names") {
+        names = components_;
+      }
     }
     return false;
   }
@@ -192,6 +218,7 @@ class LegacyVtk {
     const NumberType& type = type_named(word(2, 3));
     if (has_points_) lines_.fail("has its POINTS twice; check the export");
     has_points_ = true;
+    components_ = 3;
     const bool is_single = !type.whole && type.size == sizeof(float);
     check_room(count, type);  // else 3 * count might be too large to be counted
     std::vector<Vec3>& points = mesh_.surface.vertices;
@@ -217,6 +244,7 @@ class LegacyVtk {
                   " and a type; the file is damaged, or was cut short");
     }
     section_ = lines_.words()[0];
+    components_ = 1;
     return wholes(count, type_named(lines_.words()[1]));
   }
 
@@ -282,20 +310,29 @@ class LegacyVtk {
       const std::string name = lower(section_);
       const std::uint64_t components = lines_.whole_number(word(1, 4));
       const std::uint64_t tuples = lines_.whole_number(word(2, 4));
-      if (components > 0 && tuples > lines_.left() / components) {
+      if (components > 0 && tuples > 8 * lines_.left() / components) {  // a byte may hold 8 bits
         lines_.fail("the field " + in_quotes(section_) +
                     " is larger than the file; the file is damaged, or was cut short");
       }
-      const std::string type = lower(word(3, 4));
-      if (type != "string") {
-        for_each_number(components * tuples, type_named(type),
-                        [](const char*, std::string_view) {});
-        continue;
-      }
-      for (std::uint64_t s = 0; s < components * tuples; ++s) {
+      components_ = components;
+      pass_over_values(components * tuples, lower(word(3, 4)), name == "space");
+    }
+  }
+
+  /// Passes over the values of an array of a field, unless they name the anatomical space.
+  void pass_over_values(std::uint64_t count, const std::string& type, bool is_space) {
+    if (type == "string" || type == "utf8_string") {
+      for (std::uint64_t i = 0; i < count; ++i) {
         const std::string text(is_binary_ ? take_string() : lines_.next_line());
-        if (name == "space") mesh_.comments.push_back("SPACE=" + text);
+        if (is_space) mesh_.comments.push_back("SPACE=" + text);
       }
+    } else if (type == "variant") {
+      for (std::uint64_t i = 0; i < count; ++i) lines_.next_line();  // in a binary file too
+    } else {
+      const bool is_packed = is_binary_ && type == "bit";
+      for_each_number(is_packed ? (count + 7) / 8 : count,
+                      type == "bit" ? NumberType{1, true, false} : type_named(type),
+                      [](const char*, std::string_view) {});
     }
   }
 
@@ -322,8 +359,9 @@ class LegacyVtk {
   TextLines lines_;
   MeshFile mesh_;
   VtkCells cells_;
-  std::string section_;  // what is read, for messages
-  int major_ = 0;        // of the version
+  std::string section_;           // what is read, for messages
+  std::uint64_t components_ = 1;  // of a tuple of the array that was read last
+  int major_ = 0;                 // of the version
   bool is_binary_ = false;
   bool has_points_ = false;
 };

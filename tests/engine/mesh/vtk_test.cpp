@@ -61,6 +61,40 @@ TEST_F(LoadMesh, AVtkFieldMayNameTheSpace) {
   EXPECT_EQ(loaded.mesh->triangle_count(), 4u);
 }
 
+TEST_F(LoadMesh, VtkFieldsMayHoldAnyTypeOfVtk) {
+  // As VTK 9.1 writes them.
+  const std::string text =
+      "FIELD FieldData 6\nbits 1 11 bit\n0 1 0 1 0 1 0 1\n0 1 0 \nsmall 1 2 signed_char\n-3 7 \n"
+      "any 1 3 variant\n6 3\n13 a%20b%0Ac\n0 \nMETADATA\nCOMPONENT_NAMES\n\n\n"
+      "unicode 1 2 utf8_string\nh%C3%A9%20llo\n\n\nnull 1 1 double\n7\n"
+      "SPACE 1 1 string\nLPS\n";
+  const LoadedMesh loaded = load("mesh.vtk", text_vtk(text + points + faces));
+  EXPECT_EQ(loaded.stated, AnatomicalSpace::lps);
+  EXPECT_EQ(loaded.mesh->triangle_count(), 4u);
+  std::string field = "FIELD FieldData 5\nbits 1 11 bit\n";
+  field += std::string("\n\0\n", 3) + "small 1 2 signed_char\n\xfd\n\n";
+  field += "any 1 3 variant\n6 3\n13 a%20b%0Ac\n0 \n";
+  field += "unicode 1 2 utf8_string\n\xc7h\xc3\xa9\nllo\xc0\nSPACE 1 1 string\n\xc3LPS\n";
+  std::string binary = as_binary_vtk<float>(tetrahedron());
+  binary.insert(binary.find("POINTS"), field);
+  EXPECT_EQ(load("mesh.vtk", binary).stated, AnatomicalSpace::lps);
+}
+
+TEST_F(LoadMesh, VtkMetadataMayHaveComponentsWithoutANameAndNoBlankLine) {
+  const std::string information =
+      "INFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 1\n";
+  const std::string strip = "TRIANGLE_STRIPS 1 4\n3 0 1 2\n";
+  for (const std::string& metadata :
+       std::vector<std::string>{"METADATA\nCOMPONENT_NAMES\nX\n\n\n\n",
+                                "METADATA\nCOMPONENT_NAMES\nX\n\n\n" + information + "\n",
+                                "METADATA\nCOMPONENT_NAMES\nX\n\nlines\n\n",
+                                "METADATA\n" + information, "METADATA\nCOMPONENT_NAMES\nX\n"}) {
+    const LoadedMesh loaded =
+        load_unchecked("mesh.vtk", text_vtk(points + metadata + faces + metadata + strip));
+    EXPECT_EQ(loaded.mesh->triangle_count(), 5u) << metadata;
+  }
+}
+
 TEST_F(LoadMesh, VtkThatIsMalformedIsAnErrorWithItsLine) {
   const std::string good = text_vtk(points + faces);
   expect_faults("mesh.vtk", good,
