@@ -107,6 +107,9 @@ void print_orientation(std::ostream& out, const Orientation& done, std::size_t t
               done.inside_out_parts == 0 ? ", none inside out"
                                          : ", of these turned as a whole, because inside out: " +
                                                grouped(done.inside_out_parts));
+  print_parts(out, "crossing", done.crossing_parts, "closed part",
+              ", included in those: only partly within another, so it bounds no cavity; 'keepout "
+              "inspect --self-intersections' shows where they cross");
   print_parts(out, "nested", done.nested_parts, "closed part",
               " within another: may bound a cavity or a solid, so each was turned only if the one "
               "around it was");

@@ -88,6 +88,16 @@ TEST(Convert, WhatCannotBeDecidedIsSaid) {
   EXPECT_CONTAINS(outcome.output, "out.stl: the surface is open");
 }
 
+TEST(Convert, PartsThatCrossAreCounted) {
+  const CommandFolder folder;
+  // A tetrahedron whose tip is in the cube.
+  folder.write("cross.obj", cube_with({}) +
+                                "v 0 0 0\nv 0 0 60\nv 30 0 60\nv 0 30 60\n"
+                                "f 9 10 11\nf 9 12 10\nf 9 11 12\nf 10 12 11\n");
+  EXPECT_CONTAINS(succeeded(folder.run("convert cross.obj out.stl --orient")).output,
+                  "crossing      1 closed part, included in those: only partly within another");
+}
+
 TEST(Convert, SpacesAreTurnedAndStated) {
   const CommandFolder folder;
   folder.write("cube.obj", cube_with({{"v 20 20 20", "v 21 22 23"}}));

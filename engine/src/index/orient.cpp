@@ -3,9 +3,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -163,6 +165,9 @@ void measure(const Mesh& mesh, const Parts& all, Part& part) {
   part.uncertainty = 1e-13 * (sum_of_sizes + size * size * far);
 }
 
+/// How a part is placed to a solid.
+enum class Relation { beside, within, crossing };
+
 /// A closed part as a solid that says whether another part is within it.
 class Solid {
  public:
@@ -181,27 +186,119 @@ class Solid {
   Solid(const Solid&) = delete;
   Solid& operator=(const Solid&) = delete;
 
-  /// Whether the first vertex of the part that is not on the surface of the solid is within it.
-  bool contains(const Mesh& mesh, const Part& part) {
-    const double on_surface = 1e-9 * neighborhood_->mesh().bounds().size().norm();
+  /// Where the vertices of a part are. Those on the surface of the solid are left out.
+  Relation relation_of(const Mesh& mesh, const Part& part) {
+    std::vector<VertexId> vertices;
     for (const TriangleId t : part.triangles) {
-      for (const Vec3& corner : mesh.triangle(t)) {
-        const std::optional<SideOfSurface> side = find_side(*neighborhood_, corner);
-        if (side && side->distance > on_surface) return !side->is_outside;
-      }
+      vertices.insert(vertices.end(), mesh.corners(t).begin(), mesh.corners(t).end());
     }
-    return false;
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    bool is_any_within = false;
+    bool is_any_outside = false;
+    for (const VertexId v : vertices) {
+      const std::optional<bool> is_within = contains(mesh.vertex(v));
+      if (!is_within) continue;
+      (*is_within ? is_any_within : is_any_outside) = true;
+      if (is_any_within && is_any_outside) return Relation::crossing;
+    }
+    return is_any_within ? Relation::within : Relation::beside;
   }
 
  private:
+  /// Nothing for a point on the surface, as far as single precision can say.
+  std::optional<bool> contains(const Vec3& point) {
+    const Box& bounds = neighborhood_->mesh().bounds();
+    const double far = bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).maxCoeff();
+    const double on_surface = 1e-7 * (bounds.size().norm() + far);
+    const Vec3 beyond = (bounds.low - point).cwiseMax(point - bounds.high);
+    if (beyond.maxCoeff() > on_surface) return false;
+    const std::optional<SideOfSurface> side = find_side(*neighborhood_, point);
+    if (!side || side->distance <= on_surface) return std::nullopt;
+    return !side->is_outside;
+  }
+
   Budget budget_;
   std::optional<Neighborhood> neighborhood_;
 };
 
-bool encloses(const Box& outer, const Box& inner) noexcept {
-  return (outer.low.array() <= inner.low.array()).all() &&
-         (inner.high.array() <= outer.high.array()).all();
+bool overlap(const Box& one, const Box& other) noexcept {
+  return (one.low.array() <= other.high.array()).all() &&
+         (other.low.array() <= one.high.array()).all();
 }
+
+/// Finds those boxes that overlap another one and were added: a balanced tree over all boxes.
+class BoxTree {
+ public:
+  explicit BoxTree(std::vector<Box> boxes)
+      : boxes_(std::move(boxes)), order_(boxes_.size()), place_of_(boxes_.size()) {
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    nodes_.resize(boxes_.empty() ? 0 : 2 * std::bit_ceil(boxes_.size()), nothing);
+    sort(0, order_.size());
+    for (std::size_t i = 0; i < order_.size(); ++i) place_of_[order_[i]] = i;
+  }
+
+  void add(std::size_t box) {
+    std::size_t begin = 0, end = order_.size();
+    for (std::size_t node = 1;;) {
+      nodes_[node].low = nodes_[node].low.cwiseMin(boxes_[box].low);
+      nodes_[node].high = nodes_[node].high.cwiseMax(boxes_[box].high);
+      if (end - begin == 1) return;
+      const std::size_t middle = begin + (end - begin) / 2;
+      const bool is_below = place_of_[box] < middle;
+      (is_below ? end : begin) = middle;
+      node = 2 * node + (is_below ? 0 : 1);
+    }
+  }
+
+  /// The numbers of the boxes, in ascending order.
+  std::vector<std::size_t> overlapping(const Box& box) const {
+    std::vector<std::size_t> found;
+    if (!boxes_.empty()) collect(box, 1, 0, order_.size(), found);
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+ private:
+  inline static const Box nothing{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
+
+  /// Puts the boxes below the middle of a range first, along the axis where they are farthest
+  /// apart.
+  void sort(std::size_t begin, std::size_t end) {
+    if (end - begin < 2) return;
+    Box centers = nothing;
+    for (std::size_t i = begin; i < end; ++i) {
+      centers.low = centers.low.cwiseMin(boxes_[order_[i]].center());
+      centers.high = centers.high.cwiseMax(boxes_[order_[i]].center());
+    }
+    int axis = 0;
+    centers.size().maxCoeff(&axis);
+    const std::size_t middle = begin + (end - begin) / 2;
+    const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(begin), at(middle), at(end), [&](std::size_t a, std::size_t b) {
+      return boxes_[a].center()[axis] < boxes_[b].center()[axis];
+    });
+    sort(begin, middle);
+    sort(middle, end);
+  }
+
+  void collect(const Box& box, std::size_t node, std::size_t begin, std::size_t end,
+               std::vector<std::size_t>& found) const {
+    if (!overlap(nodes_[node], box)) return;
+    if (end - begin == 1) {
+      found.push_back(order_[begin]);
+      return;
+    }
+    const std::size_t middle = begin + (end - begin) / 2;
+    collect(box, 2 * node, begin, middle, found);
+    collect(box, 2 * node + 1, middle, end, found);
+  }
+
+  std::vector<Box> boxes_;
+  std::vector<std::size_t> order_;     // of the boxes in the tree
+  std::vector<std::size_t> place_of_;  // of each box in the order
+  std::vector<Box> nodes_;             // around what was added; the children of i are 2i and 2i + 1
+};
 
 /// Decides which of the parts that have a volume are turned, the largest first: only a larger part
 /// can be around another.
@@ -213,25 +310,31 @@ void turn_outward(const Mesh& mesh, Parts& all, Orientation& result) {
   std::stable_sort(solid_parts.begin(), solid_parts.end(), [](const Part* a, const Part* b) {
     return std::abs(a->volume) > std::abs(b->volume);
   });
-  struct Outermost {
-    Part* part;
-    std::unique_ptr<Solid> solid;  // made when first asked
-  };
-  std::vector<Outermost> outermost;
-  for (Part* const part : solid_parts) {
-    const auto around = std::find_if(outermost.begin(), outermost.end(), [&](Outermost& outer) {
-      if (!encloses(outer.part->bounds, part->bounds)) return false;
-      if (!outer.solid) outer.solid = std::make_unique<Solid>(mesh, all, *outer.part);
-      return outer.solid->contains(mesh, *part);
-    });
-    if (around != outermost.end()) {
-      part->is_turned = around->part->is_turned;
+  std::vector<Box> boxes;
+  for (const Part* const part : solid_parts) boxes.push_back(part->bounds);
+  BoxTree outermost(std::move(boxes));
+  std::vector<std::unique_ptr<Solid>> solids(solid_parts.size());  // made when first asked
+  for (std::size_t i = 0; i < solid_parts.size(); ++i) {
+    Part& part = *solid_parts[i];
+    const Part* around = nullptr;
+    bool is_crossing = false;
+    for (const std::size_t outer : outermost.overlapping(part.bounds)) {
+      if (!solids[outer]) solids[outer] = std::make_unique<Solid>(mesh, all, *solid_parts[outer]);
+      const Relation relation = solids[outer]->relation_of(mesh, part);
+      if (relation == Relation::crossing) is_crossing = true;
+      if (relation != Relation::within) continue;
+      around = solid_parts[outer];
+      break;
+    }
+    if (around != nullptr) {
+      part.is_turned = around->is_turned;
       ++result.nested_parts;
       continue;
     }
-    part->is_turned = part->volume < 0.0;
-    if (part->is_turned) ++result.inside_out_parts;
-    outermost.push_back({part, nullptr});
+    part.is_turned = part.volume < 0.0;
+    if (part.is_turned) ++result.inside_out_parts;
+    if (is_crossing) ++result.crossing_parts;
+    outermost.add(i);
   }
 }
 

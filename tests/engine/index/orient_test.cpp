@@ -36,6 +36,13 @@ Surface around(Surface surface) {
   return surface;
 }
 
+/// A cube about the origin.
+Surface cube(double width) {
+  Surface surface = make_cube(100.0);  // of one square a side
+  for (Vec3& v : surface.vertices) v *= width / 100.0;
+  return surface;
+}
+
 /// A strip of `count` quadrilaterals around the z axis whose end is joined to its beginning after a
 /// half turn.
 Surface moebius_strip(VertexId count) {
@@ -102,6 +109,40 @@ TEST(Orient, BesideIsNotWithin) {
       oriented(together(tetrahedron(), flipped(small)), together(tetrahedron(), small));
   EXPECT_EQ(done.nested_parts, 0u);
   EXPECT_EQ(done.inside_out_parts, 1u);
+}
+
+TEST(Orient, APartThatPokesOutOfAnotherFacesOutward) {
+  // The first vertex of the small part is in the large one, and others are behind its slanted face.
+  Surface large = tetrahedron();
+  for (Vec3& v : large.vertices) v *= 100.0;
+  const Surface small = moved(cube(8.0), {32.0, 32.0, 32.0});
+  ASSERT_LT(small.vertices[0].sum(), 100.0);
+  Surface surface = together(large, flipped(small));
+  const Orientation done = orient(surface);
+  EXPECT_EQ(windings(surface), windings(together(large, small)));
+  EXPECT_EQ(done.crossing_parts, 1u);
+  EXPECT_EQ(done.inside_out_parts, 1u);
+  EXPECT_EQ(done.nested_parts, 0u);
+  // One that pokes out of the box, too.
+  surface = together(large, flipped(moved(small, {-32.0, 0, 0})));
+  EXPECT_EQ(orient(surface).crossing_parts, 1u);
+}
+
+TEST(Orient, ManyPartsAreDecidedAsOneByOne) {
+  // Shells of three in a lattice: solid, cavity, island; every second is inside out.
+  constexpr int wide = 6;
+  Surface sound, surface;
+  for (int i = 0; i < wide * wide * wide; ++i) {
+    const Vec3 at(100.0 * (i % wide), 100.0 * (i / wide % wide), 100.0 * (i / wide / wide));
+    const Surface shells =
+        moved(together(together(cube(60.0), flipped(cube(40.0))), cube(20.0)), at);
+    sound = together(sound, shells);
+    surface = together(surface, i % 2 == 0 ? shells : flipped(shells));
+  }
+  const Orientation done = orient(surface);
+  EXPECT_EQ(windings(surface), windings(sound));
+  EXPECT_EQ(done.nested_parts, 2u * wide * wide * wide);
+  EXPECT_EQ(done.crossing_parts, 0u);
 }
 
 TEST(Orient, AnOpenSurfaceAgreesAndKeepsMostWindings) {

@@ -21,14 +21,15 @@ struct Orientation {
   std::size_t one_sided_parts = 0;     // no winding agrees, as on a Möbius strip: left as they are
 
   std::size_t inside_out_parts = 0;  // closed, not nested: turned as a whole
+  std::size_t crossing_parts = 0;    // closed, partly within a larger closed part: not nested
   std::size_t nested_parts = 0;      // closed, within another closed part: turned if that one was
 };
 
 /// Turns triangles so that the two triangles of each edge agree, and closed parts face outward by
 /// their signed volume. Most triangles of a part keep their winding, unless the part is closed and
 /// inside out. A closed part within another may bound a cavity or a solid: it keeps its winding
-/// relative to the outermost part around it. Precondition: the surface is welded. Throws Error as
-/// Mesh does.
+/// relative to the outermost part around it. A part with vertices on both sides of another bounds
+/// no cavity, so it faces outward. Precondition: the surface is welded. Throws Error as Mesh does.
 Orientation orient(Surface& surface);
 
 }  // namespace keepout
