@@ -2,6 +2,7 @@
 
 #include "keepout/index/self_intersection.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -153,6 +154,11 @@ bool meet(const Mesh& mesh, TriangleId one, TriangleId other) noexcept {
   }
 }
 
+/// The point between p and q at the given distances from them, or as many of any length.
+Vec3 between(const Vec3& p, double from, const Vec3& q, double to) noexcept {
+  return from + to > 0.0 ? Vec3(p + from / (from + to) * (q - p)) : Vec3(0.5 * (p + q));
+}
+
 /// Adds the points in which edges of the one triangle pierce the other to `sum`. Returns how many.
 int add_piercings(const Triangle& edges, const Triangle& triangle, Vec3& sum) noexcept {
   const Vec3 normal = unit_normal(triangle);
@@ -166,8 +172,41 @@ int add_piercings(const Triangle& edges, const Triangle& triangle, Vec3& sum) no
     }
     const double from = std::abs(normal.dot(p - triangle[0]));
     const double to = std::abs(normal.dot(q - triangle[0]));
-    sum += from + to > 0.0 ? Vec3(p + from / (from + to) * (q - p)) : Vec3(0.5 * (p + q));
+    sum += between(p, from, q, to);
     ++count;
+  }
+  return count;
+}
+
+/// Adds the corners that lie on the other triangle to `sum`. Returns how many.
+int add_corners_on(const Triangle& corners, const Triangle& triangle, Vec3& sum) noexcept {
+  const Sides sides = sides_of(triangle, corners);
+  int count = 0;
+  for (int c = 0; c < 3; ++c) {
+    if (sides[c] != 0 || !overlap_in_plane(corners[c], corners[c], triangle)) continue;
+    sum += corners[c];
+    ++count;
+  }
+  return count;
+}
+
+/// Adds the points in which edges of two triangles in one plane cross to `sum`. Returns how many.
+int add_crossings(const Triangle& one, const Triangle& other, Vec3& sum) noexcept {
+  if (!all_on(sides_of(one, other))) return 0;
+  const int axis = axis_of_sight(one);
+  int count = 0;
+  for (int e = 0; e < 3; ++e) {
+    const Vec3& p = one[e];
+    const Vec3& q = one[next(e)];
+    for (int f = 0; f < 3; ++f) {
+      const Vec3& r = other[f];
+      const Vec3& s = other[next(f)];
+      if (turn(p, q, r, axis) * turn(p, q, s, axis) >= 0) continue;
+      if (turn(r, s, p, axis) * turn(r, s, q, axis) >= 0) continue;
+      const Vec3 along = s - r;
+      sum += between(p, along.cross(p - r).norm(), q, along.cross(q - r).norm());
+      ++count;
+    }
   }
   return count;
 }
@@ -181,15 +220,17 @@ bool overlap(const Box& one, const Box& other) noexcept {
          (other.low.array() <= one.high.array()).all();
 }
 
-/// Returns a point where two triangles that meet do so; the middle of what their boxes have in
-/// common if no edge of the one pierces the other, as of triangles in one plane.
+/// Returns a point of both of two triangles that meet: the middle of the points where edges of the
+/// one pierce the other; if none does, as in one plane, of corners that lie on the other triangle
+/// and of crossings of edges. What two triangles share is convex, so the middle is in it.
 Vec3 meeting_point(const Triangle& one, const Triangle& other) noexcept {
   Vec3 sum = Vec3::Zero();
-  const int count = add_piercings(one, other, sum) + add_piercings(other, one, sum);
-  if (count > 0) return sum / count;
-  const Box a = box_of(one);
-  const Box b = box_of(other);
-  return Box{a.low.cwiseMax(b.low), a.high.cwiseMin(b.high)}.center();
+  int count = add_piercings(one, other, sum) + add_piercings(other, one, sum);
+  if (count == 0) {
+    count = add_corners_on(one, other, sum) + add_corners_on(other, one, sum) +
+            add_crossings(one, other, sum);
+  }
+  return sum / std::max(1, count);
 }
 
 /// A ball that holds the triangle, with room for the rounding of its own making.

@@ -151,6 +151,29 @@ TEST(FindSelfIntersections, ReportsEachTriangleThatItHasExamined) {
   EXPECT_EQ(examined, mesh->triangle_count());
 }
 
+/// Where the two triangles of a mesh meet.
+Vec3 place_of(const Mesh& mesh) {
+  const auto shared = std::make_shared<const Mesh>(mesh);
+  return find_self_intersections(*shared, PdTree(shared)).places.places.at(0).at;
+}
+
+TEST(FindSelfIntersections, PlacesAreOnBothTriangles) {
+  const Vec3 base_middle = Vec3(4, 4, 0) / 3;
+  // A duplicate, a smaller one within, and a star of which no corner is on the other triangle.
+  for (const Surface& flat :
+       {Surface{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {1, 2, 0}}},
+        beside_base(base_middle, base_middle + Vec3(0.1, -0.1, 0), base_middle + Vec3(0, 0.1, 0)),
+        beside_base({3, 3, 0}, {-1, 3, 0}, {3, -1, 0})}) {
+    const Vec3 at = place_of(Mesh(flat));
+    EXPECT_NEAR((at - base_middle).norm(), 0.0, 0.3);
+  }
+  // Touching by a corner, by an edge in the plane, and by edges that cross.
+  EXPECT_EQ(place_of(Mesh(beside_base({1, 1, 0}, {9, 9, 9}, {-9, 1, 9}))), Vec3(1, 1, 0));
+  EXPECT_EQ(place_of(Mesh(beside_base({1, 1, 0}, {1, 2, 0}, {9, 9, 9}))), Vec3(1, 1.5, 0));
+  EXPECT_EQ(place_of(Mesh(beside_base({1, 0, -1}, {1, 0, 1}, {1, -9, 0}))), Vec3(1, 0, 0));
+  EXPECT_EQ(place_of(Mesh(on_base_edge({1, 1, 0}))).z(), 0.0);
+}
+
 TEST(FindSelfIntersections, PlacesAreWhereTrianglesMeet) {
   const auto crossing = mesh_of(beside_base({1, 1, -1}, {1, 1, 1}, {1, 9, 0}));
   const SelfIntersections found = find_self_intersections(*crossing, PdTree(crossing));
@@ -161,7 +184,8 @@ TEST(FindSelfIntersections, PlacesAreWhereTrianglesMeet) {
   // They meet from (1, 1, 0) to (1, 3, 0).
   EXPECT_NEAR((place.at - Vec3(1, 2, 0)).norm(), 0.0, 1e-12);
   const auto flat = mesh_of(beside_base({1, 1, 0}, {9, 1, 0}, {1, 9, 0}));
-  EXPECT_EQ(find_self_intersections(*flat, PdTree(flat)).places.places.at(0).at, Vec3(2.5, 2.5, 0));
+  // They share the triangle (1, 1), (3, 1), (1, 3).
+  EXPECT_NEAR((place_of(*flat) - Vec3(5, 5, 0) / 3).norm(), 0.0, 1e-12);
   EXPECT_TRUE(find_self_intersections(*flat, PdTree(flat), 0).places.places.empty());
 }
 

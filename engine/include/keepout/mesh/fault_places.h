@@ -10,8 +10,7 @@ namespace keepout {
 
 /// Where one fault of a mesh is.
 struct FaultPlace {
-  /// The middle of its corners; of two triangles that cut through each other, a point where they
-  /// meet. [length]
+  /// The middle of its corners; of two triangles that meet, a point of both. [length]
   Vec3 at;
   /// One vertex, the two ends of an edge, the three corners of a triangle, or those of the one
   /// triangle and then of the other. [length]
