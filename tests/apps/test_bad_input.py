@@ -128,7 +128,7 @@ wrong_lines = [
     ("simulate cube --cycles 9", "--cycles: expected a whole number from 10 to 1000000"),
     ("simulate cube --robot psm --speed 0", "--speed: expected a multiple from 0.001 to 1000, not '0'"),
     *((f"{to_s} --scale {value}", f"--scale: expected a number from 1e-30 to 1e30, not '{value}'")
-      for value in ("0", "-1", "nan", "inf", "x")),
+      for value in ("0", "-1", "nan", "inf", "x", "0x10")),
     ("inspect cube --json=many", "--json: "),
     ("register f.csv --target 1 2 x", "--target: expected a number from -1e6 to 1e6, not 'x'"),
     ("register f.csv --confidence 1", "--confidence: expected a probability from 0.01 to 0.9999, not '1'"),

@@ -146,7 +146,8 @@ CLI::Validator number_within(double low, double high, std::string expected, std:
   const auto check = [=](const std::string& text) -> std::string {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
-    if (!text.empty() && *end == '\0' && value >= low && value <= high) return {};
+    const bool is_decimal = text.find_first_of("xX") == std::string::npos;
+    if (!text.empty() && is_decimal && *end == '\0' && value >= low && value <= high) return {};
     return "expected " + expected + ", not '" + text + "'";
   };
   return {check, std::move(type)};

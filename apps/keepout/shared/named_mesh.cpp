@@ -35,6 +35,11 @@ bool is_shape(const std::filesystem::path& name) {
   return !is_file(name) && contains(names(shapes()), name.string());
 }
 
+/// One of the real meshes that fixtures/prepare makes.
+bool is_prepared(const std::filesystem::path& name) {
+  return !is_file(name) && contains(real_names(), name.string());
+}
+
 /// The meshes in the folder where the user thought there was this one.
 std::vector<std::string> files_beside(const std::filesystem::path& path) {
   constexpr std::array<std::string_view, 6> extensions{".stl", ".ply", ".obj",
@@ -70,11 +75,6 @@ LoadedMesh generate(const std::filesystem::path& name, const LoadOptions& option
   if (options.space != AnatomicalSpace::unstated && options.space != options.untagged) {
     throw Error(name.string() + ": is generated, and in no anatomical space: leave --space out");
   }
-  if (!options.unit.empty() || options.scale || options.flip) {
-    throw Error(name.string() +
-                ": is generated, in mm and wound as it should be: leave --unit, --scale and --flip "
-                "out");
-  }
   LoadedMesh loaded{.mesh = std::make_shared<const Mesh>(make_shape(name.string())),
                     .space = options.untagged};
   loaded.vertices_in_file = loaded.mesh->vertex_count();
@@ -107,7 +107,7 @@ std::vector<std::string> fixture_names() {
 
 std::filesystem::path file_of_mesh(const std::filesystem::path& name) {
   if (is_file(name) || is_shape(name)) return name;
-  if (contains(real_names(), name.string())) return fixture_path(name.string());
+  if (is_prepared(name)) return fixture_path(name.string());
   std::error_code none;
   if (std::filesystem::exists(name, none))
     return name;  // a folder, which is told of where it is read
@@ -115,6 +115,12 @@ std::filesystem::path file_of_mesh(const std::filesystem::path& name) {
 }
 
 LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions& options) {
+  const bool is_sample = is_shape(name) || is_prepared(name);
+  if (is_sample && (!options.unit.empty() || options.scale || options.flip)) {
+    throw Error(name.string() +
+                ": is a sample mesh, in mm and wound as it should be: leave --unit, --scale and "
+                "--flip out");
+  }
   return is_shape(name) ? generate(name, options) : load_mesh(file_of_mesh(name), options);
 }
 
