@@ -134,7 +134,11 @@ class VtpListener {
       fail("a VTKFile of " + in_quotes(type) +
            ", and only PolyData is a surface; extract the surface and save that");
     }
-    document_.is_big_endian = attribute(attributes, "byte_order") == "BigEndian";
+    const std::string_view order = attribute(attributes, "byte_order");
+    if (!order.empty() && order != "LittleEndian" && order != "BigEndian") {
+      fail("byte_order must be LittleEndian or BigEndian, not " + in_quotes(order) + cut_short);
+    }
+    document_.is_big_endian = order == "BigEndian";
     const std::string_view counts = attribute(attributes, "header_type");
     if (!counts.empty() && counts != "UInt32" && counts != "UInt64") {
       fail("header_type must be UInt32 or UInt64, not " + in_quotes(counts) + cut_short);
