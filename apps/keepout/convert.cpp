@@ -45,6 +45,23 @@ double round_to_floats(Surface& surface) {
   return farthest;
 }
 
+/// Throws Error for a mesh of which no triangle is left: they were degenerate, or rounding has made
+/// them so.
+[[noreturn]] void refuse_as_empty(const ConvertOptions& options, const Mesh& mesh,
+                                  std::optional<double> rounding) {
+  Surface exact{{mesh.vertices().begin(), mesh.vertices().end()},
+                {mesh.triangles().begin(), mesh.triangles().end()}};
+  remove_faulty_triangles(exact);
+  const std::string input = options.input.string();
+  if (rounding && !exact.triangles.empty()) {
+    throw Error(input + ": rounded to the single precision of STL, which moves coordinates by up " +
+                "to " + trimmed(*rounding, 3) +
+                " mm, all of its triangles are degenerate; write .ply, which keeps all digits");
+  }
+  throw Error(input + ": all of its triangles are degenerate, so nothing is left to write; check " +
+              "the export");
+}
+
 Conversion converted(const ConvertOptions& options, const Mesh& mesh) {
   Conversion result;
   result.surface.vertices.assign(mesh.vertices().begin(), mesh.vertices().end());
@@ -56,11 +73,7 @@ Conversion converted(const ConvertOptions& options, const Mesh& mesh) {
     result.surface = weld(std::move(result.surface));
   }
   result.removed = remove_faulty_triangles(result.surface);
-  if (result.surface.triangles.empty()) {
-    throw Error(options.input.string() +
-                ": all of its triangles are degenerate, so nothing is left to write; check the "
-                "export");
-  }
+  if (result.surface.triangles.empty()) refuse_as_empty(options, mesh, result.rounding);
   if (options.orient) result.orientation = orient(result.surface);
   return result;
 }

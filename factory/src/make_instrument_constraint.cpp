@@ -26,11 +26,12 @@ InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh
   if (!mesh) throw Error("an instrument constraint needs a mesh: none was given");
   double thinnest = longest_length;
   for (const Body& body : instrument.bodies()) thinnest = std::min(thinnest, body.radius);
-  if (index) {
-    warn_of_coarse_index(*index, thinnest + settings.options.margin, settings.warn);
-  }
-  return {std::move(mesh),  std::move(index), std::move(instrument), make_solver(settings.solver),
-          settings.options, settings.capacity};
+  InstrumentConstraint constraint(std::move(mesh), index, std::move(instrument),
+                                  make_solver(settings.solver), settings.options,
+                                  settings.capacity);
+  // Settings that are refused get no warning before.
+  warn_of_coarse_index(*index, thinnest + settings.options.margin, settings.warn);
+  return constraint;
 }
 
 }  // namespace keepout

@@ -53,18 +53,14 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         std::shared_ptr<const SpatialIndex> index,
                                         const MotionConstraintSettings& settings) {
-  if (index) {
-    warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);
-  }
   // Only the certified rule of a ball knows sides: for others `inside` has no effect.
   const bool rule_knows_sides = settings.activation == "certified" && !settings.tool;
-  return {std::move(mesh),
-          std::move(index),
-          make_rule(settings),
-          make_solver(settings.solver),
-          settings.options,
-          settings.capacity,
-          rule_knows_sides ? settings.inside : Inside::taken_as_is};
+  MotionConstraint constraint(std::move(mesh), index, make_rule(settings),
+                              make_solver(settings.solver), settings.options, settings.capacity,
+                              rule_knows_sides ? settings.inside : Inside::taken_as_is);
+  // Settings that are refused get no warning before.
+  warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);
+  return constraint;
 }
 
 }  // namespace keepout

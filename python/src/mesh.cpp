@@ -57,9 +57,7 @@ MeshHandle mesh_from(const py::object& vertices, const py::object& triangles, bo
 
 AnatomicalSpace space_from(const char* argument, const std::optional<std::string>& given) {
   if (!given) return AnatomicalSpace::unstated;
-  for (const AnatomicalSpace space : {AnatomicalSpace::ras, AnatomicalSpace::lps}) {
-    if (*given == name(space)) return space;
-  }
+  if (const auto space = space_named(*given)) return *space;
   refuse(argument, "'RAS', 'LPS' or None", "'" + *given + "'");
 }
 

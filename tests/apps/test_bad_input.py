@@ -152,6 +152,14 @@ files = [
     ("inspect none.stl", "none.stl: there is no such file, and no fixture of that name"),
     ("inspect skul", "did you mean 'skull'?"),
     ("inspect folder", "folder: is a directory"),
+    ("inspect loop.stl", "loop.stl: cannot be reached (Too many levels of symbolic links)"),
+    ("inspect cube.off/mesh.stl", "cube.off/mesh.stl: cannot be reached (Not a directory)"),
+    ("live none.stl", "none.stl: there is no such file, and no fixture of that name"),
+    ("live broken.stl", "broken.stl: line 6: "),
+    ("convert far.obj q.stl", "far.obj: rounded to the single precision of STL", "write .ply, which keeps all digits"),
+    ("convert line.off q.stl", "line.off: all of its triangles are degenerate", "check the export"),
+    *((f"{command} line.off", "line.off: none of its triangles has an area") for command in (
+        "simulate", "simulate --robot psm", "verify --steps 200", "verify --robot psm --cycles 10")),
     ("register none.csv", "none.csv: cannot be read", "FILE"),
     ("register folder", "folder: cannot be read"),
     ("register cube.off", "cube.off:2: has fewer than six numbers"),
@@ -170,7 +178,8 @@ files = [
     ("verify --merge none.json", "none.json: cannot be read"),
     ("verify --merge folder", "folder: is a folder"),
     ("verify --merge poses.txt", "poses.txt: is not a whole result"),
-    (f"{to_s} --margin 0", "margin 0 and tool_radius 0 together must be well above"),
+    *((line, "margin 0 and tool_radius 0 together must be well above") for line in (
+        f"{to_s} --margin 0", "replay cube --poses poses.txt --out s.csv --margin 0", "serve cube --margin 0")),
     (f"{to_s} --margin 1e14 --radius 1e-3", "radius: expected more than 1e-9 of tool_radius and margin together", "got 0.001"),
     (f"{to_s} --closed-loop --max-step 9", "--max-step"),
     # Outputs.
@@ -183,7 +192,12 @@ files = [
     ("replay cube.off --poses poses.txt --out link.off", "--out 'link.off' is the same file as MESH"),
     ("replay cube.off --poses poses.txt --out s.csv --planes cube.off", "--planes 'cube.off' is the same file as MESH"),
     ("replay cube.off --poses poses.txt --out s.csv --planes ./s.csv", "--planes './s.csv' is the same file as --out"),
-    (f"{simulate} --out r.html --json r.html", "--out 'r.html' is the same file as --json"),
+    (f"{simulate} --out r.html --json r.html", "--json 'r.html' is the same file as --out"),
+    (f"{simulate} --out - --json /dev/fd/1", "--json '/dev/fd/1' is the same file as --out '-'"),
+    ("replay cube.off --poses poses.txt --out - >> poses.txt", "--out '-' is the same file as --poses"),
+    ("register f.csv --json - >&-", "stdout: is not open for writing"),
+    ("register f.csv --json /dev/fd/77", "/dev/fd/77: is not open for writing (Bad file descriptor)"),
+    ("inspect cube.off --out no/page.html", "no/page.html: cannot write here"),
     ("simulate cube.off --out cube.off", "--out 'cube.off' is the same file as MESH"),
     ("simulate broken.stl --out no/r.html", "no/r.html", "cannot write here"),  # said before the mesh is read
     ("simulate broken.stl --out folder", "folder: is a folder"),
@@ -195,7 +209,6 @@ files = [
     ("compare cube --json no/c.json", "no/c.json: cannot write here"),
     ("plan cube --json no/p.json", "no/p.json: cannot write here"),
     # Full disks and closed pipes: the limit on the size of a file stands for the disk.
-    ("replay cube.off --poses many.txt --out s.csv --planes p.csv", "s.csv: could not be written to the end", "ulimit -f 8;"),
     ("replay cube.off --poses many.txt --out old.csv", "old.csv: could not be written to the end", "ulimit -f 8;"),
     ("verify cube --steps 100 --json v.json", "v.json: could not be written to the end", "ulimit -f 1;"),
     ("verify cube --steps 100 --json old.json", "old.json: could not be written to the end", "ulimit -f 1;"),
@@ -290,6 +303,7 @@ meshes = {
     "volume.vtk": (vtk.replace("POLYDATA", "STRUCTURED_POINTS"), "only POLYDATA is a surface"),
     "cut.vtp": ('<VTKFile type="PolyData"><PolyData>', cut_short),
     "page.vtp": ("<html/>", "expected 'VTKFile'"),
+    "order.vtp": ('<VTKFile type="PolyData" byte_order="MiddleEndian"><PolyData>', "BigEndian, not 'MiddleEndian'"),
     **{f"empty.{kind}": ("", "is empty") for kind in formats},
     **{f"zipped.{kind}": (gzip.compress(stl.encode()), "is compressed; unpack it first") for kind in formats},
     **{f"garbage.{kind}": (garbage, f"garbage.{kind}") for kind in formats},
@@ -299,7 +313,8 @@ meshes = {
     # No regular files.
     "folder.stl": (None, "is a directory"),
     **{name: (None, "is not a regular file") for name in ("pipe.stl", "/dev/zero", "/dev/full")},
-    **{name: (None, "there is no such file") for name in ("loop.stl", "x" * 300 + ".stl")},
+    "loop.stl": (None, "its links lead in a circle"),
+    "x" * 300 + ".stl": (None, "cannot be reached (File name too long)"),
 }
 
 
@@ -312,6 +327,8 @@ def world(tmp_path_factory):
     cube = "OFF\n8 12 0\n" + "".join("%d %d %d\n" % c for c in corners) + "".join(f"3 {t}\n" for t in triangles)
     contents = {
         "cube.off": cube, "poses.txt": "0 0 60 1 2 -3\n", "many.txt": 3000 * "0 0 60 1 2 -3\n",
+        "far.obj": "".join("v 1e9 1e9 %d\n" % (1e9 + z) for z in range(3)) + "v 1000000001 1e9 1e9\nf 1 2 4\nf 2 3 4\n",
+        "line.off": "OFF\n3 2 0\n0 0 0\n50 0 0\n100 0 0\n3 0 1 2\n3 0 2 1\n",  # closed, so that it gets no warning
         "nan.txt": "0 0 60 1 2 -3\n0 0 nan 0 0 0\n", "f.csv": "0,0,0,10,20,30\n0,0,40,10,20,70\n50,0,0,10,70,30\n",
         "broken.stl": stl[:70], "cut.json": '{"keepout_record": "verify", "format"', "old.csv": "precious\n",
         "old.html": "precious\n", "old.json": "precious\n", **{name: content for name, (content, _) in meshes.items() if content is not None}}
@@ -327,7 +344,8 @@ def world(tmp_path_factory):
 
 def files_in(folder):
     """Returns the content of all files of a folder, and the kind of everything else."""
-    return {path.name: path.read_bytes() if path.is_file() else path.lstat().st_mode for path in sorted(folder.iterdir())}
+    return {path.name: path.read_bytes() if path.is_file() and os.access(path, os.R_OK) else path.lstat().st_mode
+            for path in sorted(folder.iterdir())}
 
 
 def run(folder, line, before=""):
@@ -396,12 +414,15 @@ def test_files_without_permission_are_named(world):
         (world / name).write_text(off)
         (world / name).chmod(0)
     (world / "locked").mkdir(mode=0o500)
+    (world / "shut").mkdir(mode=0)
     try:
+        judge(world, "inspect shut/cube.off", 1, ["shut/cube.off: cannot be reached (Permission denied)"])
         judge(world, "inspect locked.off", 1, ["locked.off: "])
         judge(world, "register locked.csv", 1, ["locked.csv: cannot be read"])
         judge(world, "replay cube.off --poses poses.txt --out locked/s.csv", 1, ["locked/s.csv: cannot write here"])
     finally:
         (world / "locked").rmdir()
+        (world / "shut").rmdir()
         for name in ("locked.off", "locked.csv"):
             (world / name).unlink()
 
@@ -437,6 +458,7 @@ def test_a_closed_stdout_does_not_end_up_in_a_result(tmp_path):
 psm = (root / "fixtures/robots/psm.urdf").read_text()
 capsules = '"capsules":[[5,9.1,0,0,6,0,10.2,0,1]]'
 identity = "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
+far_away = "[[1,0,0,0],[0,1,0,0],[0,0,1,900],[0,0,0,1]]"
 doubled = "[[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]"
 
 
@@ -455,6 +477,9 @@ robots = {
     "garbage": (garbage, "not XML"),
     "page": ("<html/>", "<robot>"),
     "no_links": ('<robot name="a"/>', "No link"),
+    "xacro": ('<robot name="a"><xacro:macro name="m"/></robot>', "expand it first: xacro FILE > robot.urdf"),
+    "xacro_in_numbers": (psm_with('<robot', '<robot xmlns:xacro="http://ros.org/wiki/xacro"').replace(
+        'velocity="', 'velocity="${2}'), "expand it first: xacro FILE > robot.urdf"),
     "speed": (psm_with(r'velocity="[^"]*"', 'velocity="0"'), "velocity limit"),
     "limits": (psm_with(r'lower="[^"]*"', 'lower="9e9"'), "lower above upper"),
     "nan": (psm_with(r'xyz="[^"]*"', 'xyz="nan 0 0"'), "[nan]"),
@@ -497,6 +522,9 @@ requests = [
     (instrument('"refinements":-1'), "no_instrument", "refinements: expected a whole number from 0", "got -1"),
     (instrument(f'"frame":{doubled}'), "no_instrument", "the base of the chain is no pose"),
     (instrument('"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]'), "no_instrument", "last row of 'frame'"),
+    (instrument("", '"capsules":[]'), not_a_request, "'capsules' must be", "at least one, and at most 16"),
+    (instrument('"index":"wide_bhv"'), "no_instrument", "there is no", "wide_bhv"),
+    (instrument('"solver":"activeset"'), "no_instrument", "there is no", "activeset"),
     (body("9,0,0,0,6,0,0,0,1"), "no_instrument", "a link of 'capsules' must be a number from 0", "not 9"),
     (body("1.5,0,0,0,6,0,0,0,1"), "no_instrument", "not 1.5"),
     (body("5,0,0,0,6,0,0,0,-1"), "no_instrument", "the radius of body 1 must be a length", "not -1"),
@@ -536,6 +564,7 @@ requests = [
 # Requests that can be carried out, and what their answers say.
 zero = 'q":[0,0,60,0,0,0]'
 answered = [
+    (instrument(f'"index":"pd_tree","solver":"active_set","frame":{far_away}'), {"ok": True}),
     (asked("place", f'"mesh":0,"frame":{identity}'), {"ok": True}),  # the last one was refused
     (asked("joint_step", f'"{zero},"increment":[1e300,0,0,0,0,0]'), {"ok": False, "status": "invalid_input"}),
     (asked("joint_step", f'"{zero},"increment":[0,0,0,0,0,0],"weights":[0,1,1,1,1,1]'), {"ok": False, "status": "invalid_input"}),
@@ -553,7 +582,7 @@ def test_bad_requests_are_answered_once_each_and_end_nothing(world):
         (world / f"{name}.urdf").write_bytes(content if isinstance(content, bytes) else content.encode())
     (world / "psm.urdf").write_text(psm)
     kept = files_in(world)
-    far = instrument('"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,900],[0,0,0,1]]')
+    far = instrument(f'"frame":{far_away}')
     lines = [far, *(line for line, *_ in requests), *(line for line, _ in answered), '{"id":7,"do":"ping"}']
     ended = subprocess.run([keepout, "serve", "cube.off"], cwd=world, input="\n".join(lines).encode("latin-1"),
                            capture_output=True, timeout=3 * patience)

@@ -183,6 +183,61 @@ def test_the_benchmark_of_a_simulation_has_the_mesh_as_it_was_asked_for(tmp_path
     assert row["hits_mean"] > 11, "all 12 triangles are within 5 mm of a fan of 0.1 mm"
 
 
+poses = "0 0 60 1 2 -3\n"
+
+
+@pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1", "link", "-"])
+def test_a_result_on_stdout_is_appended_to_what_is_there_and_is_alone(tmp_path, name):
+    (tmp_path / "poses").write_text(poses)
+    (tmp_path / "link").symlink_to("/dev/stdout")
+    replay = f"'{keepout}' replay cube --poses poses --out {name}"
+    subprocess.run(["bash", "-c", f"echo precious > log; {replay} >> log; (echo one; {replay}; echo two) > other; "
+                    f"{replay} | cat > third"], cwd=tmp_path, capture_output=True, timeout=patience, check=True)
+    log, other, result = (re.sub(r"(\d+,){4}(?=\d+\n)", "TIMES,", (tmp_path / file).read_text())
+                          for file in ("log", "other", "third"))
+    assert re.fullmatch(r"step,status,.*,distance\n0,free,.*,TIMES,10\n", result)
+    assert log == f"precious\n{result}"
+    assert other == f"one\n{result}two\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["link", "log", "other", "poses", "third"]
+
+
+def test_a_result_goes_to_a_terminal_and_to_any_open_file(tmp_path):
+    (tmp_path / "poses").write_text(poses)
+    terminal, end = os.openpty()
+    arguments = [keepout, "replay", "cube", "--poses", "poses", "--out", "-", "--planes", "/dev/fd/3"]
+    done = subprocess.run(["bash", "-c", '"$@" 3>> planes', "bash", *arguments], cwd=tmp_path, stdin=end, stdout=end,
+                          stderr=subprocess.PIPE, text=True, timeout=patience, check=True)
+    assert os.read(terminal, 4096).decode().startswith("step,status,")
+    assert (tmp_path / "planes").read_text().startswith("step,triangle,")
+    assert "1 step -> -" in done.stderr
+
+
+def test_a_page_on_stdout_keeps_no_record_beside_it(tmp_path):
+    for name in ("-", "/dev/stdout"):
+        status, out, _ = run(tmp_path, "inspect", "cube", "--out", name)
+        assert status == 0 and out.startswith("<!") and out.rstrip().endswith("</html>")
+    assert not list(tmp_path.iterdir()) and not Path("/dev/stdout.json").exists()
+
+
+@pytest.mark.parametrize("line, kept, lost", [
+    ("verify cube --steps 20 --json kept.json --out - > /dev/full", "kept.json", "stdout"),
+    ("simulate cube --strokes 1 --cycles 20 --json kept.json --out - > /dev/full", "kept.json", "stdout"),
+    ("replay cube --poses poses --planes kept.csv --out lost.csv", "kept.csv", "lost.csv"),
+])
+def test_a_result_that_cannot_be_written_does_not_take_the_others_with_it(tmp_path, line, kept, lost):
+    (tmp_path / "poses").write_text(1000 * poses)
+    limit = "ulimit -f 8; " if lost != "stdout" else ""
+    done = subprocess.run(["bash", "-c", f"{limit}'{keepout}' {line}"], cwd=tmp_path, capture_output=True, text=True,
+                          timeout=patience, check=False)
+    assert done.returncode == 1
+    assert (f"keepout: {lost}: could not be written to the end; is the disk full? (written all the same: {kept})\n"
+            in done.stderr)
+    assert "No breach" in done.stderr or "verify" not in line
+    text = (tmp_path / kept).read_text()
+    assert json.loads(text) if kept.endswith("json") else text == "step,triangle,nx,ny,nz,offset\n"
+    assert sorted(path.name for path in tmp_path.iterdir()) == [kept, "poses"]
+
+
 def preparation(folder, text):
     """A program that prepares sample meshes, as KEEPOUT_PREPARE names it."""
     program = folder / "prepare"

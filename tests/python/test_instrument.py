@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Whole instruments: chains, bodies, and what keeps them out of a mesh."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -160,7 +161,7 @@ def test_proofs_change_nothing_for_the_steps_and_options_something():
     assert 0.002 < guards[0].instrument.recommended_band(0.01) < 0.5
 
 
-def test_chains_of_tables_and_files_are_the_same():
+def test_chains_of_tables_and_files_are_the_same(tmp_path):
     q = motions(50)[0]
     chain = psm()
     poses = chain.forward_kinematics(q)
@@ -182,6 +183,11 @@ def test_chains_of_tables_and_files_are_the_same():
     assert metres.joints[2].upper == 0.24
     with pytest.raises(keepout.Error, match="no_such_link"):
         keepout.read_chain(robots / "psm.urdf", tip="no_such_link")
+    os.mkfifo(tmp_path / "pipe.urdf")
+    for path, says in ((tmp_path, "is a folder"), (tmp_path / "pipe.urdf", "is not a regular file"),
+                       (tmp_path / "none.urdf", "cannot read it")):
+        with pytest.raises(keepout.Error, match=f"{path.name}: {says}"):
+            keepout.read_chain(path)
 
 
 @pytest.mark.parametrize(

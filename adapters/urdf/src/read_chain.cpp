@@ -169,6 +169,15 @@ UrdfChain parse_chain(std::string_view text, std::string_view name, std::string_
 
 UrdfChain read_chain(const std::filesystem::path& file, std::string_view base, std::string_view tip,
                      double scale) {
+  std::error_code none;  // such a path is no file that can be opened either
+  const std::filesystem::file_status status = std::filesystem::status(file, none);
+  if (std::filesystem::is_directory(status)) {
+    throw Error(file.string() + ": is a folder; name a file of URDF in it");
+  }
+  // Opening a pipe might wait for ever.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw Error(file.string() + ": is not a regular file; copy what it gives to one");
+  }
   std::ifstream stream(file, std::ios::binary);
   // A byte more than is allowed, so that what is too large, or has no end, is seen to be.
   std::string text(most_bytes_of_urdf + 1, '\0');

@@ -98,6 +98,12 @@ UrdfDescription describe(std::string_view text) {
   if (robot == nullptr || robot->ValueStr() != "robot" || robot->NextSiblingElement() != nullptr) {
     throw Error("no URDF: one element <robot> must hold all others. Expand a file of xacro first");
   }
+  for (const TiXmlElement* part = robot->FirstChildElement(); part != nullptr;
+       part = part->NextSiblingElement()) {
+    if (!part->ValueStr().starts_with("xacro:")) continue;  // urdfdom would pass over it
+    throw Error("holds <" + part->ValueStr() +
+                ">, which is xacro; expand it first: xacro FILE > robot.urdf");
+  }
   for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint != nullptr;
        joint = joint->NextSiblingElement("joint")) {
     if (read.joints.emplace(attribute(joint, "name"), joint).second) continue;
@@ -114,7 +120,14 @@ UrdfDescription describe(std::string_view text) {
   } catch (const std::exception& thrown) {
     messages.text = thrown.what();
   }
-  if (read.model == nullptr) throw Error("no URDF: " + messages.text + ". Repair it there");
+  if (read.model == nullptr) {
+    const bool may_be_xacro = xml.find("xacro") != std::string::npos;
+    throw Error("no URDF" +
+                std::string(may_be_xacro
+                                ? " (if it is xacro, expand it first: xacro FILE > robot.urdf)"
+                                : "") +
+                ": " + messages.text + ". Repair it there");
+  }
   return read;
 }
 

@@ -230,8 +230,6 @@ void live(const LiveOptions& options, std::ostream& out) {
   if (options.robot.empty())
     require_within_reach(options.max_step, options.constraint.options.radius);
   const std::filesystem::path template_file = page_template_file("live.html");
-  const PageTemplate parts =
-      read_page_template(template_file, "<!-- keepout live: the anatomy goes here -->");
   std::vector<NamedPath> inputs{{"the page without an anatomy", template_file}};
   for (const std::filesystem::path& mesh : options.meshes) {
     inputs.push_back({"MESH", file_of_mesh(mesh)});
@@ -246,11 +244,14 @@ void live(const LiveOptions& options, std::ostream& out) {
       progress.advance();
     }
   }
+  const PageTemplate parts =
+      read_page_template(template_file, "<!-- keepout live: the anatomy goes here -->");
   std::ostream& page = *outputs.stream("--out");
   page << parts.before;
   write_anatomy(page, options, anatomy);
   page << parts.after;
   outputs.commit();
+  if (entry_of_open_file(options.page)) return;  // no browser can open it
   const std::string url = file_url(options.page);
   const bool opened = options.opening == Opening::by_the_desktop && open_in_browser(url);
   print_page(out, options, url, std::filesystem::file_size(options.page), opened);

@@ -103,7 +103,7 @@ void RecordFiles::add_to(CLI::App& command) {
 }
 
 std::optional<std::filesystem::path> RecordFiles::kept_json() const {
-  if (json || !page || missing_template().empty()) return json;
+  if (json || !page || entry_of_open_file(*page) || missing_template().empty()) return json;
   return page->string() + ".json";
 }
 

@@ -50,8 +50,9 @@ struct RecordFiles {
   /// Adds --json and --out to a command; a `page` that is set is the one by default.
   void add_to(CLI::App& command);
 
-  /// The JSON that is to be written: where a report will be a plain one (see write_record), it is
-  /// kept beside it if nobody asked for it, so that the report can be made later.
+  /// Returns the JSON file to write. If nobody asked for one and the report will be a plain page
+  /// (see write_record), it is kept beside the page, so that the report can be made later; unless
+  /// the page goes to stdout or another open file.
   std::optional<std::filesystem::path> kept_json() const;
 
   /// Opens all of them: "--json", "--csv" and "--out". Throws Error as OutputFiles and file_of_mesh
@@ -60,7 +61,7 @@ struct RecordFiles {
   OutputFiles open(const Meshes& meshes, std::string_view option = "MESH") const {
     std::vector<NamedPath> inputs;
     for (const auto& mesh : meshes) inputs.push_back({option, file_of_mesh(mesh)});
-    return {inputs, {{"--json", kept_json()}, {"--csv", csv}, {"--out", page}}};
+    return {inputs, {{"--out", page}, {"--csv", csv}, {"--json", kept_json()}}};
   }
 };
 

@@ -84,7 +84,7 @@ Instrument read_instrument(const Json& request) {
 }
 
 std::vector<std::string_view> keys_of_instruments() {
-  std::vector<std::string_view> keys{"base_link", "tip_link", "scale", "frame"};
+  std::vector<std::string_view> keys{"base_link", "tip_link", "scale", "frame", "index", "solver"};
   for (const auto& option : instrument_options) keys.push_back(option.name);
   return keys;
 }
@@ -151,8 +151,15 @@ void open_instrument(Client& client, const Json& request, std::string& out) {
     if (!request.contains(option.name)) continue;
     option.set(settings.options, *option_value(request[option.name], option.kind));
   }
-  client.instrument = {make_instrument_constraint(client.service.mesh, client.service.index,
-                                                  read_instrument(request), settings)};
+  settings.solver = request.value("solver", settings.solver);
+  Instrument instrument = read_instrument(request);  // before an index is built for nothing
+  MotionConstraintSettings of_index = client.service.tip;
+  of_index.index = request.value("index", of_index.index);
+  const auto index = of_index.index == client.service.tip.index
+                         ? client.service.index
+                         : make_or_load_index(client.service.mesh, of_index);
+  client.instrument = {
+      make_instrument_constraint(client.service.mesh, index, std::move(instrument), settings)};
   const Instrument& opened = instrument_of(client).instrument();
   append_member(out, "ok", true);
   append_member(out, "joints",
@@ -232,9 +239,7 @@ void set_guides(Client& client, const Json& request, std::string& out) {
 AnatomicalSpace space_of(const Json& request, const char* key) {
   if (!request.contains(key)) return AnatomicalSpace::unstated;
   const std::string text = request[key].get<std::string>();
-  for (const AnatomicalSpace space : {AnatomicalSpace::ras, AnatomicalSpace::lps}) {
-    if (text == name(space)) return space;
-  }
+  if (const auto space = space_named(text)) return *space;
   throw Error(in_quotes(key) + " must be 'RAS' or 'LPS', not " + in_quotes(text));
 }
 

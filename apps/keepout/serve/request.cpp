@@ -133,8 +133,9 @@ std::vector<Field> fields_within(const RequestLimits& limits) {
       rows_of("frame", "four arrays of four numbers, a homogeneous matrix", {4, 4}, {4, 4}),
       rows_of(
           "capsules",
-          "an array of arrays of nine numbers, a link and a point of it, another, and a radius, " +
-              up_to(Instrument::most_bodies) + " of them",
+          "an array of arrays of nine numbers, a link and a point of it, another, and a radius; at "
+          "least one, and " +
+              up_to(Instrument::most_bodies),
           {9, 9}, {1, Instrument::most_bodies}),
       of_joints("q"),
       vector("linear"),
@@ -143,7 +144,7 @@ std::vector<Field> fields_within(const RequestLimits& limits) {
       of_joints("weights"),
       number("mesh")};
   for (const char* name : {"urdf", "base_link", "tip_link", "tool", "narrow_phase", "of", "file",
-                           "unit", "space", "untagged"}) {
+                           "unit", "space", "untagged", "index", "solver"}) {
     fields.push_back({.name = name, .expected = "a string", .is_text = true});
   }
   fields.push_back({.name = "flip", .expected = "true or false", .is_flag = true});

@@ -290,7 +290,7 @@ step      tip, desired: the motion that the tip may make instead of the desired 
 steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".
 polytope  tip, radius: normals and offsets of the free space around it, normal . d >= offset.
 instrument  urdf, a file, and capsules, arrays of [link,x,y,z,link,x,y,z,radius]: opens an
-          instrument of this client's. Its options: )" +
+          instrument of this client's. Its options: index, solver, )" +
          enumerated(names(instrument_options)) + R"(.
 joint_step  q, and linear and angular of its flange, or an increment: the increment of the joints.
 tool      tool, as --tool takes it, and narrow_phase: from now on this client's steps guard it.

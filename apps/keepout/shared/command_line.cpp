@@ -25,10 +25,7 @@ namespace {
 /// An option that takes the name of an anatomical space, in any case.
 CLI::Option* add_space(CLI::App& command, const char* name, AnatomicalSpace& space,
                        const char* description) {
-  const auto take = [&space](const std::string& word) {
-    space =
-        word.front() == 'r' || word.front() == 'R' ? AnatomicalSpace::ras : AnatomicalSpace::lps;
-  };
+  const auto take = [&space](const std::string& word) { space = space_named(word).value(); };
   return command.add_option_function<std::string>(name, take, description)
       ->type_name("")
       ->check(one_of({"ras", "lps", "RAS", "LPS"}));

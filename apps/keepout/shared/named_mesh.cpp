@@ -108,9 +108,10 @@ std::vector<std::string> fixture_names() {
 std::filesystem::path file_of_mesh(const std::filesystem::path& name) {
   if (is_file(name) || is_shape(name)) return name;
   if (is_prepared(name)) return fixture_path(name.string());
-  std::error_code none;
-  if (std::filesystem::exists(name, none))
-    return name;  // a folder, which is told of where it is read
+  std::error_code error;
+  const bool exists = std::filesystem::exists(std::filesystem::status(name, error));
+  // load_mesh() refuses a folder, and a path that cannot be followed, and says why.
+  if (exists || (error && error != std::errc::no_such_file_or_directory)) return name;
   refuse(name);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "keepout/error.h"
+#include "shared/names.h"
 
 namespace keepout::app {
 namespace {
@@ -67,9 +68,18 @@ std::filesystem::path unique_name(const std::filesystem::path& path) {
   return error ? path : unique;
 }
 
-bool same_file(const std::filesystem::path& one, const std::filesystem::path& other) {
+/// Returns true if an output would overwrite another file. A pipe or a terminal that is open twice,
+/// as stdin and as stdout, is overwritten by nothing.
+bool same_file(const std::filesystem::path& output, const std::filesystem::path& other) {
+  const auto one = entry_of_open_file(output);
+  const auto two = entry_of_open_file(other);
+  if (one && one == two) return true;
+  const std::filesystem::path& first = one ? *one : output;
+  const std::filesystem::path& second = two ? *two : other;
   std::error_code missing;  // hard links need both to exist
-  return std::filesystem::equivalent(one, other, missing) || unique_name(one) == unique_name(other);
+  if (one && !std::filesystem::is_regular_file(first, missing)) return false;
+  return std::filesystem::equivalent(first, second, missing) ||
+         unique_name(first) == unique_name(second);
 }
 
 void refuse_if_same(const NamedPath& output, const NamedPath& other) {
@@ -105,21 +115,36 @@ RemovedBySignals::~RemovedBySignals() {
 }
 
 OutputFile::OutputFile(const std::filesystem::path& path)
-    : partial_(target_of(path).string() + ".partial-" + std::to_string(::getpid())),
-      file_(path, partial_.path()),
-      path_(path) {
-  if (file_.error()) throw Error(path_.string() + ": " + failure_of(file_.error()));
+    : name_(path == "-" ? "stdout" : path.string()) {
+  if (const auto entry = entry_of_open_file(path)) {
+    open_.emplace(*entry);
+    if (!open_->error()) return;
+    throw Error(name_ + ": is not open for writing (" + open_->error().message() +
+                "); name a file, or connect it");
+  }
+  partial_.emplace(target_of(path).string() + ".partial-" + std::to_string(::getpid()));
+  file_.emplace(path, partial_->path());
+  if (file_->error()) throw Error(name_ + ": " + failure_of(file_->error()));
 }
 
-void OutputFile::finish() {
-  if (!file_.finish()) return;
-  throw Error(path_.string() + ": could not be written to the end; is the disk full?");
+std::ostream& OutputFile::stream() noexcept {
+  if (file_) return file_->stream();
+  return text_;
+}
+
+void OutputFile::fail(const std::error_code& error) const {
+  throw Error(name_ + ": could not be written to the end; " +
+              (error == std::errc::broken_pipe ? "its reader has ended" : "is the disk full?"));
 }
 
 void OutputFile::commit() {
-  finish();
-  const std::error_code error = file_.commit();
-  if (error) throw Error(path_.string() + ": cannot be replaced (" + error.message() + ")");
+  if (open_) {
+    if (const std::error_code error = open_->write(std::exchange(text_, {}).view())) fail(error);
+    return;
+  }
+  if (const std::error_code error = file_->finish()) fail(error);
+  const std::error_code error = file_->commit();
+  if (error) throw Error(name_ + ": cannot be replaced (" + error.message() + ")");
 }
 
 OutputFiles::OutputFiles(std::span<const NamedPath> inputs, std::initializer_list<Asked> outputs) {
@@ -142,12 +167,19 @@ std::ostream* OutputFiles::stream(std::string_view name) {
 }
 
 void OutputFiles::commit() {
+  std::vector<std::string> faults, written;
   for (Output& output : outputs_) {
-    if (output.is_written) output.file.finish();
+    if (!output.is_written) continue;
+    try {
+      output.file.commit();
+      written.push_back(output.file.name());
+    } catch (const Error& error) {
+      faults.emplace_back(error.what());
+    }
   }
-  for (Output& output : outputs_) {
-    if (output.is_written) output.file.commit();
-  }
+  if (faults.empty()) return;
+  throw Error(enumerated(faults, "; ") +
+              (written.empty() ? "" : " (written all the same: " + enumerated(written) + ")"));
 }
 
 }  // namespace keepout::app

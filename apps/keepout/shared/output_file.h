@@ -7,10 +7,13 @@
 #include <optional>
 #include <ostream>
 #include <span>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "keepout/file_replacement.h"
+#include "shared/open_file.h"
 
 namespace keepout::app {
 
@@ -32,27 +35,34 @@ class RemovedBySignals {
   std::filesystem::path path_;
 };
 
-/// A file that replaces another when commit() is called. Without a commit nothing remains, and the
-/// old file stays, also if SIGHUP, SIGINT, SIGPIPE or SIGTERM ends the process before. Not
-/// thread-safe: one thread makes and ends all of them.
+/// A file that replaces another when commit() is called, or a text that commit() appends to an
+/// open file. Without a commit nothing remains, and the old file stays, also if SIGHUP, SIGINT,
+/// SIGPIPE or SIGTERM ends the process before. Not thread-safe: one thread makes and ends all of
+/// them.
 class OutputFile {
  public:
-  /// Throws Error if the file cannot be made, or would replace a directory, a device or a pipe.
+  /// Throws Error if the file cannot be made, or would replace a directory, a device or a pipe. A
+  /// path for which entry_of_open_file() returns an entry replaces nothing: see OpenFile.
   explicit OutputFile(const std::filesystem::path& path);
 
-  std::ostream& stream() noexcept { return file_.stream(); }
+  std::ostream& stream() noexcept;
 
-  /// Ends the writing. Throws Error if a write failed. Of several files that belong together,
-  /// finish() all before the commit() of any.
-  void finish();
-
-  /// Finishes, and moves the file to its place. Throws Error if either fails.
+  /// Ends the writing, and moves the file to its place or appends the text. Throws Error if that
+  /// fails.
   void commit();
 
+  /// Returns the name for messages: the path as the user gave it, or "stdout" for "-".
+  const std::string& name() const noexcept { return name_; }
+
  private:
-  RemovedBySignals partial_;
-  FileReplacement file_;
-  std::filesystem::path path_;  // as the user gave it
+  /// Throws Error, naming the file, because it could not be written to the end.
+  [[noreturn]] void fail(const std::error_code& error) const;
+
+  std::string name_;
+  std::optional<OpenFile> open_;  // if set, the two below are not
+  std::optional<RemovedBySignals> partial_;
+  std::optional<FileReplacement> file_;
+  std::ostringstream text_;  // for open_
 };
 
 /// A path, and what the user calls it: MESH, --out.
@@ -75,8 +85,9 @@ class OutputFiles {
   /// Where to write; null where it was not asked for.
   std::ostream* stream(std::string_view name);
 
-  /// Moves to their places those of which the stream was asked for, once all of them are whole.
-  /// Throws Error when one cannot be. The others may follow later.
+  /// Commits each file of which the stream was asked for. If some cannot be written, commits the
+  /// others all the same, and then throws Error, naming both. Files whose stream was not asked for
+  /// may follow later.
   void commit();
 
  private:

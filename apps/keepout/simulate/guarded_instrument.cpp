@@ -92,6 +92,7 @@ class GuardedInstrument final : public SimulatedTool {
   std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
     const std::string name = path.stem().string();
     const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, options_.load).mesh;
+    require_area(path.string(), *mesh);
     on_.emplace(RobotScene{{name, mesh, options_.constraint.index}, margin_});
     Json& drawn = meshes_.emplace_back(drawn_mesh(name, *mesh));
     drawn["surface"] = on_->scene.has_sides() ? "closed" : "open";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
@@ -32,6 +33,14 @@ Scene::Scene(std::string name, std::shared_ptr<const Mesh> mesh, std::string_vie
   }
   mean_edge_ /= 3.0 * static_cast<double>(mesh_->triangle_count());
   if (!(mean_edge_ > 0.0)) mean_edge_ = 1.0;  // all triangles are points
+}
+
+void require_area(const std::string& name, const Mesh& mesh) {
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+    const Triangle c = mesh.triangle(t);
+    if ((c[1] - c[0]).cross(c[2] - c[0]).norm() > 0.0) return;
+  }
+  throw Error(name + ": none of its triangles has an area; check the export");
 }
 
 std::vector<Arena> generated_arenas(const std::string& index) {
@@ -68,8 +77,11 @@ std::vector<Arena> real_arenas(const std::string& index, std::vector<std::string
 }
 
 Arena named_arena(const std::string& mesh, const std::string& index) {
-  return {mesh,
-          [mesh, index] { return std::vector{Scene(mesh, load_named_mesh(mesh).mesh, index)}; }};
+  return {mesh, [mesh, index] {
+            const std::shared_ptr<const Mesh> loaded = load_named_mesh(mesh).mesh;
+            require_area(mesh, *loaded);
+            return std::vector{Scene(mesh, loaded, index)};
+          }};
 }
 
 }  // namespace keepout::app

@@ -53,6 +53,9 @@ class Scene {
   bool has_sides_;
 };
 
+/// Throws Error, naming the mesh, if none of its triangles has an area.
+void require_area(const std::string& name, const Mesh& mesh);
+
 /// A mesh that a campaign may load: one mesh, maybe in several places, with a scene for each place;
 /// or a kind of mesh, of which one is drawn anew for each start of an instrument.
 struct Arena {

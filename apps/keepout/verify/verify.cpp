@@ -166,11 +166,11 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   for (const auto& mesh : options.meshes) inputs.push_back({"MESH", file_of_mesh(mesh)});
   for (const auto& file : options.merge) inputs.push_back({"--merge", file});
   OutputFiles outputs(inputs,
-                      {{"--json", options.files.kept_json()}, {"--out", options.files.page}});
+                      {{"--out", options.files.page}, {"--json", options.files.kept_json()}});
   const CampaignResult result =
       options.merge.empty() ? run(options, out) : merged(options.merge, options.command);
+  result.print(out);  // first: a full disk takes no verdict away
   write_record(outputs, result.record, options.files);
-  result.print(out);
   if (result.is_broken) return EXIT_FAILURE;
   return result.is_interrupted ? exit_interrupted : EXIT_SUCCESS;
 }

@@ -230,6 +230,14 @@ std::string_view name(AnatomicalSpace space) noexcept {
   return names[static_cast<std::size_t>(space)];
 }
 
+std::optional<AnatomicalSpace> space_named(std::string_view text) noexcept {
+  const auto is_same = [](char a, char b) { return a == b || a == b - 'A' + 'a'; };
+  for (const AnatomicalSpace space : {AnatomicalSpace::ras, AnatomicalSpace::lps}) {
+    if (std::ranges::equal(text, name(space), is_same)) return space;
+  }
+  return std::nullopt;
+}
+
 void swap_ras_and_lps(Surface& surface) noexcept {
   // From 0, so that no 0 becomes -0.
   for (Vec3& v : surface.vertices) v = Vec3(0.0 - v.x(), 0.0 - v.y(), v.z());
@@ -238,7 +246,7 @@ void swap_ras_and_lps(Surface& surface) noexcept {
 MeshSource::MeshSource(const std::filesystem::path& path) : name_(path.string()), file_(path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::none) {
+  if (error && error != std::errc::no_such_file_or_directory) {
     fail("cannot be reached (" + error.message() + "); check its folders and links");
   }
   if (!std::filesystem::exists(status)) fail("there is no such file; check the name");

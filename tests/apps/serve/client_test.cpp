@@ -568,7 +568,7 @@ TEST_F(ClientTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
   const auto add_wall = [&](const std::string& more) {
     return talk_.told(R"({"do":"anatomy","file":")" + file + "\"," + more + '}');
   };
-  const Answer scaled = add_wall(R"("unit":"cm","flip":true,"untagged":"LPS","space":"RAS")");
+  const Answer scaled = add_wall(R"("unit":"cm","flip":true,"untagged":"lps","space":"RAS")");
   EXPECT_EQ(scaled["notices"],
             Answer({"wall.off: turned from LPS to RAS: x and y have changed their signs",
                     "wall.off: scaled by 10, from cm to mm",
@@ -576,7 +576,7 @@ TEST_F(ClientTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
       << scaled;
   EXPECT_CONTAINS(std::string(add_wall(R"("unit":"inch")")["error"]["message"]), "not 'inch'");
   EXPECT_CONTAINS(std::string(add_wall(R"("scale":0)")["error"]["message"]), "above 0");
-  EXPECT_CONTAINS(std::string(add_wall(R"("space":"ras")")["error"]["message"]), "'RAS' or 'LPS'");
+  EXPECT_CONTAINS(std::string(add_wall(R"("space":"rsa")")["error"]["message"]), "'RAS' or 'LPS'");
   EXPECT_CONTAINS(std::string(add_wall(R"("flip":1)")["error"]["message"]), "true or false");
 }
 

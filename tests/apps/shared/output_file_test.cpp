@@ -176,14 +176,14 @@ TEST_F(OutputFileTest, ASignalAfterTheCommitLeavesTheResult) {
   EXPECT_EQ(contents_of(file("a.csv")), "whole");
 }
 
-TEST_F(OutputFileTest, WhatCannotBeWrittenToTheEndIsToldByFinish) {
+TEST_F(OutputFileTest, AFileThatCannotBeWrittenToTheEndIsReported) {
   const int status = status_of([&] {
     ::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{4096, 4096};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     OutputFile output(file("a.csv"));
     output.stream() << std::string(5000, 'x');
-    const std::string message = error_of([&] { output.finish(); });
+    const std::string message = error_of([&] { output.commit(); });
     ::_exit(message.find("to the end") != std::string::npos ? 7 : 0);
   });
   EXPECT_EQ(WEXITSTATUS(status), 7);

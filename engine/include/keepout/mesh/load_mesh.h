@@ -22,6 +22,10 @@ enum class AnatomicalSpace : std::uint8_t { unstated, ras, lps };
 /// "RAS", "LPS", or "unstated".
 std::string_view name(AnatomicalSpace space) noexcept;
 
+/// Returns the space that a text names: "RAS" or "LPS", in small letters too. Empty for any other
+/// text.
+std::optional<AnatomicalSpace> space_named(std::string_view text) noexcept;
+
 /// Turns coordinates from RAS to LPS, or back: x and y change signs, exactly. The winding stays.
 void swap_ras_and_lps(Surface& surface) noexcept;
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <system_error>
+
+namespace keepout::app {
+
+/// Returns the entry in /proc of the open file that a path leads to, as that of /dev/stdout,
+/// /dev/fd/3, a link to one of these, and "-", which is stdout. Empty for every other path.
+std::optional<std::filesystem::path> entry_of_open_file(const std::filesystem::path& path);
+
+/// A file, a pipe or a terminal that is open already, and that results are appended to.
+class OpenFile {
+ public:
+  /// Takes an entry from entry_of_open_file(). If it is stdout, results get it for themselves:
+  /// text that the command prints on stdout goes to stderr from then on. See error().
+  explicit OpenFile(const std::filesystem::path& entry);
+  ~OpenFile();
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  /// Returns why results cannot be written there, if so.
+  const std::error_code& error() const noexcept { return error_; }
+
+  /// Writes a text behind all that was written before. Returns why it could not be written whole.
+  std::error_code write(std::string_view text) noexcept;
+
+ private:
+  int descriptor_ = -1;
+  std::error_code error_ = {};
+};
+
+}  // namespace keepout::app
