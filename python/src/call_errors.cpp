@@ -35,7 +35,7 @@ bool lacks_its_value(PyObject* object) {
   auto* const base = reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base);
   if (!PyObject_TypeCheck(object, base)) return false;
   const auto* const instance = reinterpret_cast<py::detail::instance*>(object);
-  return instance->simple_layout && !instance->simple_holder_constructed;
+  return instance->simple_layout && instance->simple_value_holder[0] == nullptr;
 }
 
 bool is_constructor(PyObject* capsule) {

@@ -31,7 +31,8 @@ void swap_ras_and_lps(Surface& surface) noexcept;
 
 /// Whether load_mesh looks at the mesh that it has read.
 enum class MeshCheck : std::uint8_t {
-  quick,  // quick_check(): another unit than mm, an open surface, an inconsistent winding, facing inward
+  quick,  // quick_check(): another unit than mm, an open surface, an inconsistent winding, facing
+          // inward
   none    // for who calls examine(), which tells all that and more
 };
 
