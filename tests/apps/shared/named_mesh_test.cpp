@@ -55,6 +55,18 @@ TEST_F(NamedMesh, EveryCommandTakesGeneratedShapesByName) {
   EXPECT_CONTAINS(run("inspect gear").output, "watertight");
 }
 
+TEST_F(NamedMesh, SampleMeshesAreInMillimetersAndWoundOutward) {
+  write_cube("cache/fixtures/femur.stl");
+  for (const std::string sample : {"sphere", "femur"}) {
+    for (const std::string option : {" --unit m", " --scale 2", " --flip"}) {
+      const Outcome refused = run("inspect " + sample + option);
+      EXPECT_EQ(refused.status, 1);
+      EXPECT_CONTAINS(refused.output, sample + ": is a sample mesh, in mm");
+    }
+  }
+  EXPECT_CONTAINS(run("inspect cache/fixtures/femur.stl --flip").output, "flipped, as asked");
+}
+
 TEST_F(NamedMesh, EveryCommandTakesPreparedMeshesByName) {
   write_cube("cache/fixtures/femur.stl");
   for (const std::string& command : commands) {
