@@ -33,10 +33,10 @@ class CommandFolder : public TemporaryFolder {
  public:
   std::filesystem::path file(const std::string& name) const { return path() / name; }
 
-  /// `environment`: assignments that precede the command.
+  /// Pages are plain, as long as `environment`, assignments that precede the command, names none.
   ProcessOutcome run(const std::string& arguments, const std::string& environment = {}) const {
-    const std::string line = "cd '" + path().string() + "' && LC_ALL=C.UTF-8 " + environment +
-                             " '" KEEPOUT_COMMAND "' " + arguments + " 2>&1";
+    const std::string line = "cd '" + path().string() + "' && LC_ALL=C.UTF-8 KEEPOUT_WEB=nowhere " +
+                             environment + " '" KEEPOUT_COMMAND "' " + arguments + " 2>&1";
     FILE* pipe = ::popen(line.c_str(), "r");
     ProcessOutcome outcome{-1, {}};
     std::array<char, 4096> part;
@@ -66,6 +66,7 @@ class CommandFolder : public TemporaryFolder {
       std::vector<char*> pointers;
       for (std::string& argument : arguments) pointers.push_back(argument.data());
       pointers.push_back(nullptr);
+      ::setenv("KEEPOUT_WEB", "nowhere", 1);
       ::execvp(pointers[0], pointers.data());
       ::_exit(127);
     }

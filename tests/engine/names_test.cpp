@@ -160,8 +160,10 @@ TEST(Registry, AsksWhetherTheNearestNameWasMeant) {
   EXPECT_EQ(refusal("embre"),
             "there is no rule 'embre'; did you mean 'embree'? known: certified, paper");
   EXPECT_EQ(refusal("nonsense"), "there is no rule 'nonsense'; known: certified, paper");
-  EXPECT_EQ(refusal("embree"),
-            "rule 'embree' is not here: it needs Embree; there are: certified, paper");
+  EXPECT_EQ(
+      refusal("embree"),
+      "rule 'embree' is not here: it needs Embree; if the module is elsewhere, name its folder "
+      "in the environment variable KEEPOUT_MODULES; there are: certified, paper");
 }
 
 std::string refusal(const StepOptions& options) {

@@ -270,7 +270,7 @@ def test_a_mesh_is_turned_to_the_space_asked_for(tmp_path):
 
 def test_a_mesh_is_scaled_and_flipped_on_demand_and_says_so(tmp_path, caplog):
     path = tmp_path / "part.obj"
-    path.write_text("v 0 0 0\nv .05 0 0\nv 0 .05 0\nv 0 0 .05\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+    path.write_text("v 0 0 0\nv .05 0 0\nv 0 .05 0\nv 0 0 .05\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n")
     with pytest.warns(UserWarning, match='part.obj: the mesh is 0.05 mm across.*unit="m"'):
         plain = keepout.load_mesh(path)
     with warnings.catch_warnings(), caplog.at_level("INFO", "keepout"):
@@ -339,7 +339,7 @@ def test_arrays_are_documented_with_shapes():
 
 def test_what_a_file_has_to_say_is_a_warning(tmp_path):
     path = tmp_path / "tagged.obj"
-    path.write_text("# SPACE=LPS\nv 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+    path.write_text("# SPACE=LPS\nv 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n")
     with pytest.warns(UserWarning, match="tagged.obj: .*LPS") as said:
         mesh = keepout.load_mesh(path)
     assert mesh.warnings and [str(w.message) for w in said] == mesh.warnings

@@ -145,9 +145,9 @@ function testPage(name, ...options) {
   const page = `${name}.html`;
   run(keepout, "live", skull, ...options, "--no-open", "--out", page);
   test(`${name}: the page is small, and needs nothing beside it`, () => {
-    const wasm = statSync(join(root, "build/wasm/keepout.wasm")).size;
-    note(`wasm ${(wasm / 1e3).toFixed(0)} kB`);
-    assert.ok(wasm <= 650e3, "keepout.wasm is larger than 650 kB");
+    const empty = statSync(join(root, "build/web/live.html")).size;
+    note(`page without anatomy ${(empty / 1e3).toFixed(0)} kB`);
+    assert.ok(empty <= 1250e3, "the page without anatomy takes more than a second at 10 Mbit/s");
     assertAlone(join(folder, page), 6e6);
   });
   /** Opens the page, until the tool can be dragged. Its downloads come to the folder. */
