@@ -339,7 +339,7 @@ def test_arrays_are_documented_with_shapes():
 
 def test_what_a_file_has_to_say_is_a_warning(tmp_path):
     path = tmp_path / "tagged.obj"
-    path.write_text("# SPACE=LPS\nv 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 3 4 1\n")
+    path.write_text("# SPACE=LPS\nv 0 0 0\nv 50 0 0\nv 0 50 0\nv 0 0 50\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
     with pytest.warns(UserWarning, match="tagged.obj: .*LPS") as said:
         mesh = keepout.load_mesh(path)
     assert mesh.warnings and [str(w.message) for w in said] == mesh.warnings
