@@ -67,7 +67,8 @@ compile() {
 STUB
 chmod +x "$work/apps/web/build" "$work/fixtures/prepare"
 said=$("$work/run" | sed "s,$work/,,")
-[[ $said == "==> configures first_page
+[[ $said == "==> configuring (first_page)
+==> configures first_page
 ==> builds keepout_first_page
 ==> simulating on the CT skull
 keepout_first_page skull out/skull.html
