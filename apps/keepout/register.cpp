@@ -70,7 +70,9 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
   OutputFiles outputs(inputs, {{"--json", options.json}});
   const FiducialPairs pairs = read_fiducials(options.fiducials);
   const RigidFit fit = fit_of(pairs, options);
-  if (!fit.doubt.empty()) std::cerr << "keepout: do not trust it: " << fit.doubt << '\n';
+  std::string doubt = fit.doubt;
+  if (doubt.empty() && options.fle) doubt = fit.doubt_of(*options.fle);
+  if (!doubt.empty()) std::cerr << "keepout: do not trust it: " << doubt << '\n';
   const double largest = std::ranges::max(fit.residuals);
   std::vector<PairRow> rows;
   for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
@@ -107,7 +109,7 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
                {"fle", fle},
                {"fle_is_estimated", !options.fle},
                {"scale", fit.scale},
-               {"doubt", fit.doubt},
+               {"doubt", doubt},
                {"confidence", options.confidence},
                {"targets", json_of(target_columns, targets)},
                {"margin", places.empty() ? Json(nullptr) : Json(margin_of(places))}});
@@ -123,7 +125,7 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
   }
   if (std::ostream* file = outputs.stream("--json")) *file << json.dump(2) << '\n';
   outputs.commit();
-  return fit.doubt.empty() || options.trusted_anyway ? EXIT_SUCCESS : EXIT_FAILURE;
+  return doubt.empty() || options.trusted_anyway ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace keepout::app

@@ -2,6 +2,7 @@
 #include "bench/bench.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <exception>
 #include <iostream>
@@ -246,19 +247,27 @@ int bench(const BenchOptions& options, std::ostream& out) {
     std::cerr << "keepout: stopped before any row was finished: nothing was written\n";
     return exit_interrupted;
   }
-  // What has been measured is safe before anything else is tried.
+  // What has been measured is safe before anything else is tried: files are written now, and again
+  // at the end. What goes to an open file, such as stdout, waits for its end.
   Json record = record_of(benchmark, {});
   record["complete"] = false;  // until the answers are compared as well
-  if (auto* const json = outputs->stream("--json")) print_json(*json, record);
   if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);
-  outputs->commit();
+  const bool is_replaced = std::ranges::none_of(
+      std::array{files.json, files.csv, files.page},
+      [](const auto& file) { return file && entry_of_open_file(*file).has_value(); });
+  if (is_replaced) {
+    if (auto* const json = outputs->stream("--json")) print_json(*json, record);
+    outputs->commit();
+  }
   Comparison comparison;
   if (!failure && !stop.has_come()) {
     comparison = comparison_for(options, plan.subjects.front(), stop, out);
     record = record_of(benchmark, comparison);
   }
-  outputs.reset();
-  outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
+  if (is_replaced) {
+    outputs.reset();
+    outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
+  }
   write_record(*outputs, record, files);
   print_headline(out, benchmark);
   out << "report: " << files.page->string() << '\n';

@@ -14,6 +14,7 @@ namespace keepout::app {
 namespace {
 
 constexpr double cells_of_diagonal = 200.0;
+constexpr double most_cells_of_side = 300.0;  // of the bounds, which are wide around a small mesh
 constexpr double nearest_clearances = 5.0;
 constexpr double least_way = 0.25;  // of the diagonal
 constexpr double least_detour = 1.3;
@@ -164,7 +165,8 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
   Random random(seed);
   Scene& scene = where.scene;
   const double diagonal = scene.mesh()->bounds().size().norm();
-  const double spacing = diagonal / cells_of_diagonal;
+  const double spacing =
+      std::max(diagonal / cells_of_diagonal, where.bounds.size().maxCoeff() / most_cells_of_side);
   Box start_box = where.bounds;
   if (where.starts_below) start_box.high.z() = start_box.low.z() + 0.1 * start_box.size().z();
   const Vec3 from = where.is_within ? widest_within(scene, start_box, random) : where.bounds.low;

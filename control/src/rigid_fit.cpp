@@ -122,6 +122,18 @@ double RigidFit::estimated_fle() const noexcept {
   return fre * std::sqrt(count / (count - 2.0));
 }
 
+std::string RigidFit::doubt_of(double fle) const {
+  const auto count = static_cast<double>(residuals.size());
+  const double freedom = 3.0 * count - 6.0;
+  // The quantile of 99.9 % (Wilson, Hilferty 1931).
+  const double part = 2.0 / (9.0 * freedom);
+  const double quantile = freedom * std::pow(1.0 - part + 3.0902 * std::sqrt(part), 3);
+  const double largest = fle * std::sqrt(quantile / (3.0 * count));
+  if (fre <= largest) return {};
+  return "the FRE is " + text_of(fre) + ", but with an FLE of " + text_of(fle) + " it is at most " +
+         text_of(largest) + " in 999 of 1,000 registrations: is a pair wrong, or the FLE larger?";
+}
+
 RigidFit fit_rigid(std::span<const Vec3> measured, std::span<const Vec3> model,
                    std::span<const double> weights) {
   const std::size_t count = measured.size();

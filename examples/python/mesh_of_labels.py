@@ -48,7 +48,7 @@ def read_nifti(path):
         gzip.decompress(path.read_bytes())  # nibabel reads the voxels, but not the checksum behind them
     try:
         image = nibabel.load(path)
-    except nibabel.filebasedimages.ImageFileError:
+    except (nibabel.filebasedimages.ImageFileError, nibabel.spatialimages.HeaderDataError):
         raise Unreadable("is no NIfTI file, or was cut short; name a .nii, .nii.gz or .nrrd file") from None
     if "qform_code" not in image.header:
         raise Unreadable("is not NIfTI; save it as .nii.gz or .nrrd")
@@ -145,10 +145,12 @@ def surface_of(labels, matrix, label, smooth):
         values = gaussian_filter(values, smooth)
         if values.max() <= 0.5:
             raise Unreadable(f"is too thin at label {label:g} to be smoothed by {smooth:g} voxels; give --smooth 0")
-        lost = np.count_nonzero(np.pad(box, border) & ~binary_dilation(values > 0.5, np.ones((3, 3, 3))))
-        if lost:
-            print(f"{lost} of {np.count_nonzero(box)} voxels of label {label:g} are more than a voxel outside of the "
-                  "surface: smoothing removes thin parts; keep them with --smooth 0", file=sys.stderr)  # fmt: skip
+    count = np.count_nonzero(box)
+    outside = np.pad(box, border) & (values <= 0.5)
+    far = np.count_nonzero(outside & ~binary_dilation(values > 0.5, np.ones((3, 3, 3))))
+    if far or np.count_nonzero(outside) > 0.1 * count:
+        print(f"{np.count_nonzero(outside)} of {count} voxels of label {label:g} are outside of the surface, {far} by more "
+              "than a voxel: smoothing removes thin parts; keep them with --smooth 0", file=sys.stderr)  # fmt: skip
     vertices, triangles, _, _ = marching_cubes(values, 0.5)
     vertices = (vertices.astype(np.float64) + low - border) @ matrix[:3, :3].T + matrix[:3, 3]
     corners = vertices[triangles]
@@ -195,7 +197,7 @@ def main():
         sys.exit(f"{error}: install python3-nibabel and python3-skimage")
     except (gzip.BadGzipFile, EOFError, zlib.error) as error:
         sys.exit(f"{given.labels}: is damaged ({error}); copy it again")
-    except (Unreadable, OSError, ValueError) as error:
+    except (Unreadable, OSError, OverflowError, ValueError) as error:
         sys.exit(f"{given.labels}: {error}")
     size = " x ".join(f"{length:.1f}" for length in np.ptp(vertices, axis=0))
     print(f"{given.mesh}: label {label:g}, {len(triangles)} triangles, {size} mm, in {given.space}")

@@ -299,6 +299,14 @@ def test_bench_fails_if_an_index_misses_triangles(tmp_path):
         assert ("The answers of 1 of 2 rows are wrong." in benchmark["headline"]) == bool(wrong)
 
 
+def test_a_record_on_stdout_is_the_finished_one(tmp_path):
+    arguments = ["--mesh", "cube", "--index", "wide_bvh", "--activation", "paper", "--radius", "1", "--queries", "5",
+                 "--seconds", "0.01", "--quiet"]
+    status, out, err = run(tmp_path, "bench", *arguments, "--json", "-", "--out", "b.html")
+    assert status == 0, err
+    assert json.loads(out)["complete"]
+
+
 long_commands = {
     "simulate": "simulate cube --strokes 1e5 --cycles 1000",
     "simulate --robot": "simulate cube --robot psm --strokes 1e5",

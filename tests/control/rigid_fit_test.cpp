@@ -121,6 +121,25 @@ TEST(RigidFit, AMirroredModelIsFittedByARotationAndDoubted) {
   EXPECT_LT(fit_rigid(flat, in_a_plane).fre, 1e-12);
 }
 
+TEST(RigidFit, AnErrorThatIsTooSmallForTheResidualsIsDoubted) {
+  Random random(3);
+  int doubted = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Points measured, model;
+    for (int k = 0; k < 8; ++k) {
+      measured.push_back(50.0 * random.direction());
+      model.push_back(measured.back() + noise(random, 0.3 / std::sqrt(3.0)));
+    }
+    RigidFit fit = fit_rigid(measured, model);
+    doubted += fit.doubt_of(0.3).empty() ? 0 : 1;
+    model[2].x() += 4.0;
+    fit = fit_rigid(measured, model);
+    EXPECT_EQ(fit.doubt, "");
+    EXPECT_CONTAINS(fit.doubt_of(0.3), "in 999 of 1,000 registrations");
+  }
+  EXPECT_LE(doubted, 10);  // 2 are expected
+}
+
 TEST(RigidFit, AWrongUnitAndAWrongOrderAreDoubtedAndNotRefused) {
   Points in_metres = on_a_head;
   for (Vec3& p : in_metres) p *= 0.001;

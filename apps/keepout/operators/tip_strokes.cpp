@@ -16,8 +16,9 @@ namespace keepout::app {
 namespace {
 
 // On a mesh of 100 mm and more; on a smaller one they are scaled. [mm]
-constexpr double start_height = 8.0;   // above the surface at both ends of a stroke
-constexpr double deepest = 5.0;        // goal below the surface, at most
+constexpr double start_height =
+    8.0;                         // of a ball's center, or of a whole tool, at both ends of a stroke
+constexpr double deepest = 5.0;  // goal of the same below the surface, at most
 constexpr double slide_length = 30.0;  // over the surface, at most
 constexpr double tremor_amplitude = 0.1;
 
@@ -41,6 +42,7 @@ class TipStrokes {
           " mm above the surface, on the side that its normals point to; if they point into "
           "the solid, flip all triangles ('keepout inspect' tells whether they do)");
     }
+    const double lift = reach_against(start->normal);
     const double depth = random_.uniform(0.2, 1.0) * (deepest * scale_);
     const auto way = slide_over(*start, random_.uniform(0.3, 1.0) * (slide_length * scale_));
     const Tremor tremor(tremor_amplitude * scale_, random_);
@@ -53,7 +55,7 @@ class TipStrokes {
       const double blend = along - static_cast<double>(station);
       const Vec3 point = (1.0 - blend) * way[station].point + blend * way[station + 1].point;
       const Vec3 up = ((1.0 - blend) * way[station].normal + blend * way[station + 1].normal);
-      const double above = height - lowered(t) * (height + depth);
+      const double above = lift + height - lowered(t) * (height + depth);
       const double seconds = static_cast<double>(cycle) * cycle_seconds;
       stroke.goals.push_back({.position = point + above * up + tremor.at(seconds)});
     }
@@ -82,7 +84,7 @@ class TipStrokes {
       const SurfacePoint place = draw_place();
       const Vec3 outwards = place.point - middle;
       const bool faces_outwards = place.normal.dot(outwards) >= 0.3 * outwards.norm();
-      const Vec3 start = place.point + height * place.normal;
+      const Vec3 start = place.point + (height + reach_against(place.normal)) * place.normal;
       const std::size_t rank = (is_guided(start) ? 0U : 2U) + (faces_outwards ? 0U : 1U);
       if (rank > 0 && others[rank - 1]) continue;
       if (!is_free(start, height)) continue;
@@ -93,6 +95,11 @@ class TipStrokes {
       if (place) return place;
     }
     return std::nullopt;
+  }
+
+  /// Returns how far the tool reaches from its tip towards a surface with that normal. [length]
+  double reach_against(const Vec3& normal) const {
+    return tool_ == nullptr ? 0.0 : tool_->radius() + tool_->support(-normal).dot(-normal);
   }
 
   bool is_free(const Vec3& start, double height) {

@@ -31,6 +31,12 @@ struct RigidFit {
   /// the fit, root mean square, of both its points together; that of a pair of mean weight.
   /// FLE^2 = FRE^2 N / (N - 2), to first order (Fitzpatrick, West, Maurer 1998). [length]
   double estimated_fle() const noexcept;
+
+  /// Returns why a fiducial localization error contradicts the residuals; empty if it does not.
+  /// It does if fewer than one in a thousand registrations with that error, alike in all
+  /// directions, has so large an FRE: N FRE^2 / (FLE^2 / 3) is chi-squared with 3 N - 6 degrees of
+  /// freedom. fle: root mean square, as estimated_fle() [length].
+  std::string doubt_of(double fle) const;
 };
 
 /// The rigid fit, without a scale, of points measured in the robot's frame to the same ones in the
