@@ -247,8 +247,8 @@ int bench(const BenchOptions& options, std::ostream& out) {
     std::cerr << "keepout: stopped before any row was finished: nothing was written\n";
     return exit_interrupted;
   }
-  // What has been measured is safe before anything else is tried: files are written now, and again
-  // at the end. What goes to an open file, such as stdout, waits for its end.
+  // Files are written before the answers are compared, so that no row is lost, and again at the
+  // end. An open file, such as stdout, cannot be replaced: it is written at the end only.
   Json record = record_of(benchmark, {});
   record["complete"] = false;  // until the answers are compared as well
   if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);

@@ -89,7 +89,8 @@ struct TipScene {
 
 /// Draws problems for a tip, each with a solution that keeps the clearance:
 ///
-/// 1. A grid of 1/200 of the mesh's diagonal, or of 1/300 of the bounds, is flooded (FreeCells): around the mesh from a corner
+/// 1. A grid of 1/200 of the mesh's diagonal, or of 1/300 of the bounds, is flooded (FreeCells):
+/// around the mesh from a corner
 ///    of the bounds, within it from the widest of 1000 places drawn in it, in its lowest tenth
 ///    where starts are below.
 /// 2. Start and goal are drawn evenly among the cells reached that are no farther from the mesh

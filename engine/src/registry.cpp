@@ -75,7 +75,8 @@ void refuse_name(std::string_view name, std::span<const std::string_view> known,
     if (part.name == name) {
       throw Error(named + " is not here: it needs " + std::string(part.needs) +
                   "; if the module is elsewhere, name its folder in the environment variable "
-                  "KEEPOUT_MODULES; there are: " + list);
+                  "KEEPOUT_MODULES; there are: " +
+                  list);
     }
     names.push_back(part.name);
   }

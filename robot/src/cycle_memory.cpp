@@ -146,9 +146,10 @@ void CycleMemory::set_guides(std::vector<Guide> all) {
   for (const Guide& guide : all) {
     require_not_lost(guide);
     if (guide.link() == 0) {
-      throw Error("guide '" + guide.name() +
-                  "' is for a tip, or on link 0, the base, which no joint moves: name a link of the "
-                  "chain, as in Guide.point(name, link, position, region)");
+      throw Error(
+          "guide '" + guide.name() +
+          "' is for a tip, or on link 0, the base, which no joint moves: name a link of the "
+          "chain, as in Guide.point(name, link, position, region)");
     }
     if (guide.link() <= links) continue;
     throw Error("guide '" + guide.name() + "' is on link " + std::to_string(guide.link()) +

@@ -16,9 +16,9 @@ namespace keepout::app {
 namespace {
 
 // On a mesh of 100 mm and more; on a smaller one they are scaled. [mm]
-constexpr double start_height =
-    8.0;                         // of a ball's center, or of a whole tool, at both ends of a stroke
-constexpr double deepest = 5.0;  // goal of the same below the surface, at most
+// Heights are those of a ball's center, or of the lowest point of a convex tool.
+constexpr double start_height = 8.0;   // above the surface at both ends of a stroke
+constexpr double deepest = 5.0;        // goal below the surface, at most
 constexpr double slide_length = 30.0;  // over the surface, at most
 constexpr double tremor_amplitude = 0.1;
 

@@ -50,7 +50,7 @@ struct RecordFiles {
   /// Adds --json and --out to a command; a `page` that is set is the one by default.
   void add_to(CLI::App& command);
 
-  /// Returns the JSON file to write. If nobody asked for one and the report will be a plain page
+  /// Returns the JSON file to write. Without --json, if the report will be a plain page
   /// (see write_record), it is kept beside the page, so that the report can be made later; unless
   /// the page goes to stdout or another open file.
   std::optional<std::filesystem::path> kept_json() const;

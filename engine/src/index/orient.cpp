@@ -186,7 +186,7 @@ class Solid {
   Solid(const Solid&) = delete;
   Solid& operator=(const Solid&) = delete;
 
-  /// Where the vertices of a part are. Those on the surface of the solid are left out.
+  /// Returns where the vertices of a part are, except those on the surface of the solid.
   Relation relation_of(const Mesh& mesh, const Part& part) {
     std::vector<VertexId> vertices;
     for (const TriangleId t : part.triangles) {
@@ -206,7 +206,8 @@ class Solid {
   }
 
  private:
-  /// Nothing for a point on the surface, as far as single precision can say.
+  /// Returns true if a point is in the solid; nothing if it is within the rounding of single
+  /// precision from the surface.
   std::optional<bool> contains(const Vec3& point) {
     const Box& bounds = neighborhood_->mesh().bounds();
     const double far = bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).maxCoeff();

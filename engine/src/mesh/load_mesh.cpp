@@ -13,6 +13,7 @@
 #include "keepout/mesh/doctor.h"
 #include "keepout/mesh/mesh.h"
 #include "mesh_file.h"
+#include "text_lines.h"
 
 namespace keepout {
 namespace {
@@ -214,9 +215,7 @@ void flip_triangles(Surface& surface, LoadedMesh& loaded) {
 }  // namespace
 
 std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = (c >= 'A' && c <= 'Z') ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
+  return lower(path.extension().string());
 }
 
 #ifndef KEEPOUT_READS_VTP

@@ -76,7 +76,7 @@ bool is_ear(const std::vector<Vec2>& points, const std::vector<std::size_t>& lef
   });
 }
 
-/// The points without those that equal the next one.
+/// Returns the points, without those that equal the next one.
 std::vector<Vec2> without_doubled(const std::vector<Vec2>& points) {
   std::vector<Vec2> distinct;
   distinct.reserve(points.size());

@@ -198,8 +198,7 @@ std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads, double 
   if (!faults.boundary && !faults.inconsistent && faces_inward(mesh, thread_count(threads))) {
     warnings.emplace_back(
         "the surface is closed and faces inward: the room that it encloses is free, and the rest "
-        "is "
-        "solid. If it bounds a solid, flip it: --flip or flip=True");
+        "is solid. If it bounds a solid, flip it: --flip or flip=True");
   }
   return warnings;
 }

@@ -118,8 +118,8 @@ std::vector<UnitGuess> other_units(double extent);
 
 /// What a mesh should not guard anything without: a sentence each, for people, on a size that is
 /// none of anatomy in millimetres, on an open surface, on an inconsistent winding, and on a closed
-/// surface that faces inward. Empty when there is nothing to say. `scale`: that the lengths of its file
-/// were multiplied by.
+/// surface that faces inward. Empty when there is nothing to say. `scale`: that the lengths of its
+/// file were multiplied by.
 std::vector<std::string> quick_check(const Mesh& mesh, unsigned threads = 0, double scale = 1.0);
 
 /// Whether each edge has two triangles, wound alike: such a mesh has a free side everywhere, which
