@@ -27,15 +27,18 @@ def filled(text, values):
     return FIGURE.sub(figure, text)
 
 
-def of_tree(root):
-    """Returns the paths of all pages that git would commit. Without git, leaves out build/, out/ and hidden directories."""
+def of_tree(root, names=("*.md",)):
+    """Returns the paths of all files that git would commit and whose names match, by default all pages.
+
+    Without git, leaves out build/, out/ and hidden directories.
+    """
     if shutil.which("git"):
-        listed = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", "*.md"],
+        listed = subprocess.run(["git", "-C", root, "ls-files", "-co", "--exclude-standard", *names],
                                 capture_output=True, text=True)
         if listed.returncode == 0 and listed.stdout:
-            return sorted(path for path in map(root.joinpath, listed.stdout.splitlines()) if path.exists())
+            return sorted(path for path in map(root.joinpath, listed.stdout.splitlines()) if path.is_file())
     inner = lambda path: path.relative_to(root).parts
-    return sorted(path for path in root.rglob("*.md") if inner(path)[0] not in ("build", "out")
+    return sorted(path for name in names for path in root.rglob(name) if inner(path)[0] not in ("build", "out")
                   and not any(part.startswith(".") for part in inner(path)))
 
 

@@ -4,7 +4,7 @@
 
 Every .md file that git would commit; without git, all but those in build/, out/ and hidden folders.
 A relative link must name a file or folder of the sources, by its very letters, and an anchor a heading
-there. Links to the web are not followed. A picture must say in words what it shows. docs/README.md must
+or an <a id> there. Links to the web are not followed. A picture must say in words what it shows. docs/README.md must
 have a link to each page beside it, and docs/embedding.md must name each public header.
 """
 
@@ -20,6 +20,7 @@ from pages import FENCE, blank, of_tree  # noqa: E402
 CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.S)
 COMMENT = re.compile(r"<!--.*?-->", re.S)
 LINK = re.compile(r"(?P<picture>!?)\[(?P<words>(?:[^\[\]]|\[[^\]]*\])*)\]\((?P<to>[^()\s]*)(?:\s+\"[^\"]*\")?\)")
+NAMED = re.compile(r'<a id="([^"]+)"></a>')
 HEADING = re.compile(r"^#{1,6} +(.+?) *#* *$", re.M)
 
 
@@ -31,7 +32,7 @@ def anchor_of(heading):
 
 
 def anchors(page):
-    found, seen = set(), {}
+    found, seen = set(NAMED.findall(page.read_text(encoding="utf-8"))), {}
     for heading in HEADING.findall(FENCE.sub(blank, page.read_text(encoding="utf-8"))):
         anchor = anchor_of(heading)
         number = seen.get(anchor, 0)

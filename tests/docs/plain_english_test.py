@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Counts patterns of prose that make readers stumble: plain_english_test.py ROOT [--list AREA]
+
+Reads the pages (.md) and the comments and docstrings of the sources. Each area has a budget, and the test
+fails if an area has more matches than its budget allows. --list prints the matches of an area.
+CONTRIBUTING.md explains the rules. A text without a match is not yet good: the measure is a reader who
+understands each sentence at first reading.
+"""
+
+import argparse
+import ast
+import pathlib
+import re
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs" / "figures"))
+from pages import FENCE, blank, of_tree  # noqa: E402
+
+BUDGETS = {"pages": 0, "headers": 0, "sources": 0, "tests": 0}
+LONGEST = 30  # words of a sentence
+
+PATTERNS = {
+    "clause as a subject": r"^(What|Whether|Where|Who|Whose|Whatever|Whoever|Of|That which|How (far|many|much|long|often))\b(?!.*\?$)",
+    "passive without an agent": r"\b(is|are|was|were|be|been|being) (told|asked|looked (for|at|into)|given up|let go)\b",
+    "modal": r"\b(shall|(is|are|was|were) to be)\b",
+    "riddle": r"\b(nobody|(is|are|was|were) none|none is|no number|so much|as much as|that which)\b",
+    "docstring": r"^(The same|Likewise|Ditto)[.,:;]",
+    "household word": r"\b(led (off|out|back)|leads? (off|out|back)|(kept|held|keeps?|holds?) back|let go|lets go|to the last bit"
+                      r"|the bits\b(?! of)|looks? (at|for) less|yielding|softening|g[ai]ves? way|poses? a plane|turns a plane"
+                      r"|witness(es)?|frontiers?|facets?|doctor|(no|has|have|had|without|enough|more|less) room|tells?\b|told)\b",
+    "unit": r"\d us\b",
+}
+MATCH = {name: re.compile(pattern, re.I if name != "clause as a subject" and name != "docstring" else 0)
+         for name, pattern in PATTERNS.items()}
+COMMENT = re.compile(r"<!--.*?-->", re.S)
+INLINE_CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.S)
+LINK = re.compile(r"!?\[((?:[^\[\]]|\[[^\]]*\])*)\]\([^)]*\)")
+END = re.compile(r"(?<=[.!?])[\"')*_]*\s+(?=[\"'(*_`]*[A-Z0-9`])")
+
+
+def sentences(line, text):
+    """Yields the line number and the text of each sentence of a paragraph that begins at `line`."""
+    text = LINK.sub(r"\1", text)
+    text = INLINE_CODE.sub(lambda code: "`code`" + "\n" * code[0].count("\n"), text)
+    start = 0
+    for end in [*(m.end() for m in END.finditer(text)), len(text)]:
+        sentence = text[start:end]
+        if sentence.strip():
+            yield line + text.count("\n", 0, start + len(sentence) - len(sentence.lstrip())), " ".join(sentence.split())
+        start = end
+
+
+def paragraphs_of_page(text):
+    """Yields the first line and the text of each paragraph, list item and cell of a page."""
+    for rule in (FENCE, COMMENT):
+        text = rule.sub(blank, text)
+    first, lines = 1, []
+    for number, line in enumerate([*text.split("\n"), ""], 1):
+        starts = re.match(r"\s*([-*+]|\d+\.)\s+|#+\s|\s*\||\s*>", line)
+        if lines and (starts or not line.strip()):
+            yield first, "\n".join(lines)
+            lines = []
+        if line.lstrip().startswith("|"):
+            for cell in line.strip().strip("|").split("|"):
+                yield number, cell.strip()
+        elif line.strip() and not line.startswith("#"):
+            first = first if lines else number
+            lines.append(line[starts.end():] if starts else line)
+
+
+def paragraphs_of_comments(text, mark):
+    """Yields the first line and the text of each comment.
+
+    A blank comment line ends a paragraph, and so does a line of another indentation.
+    """
+    first, lines, column = 1, [], 0
+    for number, line in enumerate([*text.split("\n"), ""], 1):
+        comment = re.match(rf"(?P<code>.*?)(?:^|(?<=\s)){mark}+[!<]*(?: (?P<words>.*))?$", line)
+        words = comment["words"] if comment else None
+        alone = comment and not comment["code"].strip()
+        if lines and not (words and alone and len(comment["code"]) == column):
+            yield first, "\n".join(lines)
+            lines = []
+        if words and not re.match(r"SPDX|clang-format|NOLINT|noqa|shellcheck|type:|\W*$|#!|biome", words):
+            first = first if lines else number
+            column = len(comment["code"])
+            lines.append(words)
+
+
+def paragraphs_of_docstrings(text):
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node):
+            line = node.body[0].lineno
+            for paragraph in re.split(r"\n\s*\n", ast.get_docstring(node)):
+                yield line, paragraph
+                line += paragraph.count("\n") + 2
+
+
+def paragraphs(path):
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".md":
+        yield from paragraphs_of_page(text)
+    elif path.suffix in (".h", ".cpp", ".mjs", ".js", ".ts", ".css"):
+        yield from paragraphs_of_comments(text, "//")
+    else:
+        yield from paragraphs_of_comments(text, "#")
+        if path.suffix in (".py", ".pyi"):
+            yield from paragraphs_of_docstrings(text)
+
+
+def area_of(path):
+    if path.suffix == ".md":
+        return "changelog" if path.name == "CHANGELOG.md" else "pages"
+    if path.parts[0] == "tests" or "tests" in path.parts:
+        return "tests"
+    return "headers" if "include" in path.parts and path.parts[0] not in ("oracle", "fixtures") else "sources"
+
+
+def matches(line, paragraph):
+    for line, sentence in sentences(line, paragraph):
+        for name, rule in MATCH.items():
+            if rule.search(sentence):
+                yield line, name, sentence
+        if len(sentence.split()) > LONGEST:
+            yield line, f"{len(sentence.split())} words", sentence
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("root", type=pathlib.Path)
+    parser.add_argument("--list", metavar="AREA", help="print the matches of an area, or of the paths that begin with it")
+    arguments = parser.parse_args()
+    root = arguments.root.resolve()
+    counts, read = {}, {}
+    for path in of_tree(root, ("*.md", "*.h", "*.cpp", "*.py", "*.pyi", "*.mjs", "*.js", "*.sh", "*.cmake", "CMakeLists.txt", "run", "test")):
+        name = path.relative_to(root)
+        area = area_of(name)
+        for line, paragraph in paragraphs(path):
+            read[area] = read.get(area, 0) + sum(1 for _ in sentences(line, paragraph))
+            for place, rule, sentence in matches(line, paragraph):
+                counts.setdefault(area, {}).setdefault(rule if "words" not in rule else "long", []).append(place)
+                if arguments.list and (area == arguments.list or str(name).startswith(arguments.list)):
+                    print(f"{name}:{place}: {rule}: {sentence}")
+    if not arguments.list:
+        for area in read:
+            kinds = {rule: len(places) for rule, places in counts.get(area, {}).items()}
+            print(f"{area}: {sum(kinds.values())} in {read[area]} sentences (budget {BUDGETS.get(area, 0)}): {kinds}")
+
+
+if __name__ == "__main__":
+    main()
