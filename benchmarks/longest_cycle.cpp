@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The longest control cycles that could be provoked: on each scene, the most looks (Budget) that
-// any call took and the longest time of any, the least of three tries counting, so that what the
-// machine did besides is left out. Prints the table of docs/safety.md.
+// The longest control cycles that could be provoked: on each scene, the most work units (Budget)
+// that any call took and the longest time of any, the least of three tries counting, so that what
+// the machine did besides is left out. Prints the table of docs/safety.md.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -120,8 +120,8 @@ std::vector<Scene> scenes() {
   const auto add = [&](const char* name, Surface surface, const StepOptions& options, double near) {
     all.push_back({name, std::move(surface), {.options = options}, near});
   };
-  add("centre of a sphere of 1 M triangles", sphere(700, 50.0), {}, 1e-3);
-  add("the same of 2 M, about the centre", sphere(1'000, 60.0), {}, 0.5);
+  add("center of a sphere of 1 M triangles", sphere(700, 50.0), {}, 1e-3);
+  add("the same of 2 M, about the center", sphere(1'000, 60.0), {}, 0.5);
   add("the same, margin as far as the wall", sphere(700, 50.0), {.radius = 5.0, .margin = 49.0},
       3.0);
   add("the same, distances always", sphere(700, 50.0), {.distances = Distances::always}, 1e-3);
@@ -142,7 +142,7 @@ std::vector<Scene> scenes() {
 }
 
 struct Longest {
-  std::size_t looks = 0;
+  std::size_t work_units = 0;
   double us = 0.0;
   std::map<std::string, int> statuses;
 };
@@ -160,13 +160,13 @@ void measure(MotionConstraint& guard, const Call& call, Longest& longest) {
     least = std::min(least, took.count());
     if (attempt == 0) ++longest.statuses[std::string(status)];
   }
-  longest.looks = std::max(longest.looks, guard.looks());
+  longest.work_units = std::max(longest.work_units, guard.work_units());
   longest.us = std::max(longest.us, least);
 }
 
 void print(const std::string& name, const Longest& steps, const Longest& polytopes) {
-  std::printf("| %s | %zu | %.0f | %zu | %.0f |", name.c_str(), steps.looks, steps.us,
-              polytopes.looks, polytopes.us);
+  std::printf("| %s | %zu | %.0f | %zu | %.0f |", name.c_str(), steps.work_units, steps.us,
+              polytopes.work_units, polytopes.us);
   for (const auto& [status, count] : steps.statuses) std::printf(" %s %d", status.c_str(), count);
   std::printf(" |\n");
   std::fflush(stdout);
@@ -197,7 +197,7 @@ void measure(const Scene& scene, Longest& of_steps, Longest& of_polytopes) {
   }
   print(scene.name, steps, polytopes);
   for (const auto& [one, all] : {std::pair(&steps, &of_steps), {&polytopes, &of_polytopes}}) {
-    all->looks = std::max(all->looks, one->looks);
+    all->work_units = std::max(all->work_units, one->work_units);
     all->us = std::max(all->us, one->us);
     for (const auto& [status, count] : one->statuses) all->statuses[status] += count;
   }
@@ -208,10 +208,10 @@ void measure(const Scene& scene, Longest& of_steps, Longest& of_polytopes) {
 
 int main() try {
   using namespace keepout;
-  std::printf("SIMD target %s; stated: %zu looks\n\n", std::string(simd_target()).c_str(),
-              Capacity::looks_of_a_walk);
+  std::printf("SIMD target %s; stated: %zu work units\n\n", std::string(simd_target()).c_str(),
+              Capacity::work_units_of_traversals);
   std::printf(
-      "| scene | looks of a step | us | looks of a polytope | us | how steps ended |\n"
+      "| scene | work of a step | µs | work of a polytope | µs | how steps ended |\n"
       "|---|--:|--:|--:|--:|---|\n");
   Longest steps, polytopes;
   for (const Scene& scene : scenes()) measure(scene, steps, polytopes);

@@ -11,7 +11,7 @@
 #include "keepout/keepout.h"
 #include "keepout/solvers/registry.h"
 
-/// Each triangle is in the one cell that holds the centre of its box, so that none is given twice;
+/// Each triangle is in the one cell that holds the center of its box, so that none is given twice;
 /// a query looks farther by half of the largest box, so that none is missed.
 class UniformGrid final : public keepout::SpatialIndex {
  public:

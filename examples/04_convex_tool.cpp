@@ -11,7 +11,7 @@ int main(int argc, char** argv) try {
   }
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
 
-  // 12 mm of a shaft 3 mm thick, leaning by 45 degrees; the tip is the centre of its lower end.
+  // 12 mm of a shaft 3 mm thick, leaning by 45 degrees; the tip is the center of its lower end.
   const auto shaft = keepout::ConvexTool::capsule({0, 0, 0}, {8.5, 0, 8.5}, 1.5);
   auto guard = keepout::make_motion_constraint(mesh, {.options = {.margin = 0.2}, .tool = shaft});
 

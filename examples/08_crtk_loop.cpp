@@ -9,7 +9,7 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/keepout.h"
 
-/// In place of a PSM: follows what it is sent, a little late. In metres, in its own frame.
+/// In place of a PSM: follows what it is sent, a little late. In meters, in its own frame.
 struct Robot {
   keepout::Pose pose;
   keepout::Pose measured_cp() const { return pose; }  // subscribe: /PSM1/measured_cp

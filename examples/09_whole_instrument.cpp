@@ -67,7 +67,7 @@ int main(int argc, char** argv) try {
   // A planner's question: 20 mm straight down, through the surface. Nothing moves.
   const std::vector<double> down{0, 0, 20.0, 0, 0, 0};
   const keepout::MotionProof proof = guard.prove(q, down);
-  std::printf("clear are %.4f mm of 20 (%s)\n", 20.0 * proof.share, name(proof.status).data());
+  std::printf("clear are %.4f mm of 20 (%s)\n", 20.0 * proof.fraction, name(proof.status).data());
 
   // Teleoperation: the hand presses down, and draws aside and back.
   int held = 0, stopped = 0, nearest_body = -1;

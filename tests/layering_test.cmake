@@ -68,7 +68,7 @@ forbid(oracle "${include}keepout/geometry/(closest_point|orientation)" "the orac
 foreach(part include src)
   forbid(oracle/${part} "${include}keepout/(fixtures|judges|robot|step)/" "the oracle knows no other part")
 endforeach()
-forbid(oracle/judges "${include}keepout/(mesh/doctor|step/(motion_|[^mo])|robot/([^i]|instrument(\\.|_[^os])))"
+forbid(oracle/judges "${include}keepout/(mesh/diagnostics|step/(motion_|[^mo])|robot/([^i]|instrument(\\.|_[^os])))"
        "a judge takes motions, steps and options, and computes by the oracle alone")
 forbid(python "${include}keepout/(fixtures|judges|oracle)/" "the module is the library, and no more")
 foreach(part engine adapters solvers control robot factory fixtures)

@@ -21,7 +21,7 @@ namespace keepout {
 namespace {
 
 /// The mesh as Bullet's trees read it when they are built: in a centered frame, without a copy, and
-/// in parts of as many triangles as a quantised node can number.
+/// in parts of as many triangles as a quantized node can number.
 class BulletMesh final : public btStridingMeshInterface {
  public:
   static constexpr int bits_in_part = 31 - MAX_NUM_PARTS_IN_BITS;
@@ -73,8 +73,8 @@ class BulletMesh final : public btStridingMeshInterface {
   const CenteredFrame& frame_;
 };
 
-// Bullet's trees, opened for our own walk. Both are arrays of nodes in which a parent stands before
-// its children and knows how many nodes its subtree has: what is passed over is skipped.
+// Bullet's trees, opened for our own traversal. Both are arrays of nodes in which a parent stands
+// before its children and knows how many nodes its subtree has: what is passed over is skipped.
 
 Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -143,12 +143,12 @@ class BulletQuantizedTree final : public btOptimizedBvh {
     return origin_ + step_.cwiseProduct(Vec3(steps[0], steps[1], steps[2]));
   }
 
-  Vec3 origin_;  // of the quantised coordinates
+  Vec3 origin_;  // of the quantized coordinates
   Vec3 step_;    // of one of them
 };
 
-/// A tree of Bullet's over a mesh, known to hold it, and walked by others. The mesh may go once it
-/// is built.
+/// A tree of Bullet's over a mesh, known to hold it, and traversed by others. The mesh may go once
+/// it is built.
 template <class Tree>
 class BulletModel : public SpatialIndex {
  public:
@@ -175,7 +175,7 @@ class BulletModel : public SpatialIndex {
   }
 
  private:
-  // In the frame of the trees. Bullet widens a quantised mesh by 1, and thin triangles by 0.001,
+  // In the frame of the trees. Bullet widens a quantized mesh by 1, and thin triangles by 0.001,
   // whatever their size: with 2^16 steps across, both are no more than a step.
   static constexpr double reach_of_frame = 0x1p15;
 
@@ -228,7 +228,7 @@ class BulletModel : public SpatialIndex {
   Tree tree_;
 };
 
-/// Bullet's tree, walked by us: its own walk takes a box, not a ball.
+/// Bullet's tree, traversed by us: its own traversal takes a box, not a ball.
 template <class Tree>
 class BulletIndex final : public BulletModel<Tree> {
  public:
@@ -248,7 +248,7 @@ class BulletIndex final : public BulletModel<Tree> {
   }
 };
 
-/// Bullet's tree, walked by Bullet.
+/// Bullet's tree, traversed by Bullet.
 class BulletCallbackIndex final : public BulletModel<BulletQuantizedTree> {
  public:
   static constexpr std::string_view name = "bullet_callback";
@@ -293,9 +293,10 @@ constexpr IndexBackend backends[] = {
     {BulletTree::name, "axis-aligned boxes of Bullet", make<BulletIndex<BulletTree>>,
      BulletTree::most_triangles, library},
     {BulletCallbackIndex::name,
-     "axis-aligned boxes of Bullet, in 16 bits, by its own walk and callback",
+     "axis-aligned boxes of Bullet, in 16 bits, by its own traversal and callback",
      make<BulletCallbackIndex>, BulletCallbackIndex::most_triangles, library, Allocation::never,
-     "Bullet's walk takes a box, not a ball, and so finds more candidates; it calls back for each, "
+     "Bullet's traversal takes a box, not a ball, and so finds more candidates; it calls back for "
+     "each, "
      "without fetching the triangle's corners as processAllTriangles() would."},
 };
 

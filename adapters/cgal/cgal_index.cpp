@@ -46,7 +46,7 @@ using Traits = CGAL::AABB_traits<Kernel, MeshTriangle>;
 using Tree = CGAL::AABB_tree<Traits>;
 using Node = CGAL::AABB_node<Traits>;
 
-/// What CGAL's walk asks: enter every node within reach, and take all triangles there.
+/// What CGAL's traversal asks: enter every node within reach, and take all triangles there.
 struct BallTraversal {
   double squared_reach;
   TriangleBuffer& candidates;

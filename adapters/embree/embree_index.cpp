@@ -15,7 +15,7 @@ namespace keepout {
 namespace {
 
 // In the frame of the scene no coordinate exceeds 1. A vertex is off by half an ulp of a float that
-// is at most 1, a centre by half an ulp of its own coordinates, and Embree's distances by some ulp
+// is at most 1, a center by half an ulp of its own coordinates, and Embree's distances by some ulp
 // of themselves: none by more than 2^-22 of 1 + |center| + radius. Eight times that is added.
 constexpr double float_rounding = 0x1p-19;
 
@@ -41,7 +41,7 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
               "; use the index 'pd_tree', which needs no library");
 }
 
-/// Embree's tree, walked by its point query.
+/// Embree's tree, traversed by its point query.
 class EmbreeIndex final : public SpatialIndex {
  public:
   explicit EmbreeIndex(std::shared_ptr<const Mesh> on)

@@ -77,7 +77,7 @@ double squared_distance(const fcl::OBBRSSd& volume, const Vec3& point) noexcept 
   return squared_distance(volume.obb, point);
 }
 
-/// FCL's tree over a mesh, each box made to hold its triangles, and walked by others.
+/// FCL's tree over a mesh, each box made to hold its triangles, and traversed by others.
 template <class Volume>
 class FclModel : public SpatialIndex {
  public:
@@ -140,7 +140,7 @@ class FclModel : public SpatialIndex {
   fcl::BVHModel<Volume> model_;
 };
 
-/// FCL's tree, walked by us: its own collide() tests the triangles as well, and takes memory.
+/// FCL's tree, traversed by us: its own collide() tests the triangles as well, and takes memory.
 template <class Volume>
 class FclIndex final : public FclModel<Volume> {
  public:

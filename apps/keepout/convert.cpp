@@ -13,7 +13,7 @@
 #include "keepout/index/orient.h"
 #include "keepout/mesh/binary_ply.h"
 #include "keepout/mesh/binary_stl.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/repair.h"
 #include "shared/fact_row.h"

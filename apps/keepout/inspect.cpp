@@ -12,7 +12,7 @@
 #include "commands.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "record/drawn_mesh.h"
 #include "record/record.h"
 #include "record/report_page.h"
@@ -184,8 +184,8 @@ Json members_of(const Inspection& inspection, std::size_t most_places) {
             {"closed", mesh.is_closed()},
             {"watertight", mesh.is_watertight()},
             {"inside_out", mesh.is_inside_out()},
-            {"looks_like_metres", mesh.looks_like_metres()},
-            {"looks_like_micrometres", mesh.looks_like_micrometres()},
+            {"looks_like_meters", mesh.looks_like_meters()},
+            {"looks_like_micrometers", mesh.looks_like_micrometers()},
             {"euler_characteristic", mesh.euler_characteristic},
             {"genus", or_null(mesh.genus)},
             {"area", mesh.area},

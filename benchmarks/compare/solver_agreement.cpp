@@ -151,8 +151,8 @@ std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& 
     if (stroke >= most_strokes) {
       throw Error("of " + std::to_string(count) + " problems in contact only " +
                   std::to_string(kept.size()) + " were posed, under " + rule +
-                  ", by motions of 0.05 to 0.2 mm half a millimetre off the mesh: is it in another "
-                  "unit, or too large or too narrow for them? Scale it to millimetres");
+                  ", by motions of 0.05 to 0.2 mm half a millimeter off the mesh: is it in another "
+                  "unit, or too large or too narrow for them? Scale it to millimeters");
     }
     for (const Vec3& start : surface_points(*mesh, strokes_at_once, 0.5, random)) {
       if (stopped()) return kept;

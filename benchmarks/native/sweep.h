@@ -36,7 +36,7 @@ std::unique_ptr<Sweep> continuous_collision(const Mesh& mesh, double radius);
 /// - no margin of the mesh: the ball is its own margin, exactly, so that a margin would add to it;
 /// - allowedCcdPenetration of 0, the argument by default.
 ///
-/// Bullet means metres, and ends a sweep within 0.001 of a touch, here 0.001 mm. A ball that is as
+/// Bullet means meters, and ends a sweep within 0.001 of a touch, here 0.001 mm. A ball that is as
 /// near when it starts is told 0 if it goes nearer, and to be free if it goes away.
 std::unique_ptr<Sweep> convex_sweep(const Mesh& mesh, double radius);
 

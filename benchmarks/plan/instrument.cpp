@@ -69,7 +69,7 @@ double longest_way(const Instrument& instrument, const Positions& from, const Po
   return longest;
 }
 
-/// Judges each motion between neighbours of `path`: by the oracle, at places between which no point
+/// Judges each motion between neighbors of `path`: by the oracle, at places between which no point
 /// of a body goes farther than 0.05 mm, and by the guard's `prove`, in pieces.
 JointPathVerdict judge_joint_path(oracle::InstrumentOracle& oracle, InstrumentConstraint& guard,
                                   std::span<const std::vector<double>> path) {

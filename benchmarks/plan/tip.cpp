@@ -147,7 +147,7 @@ class TipPlanning final : public Planning {
                                                      farthest);
   }
 
-  /// The lengths of a path that is not valid that come too near: to half a millimetre.
+  /// The lengths of a path that is not valid that come too near: to half a millimeter.
   Json lengths_too_near(const std::vector<Vec3>& points) const {
     constexpr double longest = 0.5;  // of what is judged at once [mm]
     oracle::SafetyOracle oracle = scene().oracle();

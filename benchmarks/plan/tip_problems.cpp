@@ -52,7 +52,7 @@ Vec3 widest_within(Scene& scene, const Box& bounds, Random& random) {
 }
 
 /// The places of a grid that a tip can reach from one of them. A cell is free when it is at least
-/// the clearance and half a spacing from the mesh: then the straight way between neighbours keeps
+/// the clearance and half a spacing from the mesh: then the straight way between neighbors keeps
 /// the clearance, so what is reached can be reached indeed. No planner has a part in it.
 class FreeCells {
  public:

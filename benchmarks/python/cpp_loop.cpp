@@ -46,9 +46,8 @@ int main(int argc, char** argv) try {
   const std::string memory = argv[4];
   const bool anew = memory == "anew";
   auto constraint = keepout::make_motion_constraint(
-      mesh,
-      {.options = {.tool_radius = 0.3, .margin = 0.2},
-       .inside = memory == "as_is" ? keepout::Inside::taken_as_is : keepout::Inside::led_out});
+      mesh, {.options = {.tool_radius = 0.3, .margin = 0.2},
+             .inside = memory == "as_is" ? keepout::Inside::taken_as_is : keepout::Inside::escape});
   const std::vector<Pose> poses = read(argv[2]);
   std::vector<Answer> answers(poses.size());
 

@@ -103,11 +103,11 @@ HapticCycle HapticProxy::cycle(const Vec3& hand) noexcept {
   // operator who presses into the surface and slides would be slowed down by that. Any part of a
   // proved motion is proved as well. A motion that leads out from inside is not proved, and is no
   // longer than the recovery, which the constructor limits to `longest_`.
-  const double share = std::min(1.0, longest_ / step.motion.norm());  // 1 where nothing moves
+  const double fraction = std::min(1.0, longest_ / step.motion.norm());  // 1 where nothing moves
   // A free motion ends exactly at the goal: no force is left in free space.
-  const bool arrives = !is_cut && share == 1.0 && step.motion == motion.desired;
+  const bool arrives = !is_cut && fraction == 1.0 && step.motion == motion.desired;
   const Vec3 before = proxy_;
-  proxy_ = arrives ? hand : Vec3(proxy_ + share * step.motion);
+  proxy_ = arrives ? hand : Vec3(proxy_ + fraction * step.motion);
   fade(1.0);
   book(hand, proxy_ - before);
   update_force();

@@ -24,7 +24,7 @@ double millimetres(LengthUnit unit, const char* whose) {
       break;
   }
   throw Error(std::string("registration: say the unit of ") + whose +
-              ": LengthUnit::millimetre or LengthUnit::metre");
+              ": LengthUnit::millimeter or LengthUnit::meter");
 }
 
 std::string text_of(double value) {
@@ -57,7 +57,7 @@ std::string text_of(double value) {
                 "more");
   }
   throw Error(start + "it scales by " + text_of(scales[0]) +
-              "; leave the scale out of it: what is metres and what is millimetres is told by "
+              "; leave the scale out of it: what is meters and what is millimeters is told by "
               "RegistrationUnits");
 }
 

@@ -97,7 +97,7 @@ std::string doubt_of(const RigidFit& fit, double mirrored_fre, double spread) {
   if (std::abs(fit.scale - 1.0) > largest_scale_off) {
     return "the model's points are spread " + text_of(fit.scale) +
            " times as wide as the measured ones: are both in the unit of the mesh (1000 mm are a "
-           "metre), and the pairs right?";
+           "meter), and the pairs right?";
   }
   if (fit.fre <= widest_residual * spread) return {};
   if (mirrored_fre < 0.1 * fit.fre) {

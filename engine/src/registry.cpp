@@ -21,7 +21,7 @@ std::string folded(std::string_view word) {
   return text;
 }
 
-/// How many letters must be put in, left out, exchanged or swapped with their neighbour to turn one
+/// How many letters must be put in, left out, exchanged or swapped with their neighbor to turn one
 /// word into the other (optimal string alignment).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   // Rows of the table: from the first i letters of `a` to the first j of `b`.

@@ -32,13 +32,14 @@ constexpr std::array outcomes{
              "a body was nearer than the margin, or a guide was out of its region: the motion "
              "leads it back",
              never}},
-    Outcome{"fallback",
+    Outcome{"truncated",
             {"only a shorter motion could be proved: `limits` names what stops the rest",
              "only a shorter motion could be proved: `limits` names what stops the rest", never}},
-    Outcome{"yielding",
+    Outcome{"degraded",
             {never,
              "a mesh approaches faster than the instrument can retreat: the motion is proved to "
-             "keep less than the margin, see `level`; slow the mesh down, or make room",
+             "maintain less than the certified clearance, see `clearance_fraction`; slow the mesh "
+             "down, or make room",
              never}},
     Outcome{"infeasible",
             {"no motion satisfies all planes and rows: the tip is nearer than the margin on "
@@ -104,11 +105,12 @@ constexpr std::array outcomes{
              "the index was refit to another mesh: call follow()"}},
     Outcome{"out_of_budget",
             {"the work budget of the cycle ended before a motion was proved: ask for a shorter "
-             "motion, simplify the mesh, or raise Capacity::looks (max_looks in Python)",
+             "motion, simplify the mesh, or raise Capacity::work_units (max_work_units in Python)",
              "the work budget of the cycle ended before a motion was proved: ask for a shorter "
-             "motion, simplify the mesh, or raise InstrumentCapacity::looks (max_looks in Python)",
+             "motion, simplify the mesh, or raise InstrumentCapacity::work_units (max_work_units "
+             "in Python)",
              "the work budget ended before the polytope was complete: lower the radius of the "
-             "polytope, or raise Capacity::looks"}},
+             "polytope, or raise Capacity::work_units"}},
     Outcome{"unsupported",
             {never, never,
              "the rule guards a whole tool, and planes around its tip would not guard the rest: "

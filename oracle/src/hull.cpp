@@ -121,7 +121,7 @@ Bracket Hull::distance(const Triangle& triangle, double enough) const {
   Vec3 along = direction_from(triangle);
   const double length = along.norm();
   along = length > 0.0 ? Vec3(along / length) : Vec3::Zero();
-  // Heights over the hull's centre are rounded by some ten roundings of the lengths.
+  // Heights over the hull's center are rounded by some ten roundings of the lengths.
   std::array<double, most_points> heights{};
   std::array<double, 3> of_corners{};
   double size = radius_;

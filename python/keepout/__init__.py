@@ -16,6 +16,7 @@ or anything that numpy makes one of; what is wrong with one is said by keepout.E
 
 from ._core import *  # noqa: F403
 from ._core import __version__
+from ._renamed import alias as _alias
 from ._results import Option, Part, Proofs, Simulation, Status, Steps
 
 __all__ = ["__version__", *(name for name in dir() if not name.startswith("_"))]
@@ -25,3 +26,16 @@ for _name in __all__:
     if _name != "__version__":
         globals()[_name].__module__ = "keepout"
 del _name
+
+for _owner, _former, _name in (
+    (InstrumentStep, "share", "fraction"),  # noqa: F405
+    (InstrumentStep, "level", "clearance_fraction"),  # noqa: F405
+    (MotionProof, "share", "fraction"),  # noqa: F405
+    (Proofs, "share", "fraction"),
+    (MotionConstraint, "max_looks", "max_work_units"),  # noqa: F405
+    (InstrumentGuard, "max_looks", "max_work_units"),  # noqa: F405
+    (Inspection, "looks_like_metres", "looks_like_meters"),  # noqa: F405
+    (Inspection, "looks_like_micrometres", "looks_like_micrometers"),  # noqa: F405
+):
+    _alias(_owner, _former, _name)
+del _owner, _former, _name

@@ -39,8 +39,8 @@ class Status(IntEnum):
     free = 0  # no plane holds the motion back
     limited = 1  # the motion is the best one that the planes allow
     recovering = 2  # the tip was too close or inside: the motion leads it out
-    fallback = 3  # only a shorter motion could be proven, within the budget of work
-    yielding = 4  # anatomy comes on too fast: less than the margin is kept
+    truncated = 3  # only a shorter motion could be proved
+    degraded = 4  # a mesh approaches too fast to maintain the certified clearance
     infeasible = 5  # the constraints contradict each other
     ill_posed = 6  # the Jacobian lacks full column rank and there is no damping
     invalid_input = 7  # a number is not finite or out of range
@@ -54,6 +54,10 @@ class Status(IntEnum):
     out_of_budget = 15  # the work budget of the cycle ended before a motion was proved
     unsupported = 16  # the rule cannot answer this query
 
+    # Names before version 0.3.
+    fallback = truncated
+    yielding = degraded
+
     def __str__(self) -> str:
         return self.name
 
@@ -64,7 +68,7 @@ class Status(IntEnum):
     @property
     def ok(self) -> bool:
         """Whether a motion comes with it, which may be carried out."""
-        return self <= Status.yielding
+        return self <= Status.degraded
 
     def reason_for(self, subject: str) -> str:
         """Returns one line on what happened to a subject and what to do about it. `subject`: 'tip',
@@ -82,7 +86,7 @@ class _Batch:
     @property
     def ok(self) -> NDArray[np.bool_]:
         """In the shape of `status`: whether the motion may be carried out."""
-        return self.status <= Status.yielding
+        return self.status <= Status.degraded
 
     def counts(self) -> dict[Status, int]:
         """How many steps ended with each status."""
@@ -140,13 +144,13 @@ class Proofs(_Batch):
     """How much of each of m motions of an instrument is certified."""
 
     status: NDArray[np.uint8]  # (m,): of Status, as numbers
-    share: NDArray[np.float64]  # (m,): proven is a motion from its start to here; 1 if all of it is
+    fraction: NDArray[np.float64]  # (m,): proven is a motion from its start to here; 1 if all of it is
     distance: NDArray[np.float64]  # (m,): of the body nearest as it starts [length]; NaN if unknown
 
     @property
     def is_clear(self) -> NDArray[np.bool_]:
         """(m,): whether the whole margin, less its band, is kept on all of a motion."""
-        return (self.status == Status.free) & (self.share == 1.0)
+        return (self.status == Status.free) & (self.fraction == 1.0)
 
 
 def room_for(

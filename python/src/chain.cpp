@@ -211,7 +211,7 @@ void bind_chain(py::module_& module) {
       "read_chain", &chain_of_file, py::arg("path"), py::kw_only(), py::arg("base") = "",
       py::arg("tip") = "", py::arg("scale") = 1000.0,
       "A Chain out of a robot's description in URDF, from link `base` to link `tip`, which is its\n"
-      "flange. Empty: the root, and the only leaf below it. scale: a metre in the mesh's unit.\n"
+      "flange. Empty: the root, and the only leaf below it. scale: a meter in the mesh's unit.\n"
       "Link 0 is at the mesh's origin; Chain(chain.joints, base=..., flange=chain.flange) puts it\n"
       "elsewhere. Raises Error where this build reads no URDF.");
 }

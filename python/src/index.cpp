@@ -144,18 +144,18 @@ void bind_index(py::module_& module) {
   py::class_<Hits> hits(
       module, "Hits",
       "The triangles that touch a ball, by ascending number, and of each the point\n"
-      "nearest to the centre. Arrays are read-only views.");
+      "nearest to the center. Arrays are read-only views.");
   add_view(
       hits, "triangles", &Hits::hits, 1, [](const Hit& hit) { return &hit.triangle; },
       "(k,) uint32.");
   add_view(
       hits, "offsets", &Hits::hits, 3, [](const Hit& hit) { return hit.closest.offset.data(); },
-      "(k, 3) float64 [length]: from the centre to the closest points; as exact as can be.");
+      "(k, 3) float64 [length]: from the center to the closest points; as exact as can be.");
   add_view(
       hits, "distances", &Hits::hits, 1, [](const Hit& hit) { return &hit.closest.distance; },
       "(k,) float64 [length].");
   hits.def_property_readonly("points", &points_of,
-                             "(k, 3) float64 [length]: the closest points, centre + offset.")
+                             "(k, 3) float64 [length]: the closest points, center + offset.")
       .def("__len__", [](const Hits& self) { return self.hits.size(); })
       .def("__repr__", [](const Hits& self) {
         return "<keepout.Hits: " + std::to_string(self.hits.size()) + " triangles>";

@@ -82,7 +82,7 @@ void bind_instrument(py::module_& module) {
   module.def(
       "free_ball", &free_ball, py::arg("radius"),
       "The Instrument that is the ball of a tool's tip, on three joints that slide along the\n"
-      "axes without limits: q is where its centre is. radius: [length]");
+      "axes without limits: q is where its center is. radius: [length]");
 }
 
 }  // namespace keepout::python

@@ -131,17 +131,17 @@ py::object InstrumentGuard::proofs(const py::object& q, const py::object& increm
   }
   const py::ssize_t count = at.ndim() == 2 ? at.shape(0) : by.ndim() == 2 ? by.shape(0) : 1;
   py::array_t<std::uint8_t> status(count);
-  py::array_t<double> share(count);
+  py::array_t<double> fraction(count);
   py::array_t<double> distance(count);
-  const auto take = [statuses = status.mutable_data(), shares = share.mutable_data(),
+  const auto take = [statuses = status.mutable_data(), shares = fraction.mutable_data(),
                      distances = distance.mutable_data()](std::size_t i, const MotionProof& proof) {
     statuses[i] = static_cast<std::uint8_t>(proof.status);
-    shares[i] = proof.share;
+    shares[i] = proof.fraction;
     distances[i] = proof.distance.value_or(std::nan(""));
   };
   const auto motions = static_cast<std::size_t>(count);
   prove_each(at, by, motions, threads_for(motions, threads), take);
-  return py::module_::import("keepout._results").attr("Proofs")(status, share, distance);
+  return py::module_::import("keepout._results").attr("Proofs")(status, fraction, distance);
 }
 
 void InstrumentGuard::follow(std::shared_ptr<IndexHandle> index, std::size_t mesh) {

@@ -15,7 +15,7 @@
 #include "bindings.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 
 namespace keepout::python {
 namespace {
@@ -95,8 +95,8 @@ py::array normals_of(const py::object& self) {
   return view(std::span<const Vec3>(mesh.normals), 3, coordinates, self);
 }
 
-/// What the doctor found; the search for self-intersections takes longest and is made when asked
-/// for.
+/// What the diagnostics found; the search for self-intersections takes longest and is made when
+/// asked for.
 struct Inspection : MeshFindings {
   std::optional<std::size_t> self_intersections = {};
   FaultPlaces crossings = {};
@@ -159,8 +159,8 @@ std::string summary(const Inspection& mesh) {
   tell(mesh.duplicate_triangles, "duplicate triangles");
   tell(mesh.unused_vertices, "unused vertices");
   tell(mesh.self_intersections.value_or(0), "self-intersecting pairs");
-  if (mesh.looks_like_metres())
-    text << "; smaller than 3 in every direction: metres, not mm? Then load it with unit=\"m\"";
+  if (mesh.looks_like_meters())
+    text << "; smaller than 3 in every direction: meters, not mm? Then load it with unit=\"m\"";
   return text.str();
 }
 
@@ -228,8 +228,8 @@ void bind_inspection(py::module_& module) {
           "inside_out", [](const Inspection& i) { return i.is_inside_out(); },
           "Whether it is watertight with normals that point into the solid.")
       .def_property_readonly(
-          "looks_like_metres", [](const Inspection& i) { return i.looks_like_metres(); },
-          "Whether it is smaller than 3 in every direction, where millimetres are expected.")
+          "looks_like_meters", [](const Inspection& i) { return i.looks_like_meters(); },
+          "Whether it is smaller than 3 in every direction, where millimeters are expected.")
       .def_readonly("euler_characteristic", &Inspection::euler_characteristic,
                     "Vertices - edges + triangles.")
       .def_readonly("genus", &Inspection::genus,

@@ -79,6 +79,18 @@ std::string described(const OptionText& option) {
          (is_choice ? " " + option.expected() + "." : "");
 }
 
+py::kwargs with_new_names(const py::kwargs& given) {
+  constexpr const char* former = "max_looks";
+  constexpr const char* name = "max_work_units";
+  if (!given.contains(former)) return given;
+  if (PyErr_WarnEx(PyExc_DeprecationWarning, "max_looks is now max_work_units", 1) != 0) {
+    throw py::error_already_set();
+  }
+  py::kwargs renamed = py::reinterpret_steal<py::kwargs>(PyDict_Copy(given.ptr()));
+  renamed[name] = renamed.attr("pop")(former);
+  return renamed;
+}
+
 void require_known(std::string_view function, const py::kwargs& given,
                    const std::vector<std::string_view>& known) {
   for (const auto& [key, value] : given) {

@@ -22,6 +22,10 @@ std::string type_of(const OptionText& option);
 /// Returns a paragraph on an option, for a docstring.
 std::string described(const OptionText& option);
 
+/// Returns the keywords, with options that version 0.3 renamed under their new names, and warns of
+/// these.
+py::kwargs with_new_names(const py::kwargs& given);
+
 /// Throws TypeError for the first of the `given` keywords that is not `known`; it asks for the one
 /// that was probably meant.
 void require_known(std::string_view function, const py::kwargs& given,
@@ -51,8 +55,9 @@ std::string keywords_of(const Settings& settings) {
 /// The `settings` of a constraint in a new class, from the keywords of its constructor. `others`:
 /// the arguments that are not in a table. Throws TypeError for an unknown keyword, and Error.
 template <class Settings>
-Settings settings_from(std::string_view type, const py::kwargs& given,
+Settings settings_from(std::string_view type, const py::kwargs& keywords,
                        std::vector<std::string_view> others) {
+  const py::kwargs given = with_new_names(keywords);
   Settings settings;
   for_each_option(settings,
                   [&](const auto& option, const auto&) { others.push_back(option.name); });

@@ -43,7 +43,7 @@ Status JointCycle::search_beside_moving(const JointTask& task, Trial& best) noex
       std::all_of(best.increment.begin(), best.increment.end(), [](double x) { return x == 0.0; });
   // No body retreats, and a body that could not be certified allows no other motion.
   if (stands_still && !is_ok(pairs_.dropped_for())) return pairs_.dropped_for();
-  return pairs_.is_degraded() ? Status::yielding : outcome(best, asked);
+  return pairs_.is_degraded() ? Status::degraded : outcome(best, asked);
 }
 
 /// Judges the bodies that no joint moves on the motion of the meshes alone. Lowers or drops the
@@ -71,7 +71,7 @@ void JointCycle::settle_immovable() noexcept {
 /// Stands still if that is proved beside the meshes that move.
 bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
   Trial trial;
-  trial.share = 1.0;
+  trial.fraction = 1.0;
   trial.cost = task.miss_at_rest * task.miss_at_rest;
   judgement_ = judge(trial.increment);
   trial.knot = judgement_.knot;
@@ -144,10 +144,10 @@ bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
   return pairs.any();
 }
 
-/// Lowers the level of a pair, or drops the pair, as PairWatch::lower_level(). A dropped pair has
-/// no obstacle and no rows. `most`: 1 for no bound.
+/// Lowers the level of a pair, or drops the pair, as PairWatch::lower_clearance_fraction(). A
+/// dropped pair has no obstacle and no rows. `most`: 1 for no bound.
 void JointCycle::give_way(std::size_t p, double most, Status reason) noexcept {
-  pairs_.lower_level(p, most, reason);
+  pairs_.lower_clearance_fraction(p, most, reason);
   if (pairs_.is_watched(p)) return;
   memory_.obstacles[p] = {};
   rows_.remove(p);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "keepout/activation/facet.h"
+#include "keepout/activation/prepared_triangle.h"
 #include "keepout/activation/tolerances.h"
 
 namespace keepout {

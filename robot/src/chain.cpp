@@ -56,10 +56,10 @@ Mat3 to_axis(const Vec3& axis) {
   const double side = std::copysign(1.0, axis.z());
   const double x = axis.x();
   const double y = axis.y();
-  const double share = 1.0 / (1.0 + std::abs(axis.z()));
+  const double fraction = 1.0 / (1.0 + std::abs(axis.z()));
   Mat3 r;
-  r << 1.0 - share * x * x, -side * share * x * y, x,   //
-      -share * x * y, side * (1.0 - share * y * y), y,  //
+  r << 1.0 - fraction * x * x, -side * fraction * x * y, x,   //
+      -fraction * x * y, side * (1.0 - fraction * y * y), y,  //
       -side * x, -y, axis.z();
   return nearest_rotation(r);
 }

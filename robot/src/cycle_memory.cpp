@@ -22,9 +22,9 @@ double distance_beyond_axis(const Instrument& instrument, std::size_t body) {
   const double length2 = along.squaredNorm();
   double most = 0.0;
   for (const LinkPoint& point : points) {
-    const double share =
+    const double fraction =
         length2 > 0.0 ? std::clamp(along.dot(point.position - a) / length2, 0.0, 1.0) : 0.0;
-    most = std::max(most, (point.position - a - share * along).norm());
+    most = std::max(most, (point.position - a - fraction * along).norm());
   }
   return most * (1.0 + 1e-12);
 }

@@ -40,9 +40,9 @@ FlangeError flange_error(const JointTask& task, const Trial& trial, const Chain&
   const double miss_at_rest = task.miss_at_rest;
   const double bound = std::sqrt(trial.cost) + most_deviation(chain, task, trial.increment);
   if (bound <= 0.5 * miss_at_rest) return {bound, false};
-  const double predicted = task.linear_miss(trial.increment, trial.share);
+  const double predicted = task.linear_miss(trial.increment, trial.fraction);
   const double missed =
-      task.true_miss(motion.chain_at_start().flange(), motion.flange_at(trial.share));
+      task.true_miss(motion.chain_at_start().flange(), motion.flange_at(trial.fraction));
   // The miss may be the predicted one or leave half of the predicted gain, plus 1 % of the task: in
   // contact the predicted gain is about 0.
   const double most = std::max(predicted, 0.5 * (miss_at_rest + predicted)) + slack * miss_at_rest;
@@ -52,17 +52,17 @@ FlangeError flange_error(const JointTask& task, const Trial& trial, const Chain&
 Trial cut_for_flange(const JointTask& task, Trial trial, PointMotion& motion) noexcept {
   constexpr int most_halvings = 12;
   const Pose start = motion.chain_at_start().flange();
-  double share = trial.share;
+  double fraction = trial.fraction;
   trial.limits.add(Limit::linearization);
-  trial.share = 0.0;
+  trial.fraction = 0.0;
   trial.cost = task.miss_at_rest * task.miss_at_rest;
-  for (int i = 0; i <= most_halvings; ++i, share *= 0.5) {
-    const double missed = task.true_miss(start, motion.flange_at(share));
-    const double cost = missed * missed + task.damping_cost(trial.increment, share);
+  for (int i = 0; i <= most_halvings; ++i, fraction *= 0.5) {
+    const double missed = task.true_miss(start, motion.flange_at(fraction));
+    const double cost = missed * missed + task.damping_cost(trial.increment, fraction);
     if (cost < trial.cost) {
-      trial.share = share;
+      trial.fraction = fraction;
       trial.cost = cost;
-    } else if (trial.share > 0.0) {
+    } else if (trial.fraction > 0.0) {
       break;
     }
   }

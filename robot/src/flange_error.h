@@ -18,7 +18,7 @@ struct FlangeError {
 FlangeError flange_error(const JointTask& task, const Trial& trial, const Chain& chain,
                          PointMotion& motion) noexcept;
 
-/// Returns a trial cut to the share, of halves, that costs least for the true flange; to zero if
+/// Returns a trial cut to the fraction, of halves, that costs least for the true flange; to zero if
 /// all of them cost more than zero motion. `motion`: the trial's.
 Trial cut_for_flange(const JointTask& task, Trial trial, PointMotion& motion) noexcept;
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "keepout/activation/facet.h"
+#include "keepout/activation/prepared_triangle.h"
 #include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/nearest_points.h"
 

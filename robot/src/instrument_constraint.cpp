@@ -9,7 +9,7 @@
 #include "joint_cycle.h"
 #include "joint_input.h"
 #include "keepout/error.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/step/options.h"
 
 namespace keepout {
@@ -78,13 +78,15 @@ struct InstrumentConstraint::State {
     memory.measure();
     memory.require_usable(options);
     // The default of a tip's step, measured on wide_bvh: that of the slowest index serves all.
-    std::size_t looks = capacity.looks > 0 ? capacity.looks : Capacity::looks_of_a_walk;
+    std::size_t work_units =
+        capacity.work_units > 0 ? capacity.work_units : Capacity::work_units_of_traversals;
     for (const MeshMemory& each : memory.meshes) {
       const SpatialIndex& index = each.neighborhood->index();
-      looks = std::max(looks, Capacity::looks_or_default(capacity.looks, index));
+      work_units =
+          std::max(work_units, Capacity::work_units_or_default(capacity.work_units, index));
     }
     memory.prepare();
-    memory.budget = Budget(looks);
+    memory.budget = Budget(work_units);
   }
 
   /// Renews the work budget. Returns free, or why no cycle may start.
@@ -104,7 +106,7 @@ struct InstrumentConstraint::State {
       result = cycle.run(make_task(cycle.chain_at_start()));
     }
     // Without a proved motion beside meshes that move, no clearance is certified.
-    if (!result.ok() && memory.is_moving()) result.level = 0.0;
+    if (!result.ok() && memory.is_moving()) result.clearance_fraction = 0.0;
     move_meshes();
     return result;
   }
@@ -255,6 +257,8 @@ void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
 }
 
 double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }
-std::size_t InstrumentConstraint::looks() const noexcept { return state_->memory.budget.spent(); }
+std::size_t InstrumentConstraint::work_units() const noexcept {
+  return state_->memory.budget.spent();
+}
 
 }  // namespace keepout

@@ -57,14 +57,14 @@ InstrumentStep JointCycle::run(const JointTask& task) noexcept {
   Status& status = result.status;
   status = cycle_.meshes_move ? search_beside_moving(task, best) : search(task, best);
   cut(best);
-  if (is_ok(status) && status != Status::yielding && is_recovering()) status = Status::recovering;
+  if (is_ok(status) && status != Status::degraded && is_recovering()) status = Status::recovering;
   if (status == Status::free && best.missed > 0.5 * task.miss_at_rest) {
     status = Status::limited;
     best.limits.add(Limit::singularity);
   }
-  result.level = pairs_.list_degraded();
+  result.clearance_fraction = pairs_.list_degraded();
   result.degraded = pairs_.degraded();
-  const bool is_cut = !is_ok(status) || is_shortened_ || best.share < 1.0;
+  const bool is_cut = !is_ok(status) || is_shortened_ || best.fraction < 1.0;
   report_guides(best, is_cut, result);
   report_limits(best, is_cut, result);
   result.rounds = rounds_;
@@ -89,7 +89,7 @@ Status JointCycle::search(const JointTask& task, Trial& best) noexcept {
   double asked = 1.0;
   for (; asked >= least_task; asked *= 0.25) {
     const bool goes_on = search_fraction(task, asked, best);
-    if (best.share >= enough_of_a_motion || !goes_on) break;
+    if (best.fraction >= enough_of_a_motion || !goes_on) break;
   }
   if (best.is_found()) return outcome(best, asked);
   rows_.remember_all();
@@ -97,13 +97,13 @@ Status JointCycle::search(const JointTask& task, Trial& best) noexcept {
   // A guide that forbids every motion found is no failure: zero motion, which is proved beside
   // meshes that stand still, is the answer.
   const bool is_inconclusive = status == Status::unsolved || status == Status::infeasible;
-  return is_inconclusive && stopping_limits_.has(Limit::guide) ? Status::fallback : status;
+  return is_inconclusive && stopping_limits_.has(Limit::guide) ? Status::truncated : status;
 }
 
 /// Returns the outcome of a search that found a motion. `asked`: the last fraction of the task that
 /// was tried or would be next, below 1 if the whole task was not enough.
 Status JointCycle::outcome(const Trial& best, double asked) noexcept {
-  if (best.share < 1.0 || asked < 1.0) return Status::fallback;
+  if (best.fraction < 1.0 || asked < 1.0) return Status::truncated;
   return best.limits.empty() ? Status::free : Status::limited;
 }
 
@@ -164,21 +164,21 @@ bool JointCycle::solve_and_judge(const JointTask& task, const JointTask& reduced
     judgement_ = judge(trial.increment);
     search_status_ = judgement_.status;
     trial.knot = judgement_.knot;
-    trial.share = trial.proved();
-    trial.cost = task.cost_of_share(trial.increment, trial.share);
+    trial.fraction = trial.proved();
+    trial.cost = task.cost_of_share(trial.increment, trial.fraction);
     // A motion may cost more than standing still only by what a return of bodies and guides within
     // their bands explains: by two bands, taken as a length also for a task of the joints.
-    // Otherwise only the share that costs least is executed.
+    // Otherwise only the fraction that costs least is executed.
     const double affordable = task.miss_at_rest + 2.0 * cycle_.options.band;
     if (!is_recovering() && !cycle_.meshes_move && trial.cost > affordable * affordable) {
       // Guides within their bands are pulled back only if that does not cost the task too much. If
       // they are relaxed, the same rows are solved again.
       if (problem_.relax_guides(rows_.view())) continue;
-      trial.share = task.best_share(trial.increment, trial.share);
+      trial.fraction = task.best_share(trial.increment, trial.fraction);
       trial.limits.add(Limit::linearization);
-      trial.cost = task.cost_of_share(trial.increment, trial.share);
+      trial.cost = task.cost_of_share(trial.increment, trial.fraction);
     }
-    if (trial.share > 0.0 && reduced.miss_at_rest > 0.0 && measure_flange(task, trial)) {
+    if (trial.fraction > 0.0 && reduced.miss_at_rest > 0.0 && measure_flange(task, trial)) {
       if (problem_.relax_guides(rows_.view())) continue;
       has_strayed_ = true;
       stopping_limits_.add(Limit::linearization);
@@ -186,7 +186,7 @@ bool JointCycle::solve_and_judge(const JointTask& task, const JointTask& reduced
       if (cycle_.meshes_move && trial.is_proved()) return false;
       trial = cut_for_flange(task, trial, memory_.trial_motion);
     }
-    if (trial.is_proved() && trial.share == 1.0) {
+    if (trial.is_proved() && trial.fraction == 1.0) {
       if (was_found && !(trial.cost < cost_before)) return false;
       best = trial;
       return true;
@@ -258,7 +258,7 @@ Status JointCycle::refine(const JointTask& task, const JointTask& reduced, Trial
   for (int refinement = 0; refinement < cycle_.options.refinements; ++refinement) {
     if (best.active_rows == 0 || is_spent() || !rows_.turn_planes_to_end()) break;
     Trial trial{problem_.solve(reduced, rows_.view())};
-    trial.share = 1.0;
+    trial.fraction = 1.0;
     trial.cost = task.cost(trial.increment);
     bool is_better =
         trial.status == SolveStatus::optimal &&
@@ -279,23 +279,23 @@ Status JointCycle::refine(const JointTask& task, const JointTask& reduced, Trial
   return Status::free;
 }
 
-/// Cuts a motion to the share that is executed. If rounding has left less than some clearance, the
-/// end of that part must make up for it, so it is proved as a motion of its own. If the proof
+/// Cuts a motion to the fraction that is executed. If rounding has left less than some clearance,
+/// the end of that part must make up for it, so it is proved as a motion of its own. If the proof
 /// fails, there is no motion.
 void JointCycle::cut(Trial& best) noexcept {
-  if (best.share == 1.0) return;
-  for (double& number : best.increment) number *= best.share;
-  if (best.share == 0.0 || !(pairs_.owes() || guides_.owes())) return;
+  if (best.fraction == 1.0) return;
+  for (double& number : best.increment) number *= best.fraction;
+  if (best.fraction == 0.0 || !(pairs_.owes() || guides_.owes())) return;
   const Judgement found = judge(best.increment);
   if (found.knot == PointMotion::last_knot) return;
   note_end(is_spent() ? Status::out_of_budget : found.status);
-  best.share = 0.0;
+  best.fraction = 0.0;
   best.increment.fill(0.0);
 }
 
 /// Returns the motion in the result, and remembers its end.
 void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
-  result.share = best.share;
+  result.fraction = best.fraction;
   const auto n = static_cast<std::size_t>(memory_.instrument.chain().size());
   JointVector& increment = memory_.increment;
   for (std::size_t k = 0; k < n; ++k) increment[k] = best.increment[k] + 0.0;  // turns -0 into 0
@@ -315,7 +315,7 @@ MotionProof JointCycle::prove(const JointVector& increment) noexcept {
   if (!is_ok(found.status)) proof.status = found.status;
   if (is_spent() && is_ok(proof.status)) proof.status = Status::out_of_budget;
   if (is_ok(proof.status)) {
-    proof.share = static_cast<double>(found.knot) / PointMotion::last_knot;
+    proof.fraction = static_cast<double>(found.knot) / PointMotion::last_knot;
   }
   return proof;
 }

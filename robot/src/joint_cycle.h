@@ -48,8 +48,8 @@ class JointCycle {
   /// all of a motion is proved or nothing: a part of it would not be safe.
   InstrumentStep run(const JointTask& task) noexcept;
 
-  /// Returns the share of a motion that is proved. Ignores the limits of the joints. Precondition:
-  /// the increment is finite.
+  /// Returns the fraction of a motion that is proved. Ignores the limits of the joints.
+  /// Precondition: the increment is finite.
   MotionProof prove(const JointVector& increment) noexcept;
 
  private:

@@ -30,14 +30,14 @@ double JointTask::cost(const JointVector& increment) const noexcept {
   return sum;
 }
 
-double JointTask::cost_of_share(const JointVector& increment, double share) const noexcept {
+double JointTask::cost_of_share(const JointVector& increment, double fraction) const noexcept {
   JointVector cut = increment;
-  for (double& number : cut) number *= share;
+  for (double& number : cut) number *= fraction;
   return cost(cut);
 }
 
 double JointTask::best_share(const JointVector& increment, double most) const noexcept {
-  // The cost of a share s is square s^2 - 2 gain s + cost(0).
+  // The cost of a fraction s is square s^2 - 2 gain s + cost(0).
   double square = 0.0;
   double gain = 0.0;
   for (int row = 0; row < equations; ++row) {
@@ -71,8 +71,8 @@ JointTask JointTask::damped() const noexcept {
   return task;
 }
 
-double JointTask::linear_miss(const JointVector& increment, double share) const noexcept {
-  const double square = cost_of_share(increment, share) - damping_cost(increment, share);
+double JointTask::linear_miss(const JointVector& increment, double fraction) const noexcept {
+  const double square = cost_of_share(increment, fraction) - damping_cost(increment, fraction);
   return std::sqrt(std::max(square, 0.0));
 }
 
@@ -92,19 +92,19 @@ double JointTask::true_miss(const Pose& from, const Pose& to) const noexcept {
   return std::sqrt(sum);
 }
 
-double JointTask::damping_cost(const JointVector& increment, double share) const noexcept {
+double JointTask::damping_cost(const JointVector& increment, double fraction) const noexcept {
   double sum = 0.0;
   for (int k = 0; k < joints; ++k) {
-    const double u = share * in_units(increment, k);
+    const double u = fraction * in_units(increment, k);
     sum += damping * u * u;
   }
   return sum;
 }
 
-JointTask JointTask::scaled(double share) const noexcept {
+JointTask JointTask::scaled(double fraction) const noexcept {
   JointTask task = *this;
-  for (double& number : task.desired) number *= share;
-  task.miss_at_rest *= share;
+  for (double& number : task.desired) number *= fraction;
+  task.miss_at_rest *= fraction;
   return task;
 }
 

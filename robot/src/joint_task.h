@@ -36,26 +36,26 @@ struct JointTask {
   /// Returns the cost of an increment dq, the minimized sum. [length^2; for a task of the joints
   /// the square of their unit]
   double cost(const JointVector& increment) const noexcept;
-  /// Returns the cost of a share of an increment.
-  double cost_of_share(const JointVector& increment, double share) const noexcept;
-  /// Returns the share of an increment, at most `most`, that costs least: 0 if every share costs
+  /// Returns the cost of a fraction of an increment.
+  double cost_of_share(const JointVector& increment, double fraction) const noexcept;
+  /// Returns the fraction of an increment, at most `most`, that costs least: 0 if every share costs
   /// more than zero motion.
   double best_share(const JointVector& increment, double most) const noexcept;
   /// Returns a joint's increment in its unit.
   double in_units(const JointVector& increment, int k) const noexcept {
     return increment[static_cast<std::size_t>(k)] / unit[static_cast<std::size_t>(k)];
   }
-  /// Returns the task for a share of what is desired.
-  JointTask scaled(double share) const noexcept;
+  /// Returns the task for a fraction of what is desired.
+  JointTask scaled(double fraction) const noexcept;
   /// Returns the task with 16 times the damping, or with some damping if it has none.
   JointTask damped() const noexcept;
-  /// Returns |J u - v|: what a share of an increment misses if the flange moves linearly.
-  double linear_miss(const JointVector& increment, double share) const noexcept;
+  /// Returns |J u - v|: what a fraction of an increment misses if the flange moves linearly.
+  double linear_miss(const JointVector& increment, double fraction) const noexcept;
   /// Returns what a motion of the flange from one pose to another misses, in the metric of v.
   /// Precondition: it is a task of the flange.
   double true_miss(const Pose& from, const Pose& to) const noexcept;
-  /// Returns damping |u|^2 of a share of an increment.
-  double damping_cost(const JointVector& increment, double share) const noexcept;
+  /// Returns damping |u|^2 of a fraction of an increment.
+  double damping_cost(const JointVector& increment, double fraction) const noexcept;
 };
 
 /// Returns the task of moving the flange by a displacement. Turns weigh options.orientation_weight.

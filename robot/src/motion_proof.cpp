@@ -13,11 +13,11 @@ MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options
   constexpr double least_span = 1.0 / 64.0;
   MotionProof proof{.status = Status::free};
   double span = 1.0;  // of a part of the motion
-  while (proof.share < 1.0) {
+  while (proof.fraction < 1.0) {
     JointVector from{};
     JointVector motion{};
     for (std::size_t k = 0; k < q.size(); ++k) {
-      from[k] = q[k] + proof.share * increment[k];
+      from[k] = q[k] + proof.fraction * increment[k];
       motion[k] = span * increment[k];
     }
     memory.budget.renew();
@@ -33,18 +33,18 @@ MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options
       continue;
     }
     // A later part that begins too close is certified for less than the first one.
-    if (proof.share > 0.0 && part.status == Status::recovering &&
+    if (proof.fraction > 0.0 && part.status == Status::recovering &&
         proof.status != Status::recovering) {
       break;
     }
-    if (proof.share == 0.0) proof.distance = part.distance;
-    if (proof.share == 0.0 || !is_ok(part.status)) proof.status = part.status;
-    proof.share += span * part.share;
-    if (part.share < 1.0 || part.status != Status::free) break;
+    if (proof.fraction == 0.0) proof.distance = part.distance;
+    if (proof.fraction == 0.0 || !is_ok(part.status)) proof.status = part.status;
+    proof.fraction += span * part.fraction;
+    if (part.fraction < 1.0 || part.status != Status::free) break;
   }
   memory.forget_motion();
   memory.set_certified(certified);
-  if (proof.status == Status::free && proof.share < 1.0) proof.status = Status::limited;
+  if (proof.status == Status::free && proof.fraction < 1.0) proof.status = Status::limited;
   return proof;
 }
 

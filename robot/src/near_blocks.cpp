@@ -37,8 +37,8 @@ std::uint32_t lanes_that_may_be_near(const NearBlock& block, const NearScreen& s
       const V sum = hn::Add(hn::Add(corner[0][axis], corner[1][axis]), corner[2][axis]);
       to_middle[axis] = hn::Sub(hn::Mul(sum, hn::Set(d, 1.0f / 3.0f)), from[axis]);
     }
-    const V share = hn::Mul(dot(to_middle, along), hn::Set(d, screen.inverse2));
-    const V clamped = hn::Min(hn::Max(share, hn::Zero(d)), hn::Set(d, 1.0f));
+    const V fraction = hn::Mul(dot(to_middle, along), hn::Set(d, screen.inverse2));
+    const V clamped = hn::Min(hn::Max(fraction, hn::Zero(d)), hn::Set(d, 1.0f));
     for (int axis = 0; axis < 3; ++axis) {
       towards[axis] = hn::Sub(to_middle[axis], hn::Mul(clamped, along[axis]));
     }

@@ -5,7 +5,7 @@
 #include <bit>
 #include <limits>
 
-#include "keepout/activation/facet.h"
+#include "keepout/activation/prepared_triangle.h"
 #include "keepout/robot/instrument.h"
 
 namespace keepout {
@@ -17,8 +17,9 @@ double least_distance(const Vec3& from, const Vec3& to, const Triangle& corners)
   const Vec3 along = to - from;
   const double length2 = along.squaredNorm();
   const Vec3 to_middle = (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0) - from;
-  const double share = length2 > 0.0 ? std::clamp(along.dot(to_middle) / length2, 0.0, 1.0) : 0.0;
-  const Vec3 towards = to_middle - share * along;
+  const double fraction =
+      length2 > 0.0 ? std::clamp(along.dot(to_middle) / length2, 0.0, 1.0) : 0.0;
+  const Vec3 towards = to_middle - fraction * along;
   const double length = towards.norm();
   if (!(length > 0.0)) return 0.0;
   const double nearest = std::min({towards.dot(corners[0] - from), towards.dot(corners[1] - from),

@@ -44,11 +44,11 @@ struct PairMemory {
   double certified = -std::numeric_limits<double>::infinity();
   bool may_have_crossed = false;  // no clearance was certified: the body's side must be found
   // Of this cycle.
-  double full_demand = 0.0;  // the clearance to be certified at level 1 (F* there) [length]
-  double row_margin = 0.0;   // the margin that rows demand, beyond the radius [length]
-  double level = 1.0;        // the fraction of the full demand that is to be certified
-  bool is_dropped = false;   // nothing is certified: no motion could be proved for the pair
-  bool is_settled = false;   // no joint moves the body, and its proof is complete
+  double full_demand = 0.0;         // the clearance to be certified at level 1 (F* there) [length]
+  double row_margin = 0.0;          // the margin that rows demand, beyond the radius [length]
+  double clearance_fraction = 1.0;  // the fraction of the full demand that is to be certified
+  bool is_dropped = false;          // nothing is certified: no motion could be proved for the pair
+  bool is_settled = false;          // no joint moves the body, and its proof is complete
 };
 
 }  // namespace keepout

@@ -18,7 +18,7 @@ PairWatch::Opening PairWatch::open() noexcept {
     PairMemory& pair = memory_.pairs[p];
     pair.triangles.start_listing(motion(p).core_at(pair.body, 0, core));
     pair.full_demand = 0.0;
-    pair.level = 1.0;
+    pair.clearance_fraction = 1.0;
     pair.is_dropped = false;
     pair.is_settled = false;
     Status of_pair = open_pair(p, opening);
@@ -83,8 +83,8 @@ void PairWatch::slow_down(std::size_t p, double distance) noexcept {
   const InstrumentOptions& options = cycle_.options;
   const double left = distance - margin(p);
   if (!(left > 0.0 && left < options.slowing_within)) return;
-  const double share = std::min(options.period / options.slowing_time, 1.0);
-  const double raised = (1.0 - share) * left - motion(p).mesh_displacement_bound(body(p));
+  const double fraction = std::min(options.period / options.slowing_time, 1.0);
+  const double raised = (1.0 - fraction) * left - motion(p).mesh_displacement_bound(body(p));
   if (!(raised > 0.0)) return;
   memory_.pairs[p].full_demand += raised;
   memory_.pairs[p].row_margin += raised;
@@ -113,19 +113,20 @@ void PairWatch::remember_end() noexcept {
   }
 }
 
-void PairWatch::lower_level(std::size_t p, double most, Status reason) noexcept {
+void PairWatch::lower_clearance_fraction(std::size_t p, double most, Status reason) noexcept {
   PairMemory& pair = memory_.pairs[p];
   constexpr double quarter = 0.25;
-  const double next = quarter * std::floor(std::min(most, pair.level - quarter) / quarter);
+  const double next =
+      quarter * std::floor(std::min(most, pair.clearance_fraction - quarter) / quarter);
   if (pair.full_demand > 0.0 && next >= 0.0) {
-    pair.level = next;
+    pair.clearance_fraction = next;
   } else {
     drop(p, reason);
   }
 }
 
 void PairWatch::drop(std::size_t p, Status reason) noexcept {
-  memory_.pairs[p].level = 0.0;
+  memory_.pairs[p].clearance_fraction = 0.0;
   memory_.pairs[p].is_dropped = true;
   if (!is_immovable(p)) dropped_for_ = reason;
 }
@@ -139,10 +140,10 @@ bool PairWatch::is_immovable(std::size_t p) const noexcept {
 double PairWatch::list_degraded() noexcept {
   double least = 1.0;
   for (const PairMemory& pair : memory_.pairs) {
-    if (pair.level == 1.0) continue;
-    least = std::min(least, pair.level);
-    memory_.degraded.push(
-        {static_cast<int>(pair.body), static_cast<int>(pair.mesh), pair.level, !pair.is_dropped});
+    if (pair.clearance_fraction == 1.0) continue;
+    least = std::min(least, pair.clearance_fraction);
+    memory_.degraded.push({static_cast<int>(pair.body), static_cast<int>(pair.mesh),
+                           pair.clearance_fraction, !pair.is_dropped});
   }
   return least;
 }
@@ -245,9 +246,9 @@ Status PairWatch::ensure_known(std::size_t p, double needed) noexcept {
   const double most = std::max(16.0 * margin(p), 3.0 * pair.displacement);
   pair.padding = std::clamp(pair.padding, least, most);
   Neighborhood& neighborhood = *memory_.meshes[pair.mesh].neighborhood;
-  for (const double share : {1.0, 0.125, 0.0}) {
-    if (pair.triangles.gather(neighborhood, now, needed + share * pair.padding, budget)) {
-      if (share < 1.0 || pair.triangles.size() > many) pair.padding *= 0.5;
+  for (const double fraction : {1.0, 0.125, 0.0}) {
+    if (pair.triangles.gather(neighborhood, now, needed + fraction * pair.padding, budget)) {
+      if (fraction < 1.0 || pair.triangles.size() > many) pair.padding *= 0.5;
       if (pair.triangles.size() < few) pair.padding *= 2.0;
       return Status::free;
     }

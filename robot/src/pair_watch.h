@@ -68,22 +68,24 @@ class PairWatch {
   double row_margin(std::size_t p) const noexcept { return memory_.pairs[p].row_margin; }
   /// Returns the length by which demand and rows of a degraded pair are lowered. [length]
   double degradation(std::size_t p) const noexcept {
-    return (1.0 - memory_.pairs[p].level) * std::max(full_demand(p), 0.0);
+    return (1.0 - memory_.pairs[p].clearance_fraction) * std::max(full_demand(p), 0.0);
   }
   /// Returns true if the level of some pair is below 1.
   bool is_degraded() const noexcept {
     return std::any_of(memory_.pairs.begin(), memory_.pairs.end(),
-                       [](const PairMemory& pair) { return pair.level < 1.0; });
+                       [](const PairMemory& pair) { return pair.clearance_fraction < 1.0; });
   }
   /// Returns true if the pair's level is.
-  bool is_degraded(std::size_t p) const noexcept { return memory_.pairs[p].level < 1.0; }
+  bool is_degraded(std::size_t p) const noexcept {
+    return memory_.pairs[p].clearance_fraction < 1.0;
+  }
   /// Returns true if motions must be proved clear for the pair.
   bool is_watched(std::size_t p) const noexcept {
     return !memory_.pairs[p].is_dropped && !memory_.pairs[p].is_settled;
   }
   /// Lowers the pair's level by at least a quarter, to a multiple of a quarter that is at most
   /// `most`. If there is none, drops the pair and remembers the reason.
-  void lower_level(std::size_t p, double most, Status reason) noexcept;
+  void lower_clearance_fraction(std::size_t p, double most, Status reason) noexcept;
   /// Notes that the proof of a pair whose body no joint moves is complete.
   void settle(std::size_t p) noexcept { memory_.pairs[p].is_settled = true; }
   /// Returns true if no joint moves the pair's body.

@@ -50,7 +50,7 @@ const Vec3* PointMotion::points_at(int knot) noexcept {
   if (knot == 0 || there.motion_number == number_) return there.points.data();
   there.motion_number = number_;
   const double fraction = static_cast<double>(knot) / last_knot;
-  if (which_ == CertifiedMotion::linearised) {
+  if (which_ == CertifiedMotion::linearized) {
     for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
       there.points[p] = points_at_start()[p] + fraction * straight_[p];
     }

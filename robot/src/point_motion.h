@@ -76,7 +76,7 @@ class PointMotion {
   ChainState start_;
   ChainState state_;
   std::array<MotionBounds, Instrument::most_points> bounds_{};
-  std::array<Vec3, Instrument::most_points> straight_;  // J dq, of the linearised motion
+  std::array<Vec3, Instrument::most_points> straight_;  // J dq, of the linearized motion
   std::vector<Positions> positions_;                    // (last_knot + 1)
   std::uint64_t number_ = 0;
   std::uint64_t number_of_state_ = 0;  // the motion that state_ is of; 0: none

@@ -39,11 +39,11 @@ MotionBounds RelativeMotion::with_mesh(const MotionBounds& own, const Vec3& at) 
 }
 
 Pose RelativeMotion::pose_at(int knot) const noexcept {
-  const double share = static_cast<double>(knot) / PointMotion::last_knot;
+  const double fraction = static_cast<double>(knot) / PointMotion::last_knot;
   Pose pose = pose_;
-  pose.position += share * displacement_.linear;
+  pose.position += fraction * displacement_.linear;
   if (turn_ > 0.0 && knot > 0) {
-    pose.rotation = Eigen::AngleAxisd(share * turn_, axis_).toRotationMatrix() * pose_.rotation;
+    pose.rotation = Eigen::AngleAxisd(fraction * turn_, axis_).toRotationMatrix() * pose_.rotation;
   }
   return pose;
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "keepout/activation/facet.h"
+#include "keepout/activation/prepared_triangle.h"
 #include "keepout/geometry/closest_point.h"
 
 namespace keepout {
@@ -19,15 +19,15 @@ Vec3 turned_back(const Vec3& valid, const Vec3& wanted, const IsValid& is_valid)
   double bad = 1.0;
   Vec3 best = valid;
   for (int i = 0; i < halvings; ++i) {
-    const double share = 0.5 * (good + bad);
-    const Vec3 blend = valid + share * (wanted - valid);
+    const double fraction = 0.5 * (good + bad);
+    const Vec3 blend = valid + fraction * (wanted - valid);
     const double length = blend.norm();
     const Vec3 n = blend / length;
     if (length > 1e-6 && is_valid(n)) {
-      good = share;
+      good = fraction;
       best = n;
     } else {
-      bad = share;
+      bad = fraction;
     }
   }
   return best;
@@ -130,8 +130,8 @@ CorePoint RowMaker::core_point(std::size_t pair, const Vec3& contact, int knot) 
     const Vec3* places = pairs_.motion(pair).points_in_mesh(knot);
     const Vec3 along = places[points[1]] - places[points[0]];
     const double length2 = along.squaredNorm();
-    const double share = length2 > 0.0 ? along.dot(contact - places[points[0]]) / length2 : 0.0;
-    return {.fraction = std::clamp(share, 0.0, 1.0)};
+    const double fraction = length2 > 0.0 ? along.dot(contact - places[points[0]]) / length2 : 0.0;
+    return {.fraction = std::clamp(fraction, 0.0, 1.0)};
   }
   const ChainState& chain = memory_.trial_motion.chain_at(knot);
   const Pose link = chain.link(memory_.instrument.points()[points[0]].link);

@@ -93,7 +93,7 @@ class Basis {
   }
 
   /// Lets the row at `position` go: the columns of T to its right move up, and rotations of
-  /// neighbouring rows make T triangular again.
+  /// neighboring rows make T triangular again.
   void drop(int position) noexcept {
     --size_;
     for (int j = position; j < size_; ++j) {

@@ -22,7 +22,7 @@ class TaskSpace {
     tail_.resize(variables);
   }
 
-  /// False if no unique minimiser exists to working precision.
+  /// False if no unique minimizer exists to working precision.
   bool read(const StepProblem& problem) noexcept {
     problem_ = &problem;
     n_ = static_cast<int>(problem.jacobian.cols());

@@ -54,7 +54,7 @@ class CertifiedJoints : public testing::TestWithParam<const char*> {
   CertifiedJoints() : loop(make_shape(GetParam()), settings()) {}
 
   struct Count {
-    std::size_t cycles = 0, limited = 0, fallback = 0, not_ok = 0;
+    std::size_t cycles = 0, limited = 0, truncated = 0, not_ok = 0;
     double worst = 0.0, violation = 0.0, joints_off = 0.0;
   };
 
@@ -75,7 +75,7 @@ class CertifiedJoints : public testing::TestWithParam<const char*> {
         const Step step = loop.guard().step(motion);
         ++count.cycles;
         if (step.status == Status::limited) ++count.limited;
-        if (step.status == Status::fallback) ++count.fallback;
+        if (step.status == Status::truncated) ++count.truncated;
         if (!step.ok()) ++count.not_ok;
         count.worst = std::max(count.worst, loop.loss(tip, tip + step.motion));
         EXPECT_LE(step.motion.norm(), radius * (1.0 + 1e-8));
@@ -99,7 +99,7 @@ class CertifiedJoints : public testing::TestWithParam<const char*> {
     EXPECT_LE(count.worst, 3.0);
     EXPECT_LE(count.violation, 1e-10);
     EXPECT_LE(count.joints_off, 1e-10) << "the joints do something else than what is said";
-    EXPECT_LE(count.fallback, count.cycles / 50);
+    EXPECT_LE(count.truncated, count.cycles / 50);
     EXPECT_LE(count.not_ok, count.cycles / 50);
   }
 
@@ -169,14 +169,14 @@ TEST(CertifiedCapacity, WithoutRoomForAllTrianglesAShorterWayIsGone) {
   few.options.radius = 6.0;
   Loop loop(make_shape("sphere"), few);
   Random random(5);
-  std::size_t fallbacks = 0, refused = 0, others = 0;
+  std::size_t truncated = 0, refused = 0, others = 0;
   for (Vec3 tip : places(loop, 60, 1.1 * margin, random)) {
     for (int cycle = 0; cycle < 20; ++cycle) {
       const Vec3 desired = random.uniform(1.0, 6.0) * random.direction();
       const Step step = loop.step(tip, desired);
       ASSERT_LE(loop.loss(tip, tip + step.motion), 3.0);
-      if (step.status == Status::fallback) {
-        ++fallbacks;
+      if (step.status == Status::truncated) {
+        ++truncated;
         ASSERT_LE(step.motion.norm(), 0.5 * desired.norm() * (1.0 + 1e-9));
       } else if (step.status == Status::over_capacity) {
         ++refused;
@@ -187,7 +187,7 @@ TEST(CertifiedCapacity, WithoutRoomForAllTrianglesAShorterWayIsGone) {
       tip += step.motion;
     }
   }
-  EXPECT_GT(fallbacks, 50u);
+  EXPECT_GT(truncated, 50u);
   EXPECT_GT(others, 50u);
   EXPECT_EQ(refused, 0u);
 }
@@ -216,7 +216,7 @@ TEST(CertifiedCapacity, OfTooFewPlanesIsAStatusOrASafeMotion) {
     for (int cycle = 0; cycle < 30; ++cycle) {
       const Step step = loop.step(tip, random.uniform(0.2, 1.0) * random.direction());
       ASSERT_LE(loop.loss(tip, tip + step.motion), 3.0);
-      if (step.status == Status::over_capacity || step.status == Status::fallback) ++refused;
+      if (step.status == Status::over_capacity || step.status == Status::truncated) ++refused;
       tip += step.motion;
     }
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ten million hostile steps of the certified rule, each made with the walk of a tree and with all
-// hits around: status, motion, increment, planes and distance are the same, bit for bit, on every
-// SIMD target.
+// Ten million hostile steps of the certified rule, each made with the traversal of a tree and with
+// all hits around: status, motion, increment, planes and distance are the same, bit for bit, on
+// every SIMD target.
 
 #include <cstdio>
 #include <functional>
@@ -123,8 +123,8 @@ void attack(Sources& sources, std::size_t steps, Random& random, Tally& tally) {
         Motion motion{.tip = tip, .desired = length * way};
         if (setting.has_joints) motion.jacobian.emplace(five_joints());
         const Outcome asking = sources.asking(motion);
-        const Outcome walking = sources.walking(motion);
-        ASSERT_EQ(walking, asking)
+        const Outcome traversing = sources.traversing(motion);
+        ASSERT_EQ(traversing, asking)
             << "tip " << tip.transpose() << ", desired " << motion.desired.transpose()
             << ", margin " << setting.options.margin << ", radius " << setting.options.radius;
         ++tally.steps;

@@ -180,19 +180,19 @@ TEST(MovingAnatomy, TheBudgetIsThatOfTheIndexThatIsFollowed) {
   const auto tree = std::make_shared<WideBvh>(mesh);
   const auto slow = std::make_shared<PdTree>(mesh);
   const Vec3 far = mesh->bounds().center() + Vec3(1.0, 2.0, 3.0);
-  const auto looks = [&](MotionConstraint& guard) {
+  const auto work_units = [&](MotionConstraint& guard) {
     static_cast<void>(guard.free_polytope(far, mesh->bounds().size().norm()));
-    return guard.looks();
+    return guard.work_units();
   };
   MotionConstraint guard = make_motion_constraint(
       mesh, slow,
       {.options = {.radius = radius, .margin = margin}, .capacity = {.triangles = 1 << 20}});
-  const std::size_t of_queries = looks(guard);
-  EXPECT_GT(of_queries, Capacity::looks_of_a_walk);
+  const std::size_t of_queries = work_units(guard);
+  EXPECT_GT(of_queries, Capacity::work_units_of_traversals);
   guard.follow(mesh, tree);
-  EXPECT_LE(looks(guard), Capacity::looks_of_a_walk);
+  EXPECT_LE(work_units(guard), Capacity::work_units_of_traversals);
   guard.follow(mesh, slow);
-  EXPECT_EQ(looks(guard), of_queries);
+  EXPECT_EQ(work_units(guard), of_queries);
 }
 
 TEST(MovingAnatomy, WhatCannotBeFollowedIsRefusedAndTheGuardGoesOn) {

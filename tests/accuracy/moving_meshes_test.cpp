@@ -82,8 +82,9 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
       ASSERT_FALSE(verdict.is_below)
           << verdict.beyond << ", " << step.reason() << " in cycle " << cycle;
       ASSERT_FALSE(verdict.limits_broken) << "in cycle " << cycle;
-      if (step.ok() && had_it && step.level == 1.0) nearest = std::min(nearest, verdict.least);
-      named += step.status == Status::yielding || step.status == Status::recovering ? 1 : 0;
+      if (step.ok() && had_it && step.clearance_fraction == 1.0)
+        nearest = std::min(nearest, verdict.least);
+      named += step.status == Status::degraded || step.status == Status::recovering ? 1 : 0;
       stopped += step.ok() ? 0 : 1;
       blocked += step.ok() && step.distance ? 1 : 0;
     }

@@ -22,14 +22,14 @@ struct Record {
 const std::map<std::string_view, Record> records{
     // Coplanar edges count as convex: held.
     {"CE1_coplanar_tie", {1, false, {0, 0, -0.1}}},
-    // A boundary edge has no neighbour, so no condition holds.
+    // A boundary edge has no neighbor, so no condition holds.
     {"CE2_boundary", {0, true, {0, 0.05, -0.15}}},
     // With the sign of the convexity corrected: held.
     {"CE3_obtuse_valley", {2, false, {-0.625, 0, 0.325}}},
     // On the ridge both faces speak: held, though a motion along either face is lost as well.
     {"CE4_on_a_ridge", {2, false, {0, 0, 0}}},
-    // The nearest point of the triangle in the way is on a ridge: its neighbour is nearer and takes
-    // its place, but the neighbour's own plane does not cover it.
+    // The nearest point of the triangle in the way is on a ridge: its neighbor is nearer and takes
+    // its place, but the neighbor's own plane does not cover it.
     {"CE5_closed_octahedron", {2, true, {0.6411158, 1.7530604, 0.8382149}}},
     {"CE6b_saddle", {1, true, {0.641005, 1.750159, 0.837938}}},
     // The motion asked for was free; the plane turns it into the mesh.

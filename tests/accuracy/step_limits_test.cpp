@@ -92,7 +92,7 @@ TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {
       ASSERT_LE(missed(q, step), 1e-9);
     }
     if (step.status != Status::recovering) {
-      ASSERT_EQ(step.status == Status::fallback, limits.has(Limit::truncated));
+      ASSERT_EQ(step.status == Status::truncated, limits.has(Limit::truncated));
     }
     ASSERT_EQ(limits.has(Limit::guide), std::ranges::any_of(step.guides, &GuideState::limits));
     for (std::size_t l = 0; l < limit_count; ++l) {
@@ -132,7 +132,7 @@ TEST_F(StepLimits, NameASpentBudgetAndASmallStore) {
     }
     return count;
   };
-  settings_.capacity.looks = 1;
+  settings_.capacity.work_units = 1;
   EXPECT_GT(ends_in(Status::out_of_budget, Limit::budget), 20);
   settings_.capacity = {.triangles = 1, .planes = 1};
   settings_.index = "pd_tree";
@@ -186,7 +186,7 @@ TEST_F(StepLimits, SayOfATruncatedRecoveryThatItIsOne) {
   MotionConstraint narrow = make_motion_constraint(mesh_, settings_);
   Random random(6);
   int recoveries = 0;
-  int fallbacks = 0;
+  int truncated = 0;
   std::vector<Vec3> tips = surface_points(*mesh_, 3'000, 0.65, random);
   const std::vector<Vec3> farther = surface_points(*mesh_, 3'000, 1.2, random);
   tips.insert(tips.end(), farther.begin(), farther.end());
@@ -195,10 +195,10 @@ TEST_F(StepLimits, SayOfATruncatedRecoveryThatItIsOne) {
     if (!step.ok() || !step.limits.has(Limit::truncated)) continue;
     ASSERT_TRUE(step.limits.has(Limit::capacity) || step.limits.has(Limit::mesh));
     recoveries += step.status == Status::recovering ? 1 : 0;
-    fallbacks += step.status == Status::fallback ? 1 : 0;
+    truncated += step.status == Status::truncated ? 1 : 0;
   }
   EXPECT_GT(recoveries, 10);
-  EXPECT_GT(fallbacks, 10);
+  EXPECT_GT(truncated, 10);
 }
 
 }  // namespace

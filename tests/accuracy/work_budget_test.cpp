@@ -10,7 +10,7 @@
 namespace keepout::test::work_budget {
 namespace {
 
-/// Counts the triangles that a walk shows, and is otherwise the walk of a tree.
+/// Counts the triangles that a traversal shows, and is otherwise the traversal of a tree.
 class CountedTree final : public SpatialIndex {
  public:
   explicit CountedTree(const std::shared_ptr<const Mesh>& mesh) : SpatialIndex(mesh), tree_(mesh) {}
@@ -22,27 +22,27 @@ class CountedTree final : public SpatialIndex {
     return tree_.nearest(point, budget);
   }
   std::size_t memory() const noexcept override { return tree_.memory(); }
-  bool walks() const noexcept override { return true; }
-  std::unique_ptr<MotionWalk> walk_along_motions(Budget& budget) const override {
-    return std::make_unique<Walk>(tree_.walk_along_motions(budget), *this);
+  bool traverses() const noexcept override { return true; }
+  std::unique_ptr<MotionTraversal> traverse_along_motions(Budget& budget) const override {
+    return std::make_unique<Traversal>(tree_.traverse_along_motions(budget), *this);
   }
 
   mutable std::size_t visits = 0;
 
  private:
-  class Walk final : public MotionWalk, private TriangleVisitor {
+  class Traversal final : public MotionTraversal, private TriangleVisitor {
    public:
-    Walk(std::unique_ptr<MotionWalk> walk, const CountedTree& tree)
-        : walk_(std::move(walk)), tree_(tree) {}
+    Traversal(std::unique_ptr<MotionTraversal> traversal, const CountedTree& tree)
+        : traversal_(std::move(traversal)), tree_(tree) {}
 
-    bool begin(const Start& start) noexcept override { return walk_->begin(start); }
-    void begin_again(double level) noexcept override { walk_->begin_again(level); }
-    bool region_is_empty() const noexcept override { return walk_->region_is_empty(); }
-    bool walk(const Vec3& motion, TriangleVisitor& visitor) noexcept override {
+    bool begin(const Start& start) noexcept override { return traversal_->begin(start); }
+    void begin_again(double level) noexcept override { traversal_->begin_again(level); }
+    bool region_is_empty() const noexcept override { return traversal_->region_is_empty(); }
+    bool traversal(const Vec3& motion, TriangleVisitor& visitor) noexcept override {
       visitor_ = &visitor;
-      return walk_->walk(motion, *this);
+      return traversal_->traversal(motion, *this);
     }
-    std::size_t room() const noexcept override { return walk_->room(); }
+    std::size_t room() const noexcept override { return traversal_->room(); }
 
    private:
     double visit(TriangleId triangle, std::uint32_t& note,
@@ -51,7 +51,7 @@ class CountedTree final : public SpatialIndex {
       return visitor_->visit(triangle, note, corners);
     }
 
-    std::unique_ptr<MotionWalk> walk_;
+    std::unique_ptr<MotionTraversal> traversal_;
     const CountedTree& tree_;
     TriangleVisitor* visitor_ = nullptr;
   };
@@ -59,7 +59,7 @@ class CountedTree final : public SpatialIndex {
   WideBvh tree_;
 };
 
-constexpr std::size_t stated = Capacity::looks_of_a_walk;
+constexpr std::size_t stated = Capacity::work_units_of_traversals;
 
 /// A tip near the tip of a cone, where many triangles are equally near.
 struct Scene {
@@ -107,7 +107,7 @@ TEST(BudgetOfACycle, HoldsUnderTheTipOfACone) {
       scene.tree->visits = 0;
       const Step step = guard.step({.tip = above(height), .desired = Vec3(0.01, 0.02, -4.0)});
       EXPECT_LE(scene.tree->visits, stated) << name(step.status);
-      EXPECT_LE(guard.looks(), stated + stated / 64) << name(step.status);
+      EXPECT_LE(guard.work_units(), stated + stated / 64) << name(step.status);
     }
   });
 }
@@ -121,7 +121,7 @@ TEST(BudgetOfACycle, HoldsWithGuides) {
       scene.tree->visits = 0;
       const Step step = guard.step({.tip = above(height), .desired = Vec3(0.01, 0.02, -4.0)});
       EXPECT_LE(scene.tree->visits, stated) << name(step.status);
-      EXPECT_LE(guard.looks(), stated + stated / 64) << name(step.status);
+      EXPECT_LE(guard.work_units(), stated + stated / 64) << name(step.status);
       guided += step.limits.has(Limit::guide) ? 1 : 0;
     }
   });
@@ -141,7 +141,7 @@ TEST(BudgetOfACycle, HoldsInAHapticProxyWithGuides) {
         scene.tree->visits = 0;
         const HapticCycle result = proxy.cycle(above(height) + Vec3(0.01, 1.0, -4.0));
         EXPECT_LE(scene.tree->visits, stated) << name(result.step);
-        EXPECT_LE(proxy.looks(), stated + stated / 64) << name(result.step);
+        EXPECT_LE(proxy.work_units(), stated + stated / 64) << name(result.step);
         moved += result.proxy != before ? 1 : 0;
       }
     }
@@ -177,13 +177,13 @@ InstrumentCycles instrument_cycles(std::vector<Guide> (*regions_about)(const Vec
       }
       guard.set_guides(guides);
       const InstrumentStep step = guard.step({at.data(), 3}, {.linear = Vec3(0.5, 0.02, -4.0)});
-      EXPECT_LE(guard.looks(), stated + stated / 64) << name(step.status);
+      EXPECT_LE(guard.work_units(), stated + stated / 64) << name(step.status);
       EXPECT_TRUE(step.ok() || step.increment.empty()) << name(step.status);
       count.guided += step.limits.has(Limit::guide) ? 1 : 0;
       count.stopped += step.ok() ? 0 : 1;
-      count.costly += guard.looks() > stated / 2 ? 1 : 0;
+      count.costly += guard.work_units() > stated / 2 ? 1 : 0;
       guard.prove({at.data(), 3}, std::vector<double>{0.1, 0.0, -4.0});
-      EXPECT_LE(guard.looks(), stated + stated / 64) << "of the last part of a proof";
+      EXPECT_LE(guard.work_units(), stated + stated / 64) << "of the last part of a proof";
     }
   });
   return count;
@@ -253,11 +253,11 @@ TEST(BudgetOfACycle, EndsInAStatusOfItsOwn) {
                                             .capacity = capacity});
     return guard.step({.tip = above(0.99), .desired = Vec3(0.01, 0.02, -4.0)}).status;
   };
-  EXPECT_EQ(status("wide_bvh", {.looks = 300}), Status::out_of_budget);
-  EXPECT_EQ(status("pd_tree", {.looks = 300}), Status::out_of_budget);
+  EXPECT_EQ(status("wide_bvh", {.work_units = 300}), Status::out_of_budget);
+  EXPECT_EQ(status("pd_tree", {.work_units = 300}), Status::out_of_budget);
   EXPECT_EQ(status("pd_tree", {.triangles = 100}), Status::over_capacity);
-  EXPECT_TRUE(is_ok(status("wide_bvh", {.triangles = 100, .looks = Budget::unlimited})))
-      << "a walk needs no room for candidates";
+  EXPECT_TRUE(is_ok(status("wide_bvh", {.triangles = 100, .work_units = Budget::unlimited})))
+      << "a traversal needs no room for candidates";
 }
 
 // The work budget or the memory of a step runs out at an arbitrary point. Then the step is safe, or
@@ -269,12 +269,13 @@ TEST(SpentBudget, NoStepIsUnsafeWhereverTheWorkEnds) {
   int stopped = 0;
   for (int trial = 0; trial < trials(50); ++trial) {
     MotionConstraintSettings settings{.options = {.radius = 3.0, .margin = 0.5}};
-    settings.capacity.looks = static_cast<std::size_t>(std::exp2(random.uniform(2.0, 16.0)));
+    settings.capacity.work_units = static_cast<std::size_t>(std::exp2(random.uniform(2.0, 16.0)));
     constexpr const char* names[] = {"gear", "cortex", "sphere", "fan"};
     Loop loop(
         trial % 5 == 4 ? make_cone(3000, random.uniform(0.1, 2.0)) : make_shape(names[trial % 5]),
         settings);
-    SCOPED_TRACE(testing::Message() << "trial " << trial << ", looks " << settings.capacity.looks);
+    SCOPED_TRACE(testing::Message()
+                 << "trial " << trial << ", work units " << settings.capacity.work_units);
     for (const Vec3& tip : places(loop, 6, random.uniform(0.05, 0.8), random)) {
       for (int i = 0; i < 6; ++i) {
         const Step step = loop.step(tip, random.uniform(0.1, 3.0) * random.direction());
@@ -295,7 +296,7 @@ TEST(SpentBudget, NoStepIsUnsafeWhereMoreTrianglesAreNearThanFitInMemory) {
   for (const VertexId faces : {3000u, 30000u}) {
     for (const double slope : {0.05, 0.3, 1.0}) {
       MotionConstraintSettings settings{.options = {.radius = 5.0, .margin = 1.0}};
-      settings.capacity.looks = std::size_t{1} << 30;
+      settings.capacity.work_units = std::size_t{1} << 30;
       Loop loop(make_cone(faces, slope), settings);
       SCOPED_TRACE(testing::Message() << faces << " faces, slope " << slope);
       for (int i = 0; i < trials(8); ++i) {

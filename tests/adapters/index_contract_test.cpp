@@ -212,7 +212,7 @@ TEST_P(IndexContract, SaysWhatItHoldsAtMostAndWhatLibraryIsBehindIt) {
 TEST_P(IndexContract, SaysWhetherItWalksAlongMotions) {
   const auto index = GetParam().make(std::make_shared<const Mesh>(make_cube(50)));
   Budget budget;
-  EXPECT_EQ(index->walks(), index->walk_along_motions(budget) != nullptr);
+  EXPECT_EQ(index->traverses(), index->traverse_along_motions(budget) != nullptr);
 }
 
 TEST_P(IndexContract, NeverGivesATriangleTwice) {

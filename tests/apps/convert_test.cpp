@@ -3,7 +3,7 @@
 
 #include "command_process.h"
 #include "keepout/mesh/binary_stl.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/mesh/load_mesh.h"
 #include "meshes.h"
 

@@ -79,15 +79,15 @@ TEST_F(Inspect, EachFindingSaysHowManyWhatItMeansAndWhatToDo) {
 
 TEST_F(Inspect, TheUnitAndTheOrientationAreQuestioned) {
   write(flipped(tetrahedron()), 1.0);
-  EXPECT_EQ(finding_keys(), (std::set<std::string>{"inside_out", "looks_like_metres"}));
+  EXPECT_EQ(finding_keys(), (std::set<std::string>{"inside_out", "looks_like_meters"}));
 }
 
 TEST_F(Inspect, WhatIsFarTooLargeIsQuestionedToo) {
   write(tetrahedron(), 150'000.0);
-  EXPECT_EQ(finding_keys(), std::set<std::string>{"looks_like_micrometres"});
+  EXPECT_EQ(finding_keys(), std::set<std::string>{"looks_like_micrometers"});
   EXPECT_CONTAINS(text(), "um (150 mm)");
   EXPECT_EQ(json().at("other_units").at(0).at("unit"), "um");
-  EXPECT_EQ(json().at("looks_like_micrometres"), true);
+  EXPECT_EQ(json().at("looks_like_micrometers"), true);
 }
 
 TEST_F(Inspect, PlausibleUnitsAreNamedWithTheSizeThatTheyMake) {

@@ -518,7 +518,7 @@ requests = [
     (instrument('"margin":-1'), "no_instrument", "margin: expected a number from 1e-15 to 1e15, got -1"),
     (instrument('"band":5'), "no_instrument", "band: expected less than the margin of each mesh", "got 5"),
     (instrument('"period":0'), "no_instrument", "period: expected a number above 0 and at most 1e9, got 0"),
-    (instrument('"certified":"actul"'), "no_instrument", "certified: expected 'actual' or 'linearised', got 'actul'"),
+    (instrument('"certified":"actul"'), "no_instrument", "certified: expected 'actual' or 'linearized', got 'actul'"),
     (instrument('"refinements":-1'), "no_instrument", "refinements: expected a whole number from 0", "got -1"),
     (instrument(f'"frame":{doubled}'), "no_instrument", "the base of the chain is no pose"),
     (instrument('"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]'), "no_instrument", "last row of 'frame'"),

@@ -81,7 +81,7 @@ def test_simulate_of_a_robot_has_no_row_of_what_did_not_run(tmp_path):
     record = json.loads((tmp_path / "r.json").read_text())
     assert status == 130 and not record["complete"]
     assert [(row["mesh"], row["speed"], row["mode"]) for row in record["rows"]] == [
-        ("cube", 1.0, mode) for mode in ("certified", "linearised", "tip only", "none")]
+        ("cube", 1.0, mode) for mode in ("certified", "linearized", "tip only", "none")]
     assert len({row["cycles"] for row in record["rows"]} - {0}) == 1
     assert [mesh["name"] for mesh in record["meshes"]] == ["cube"]
     assert "gear" not in out and "of 400,000 strokes were finished" in err

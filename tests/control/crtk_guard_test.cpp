@@ -27,7 +27,7 @@ Registration registration() {
 
 const Mat3 tilted = Eigen::AngleAxisd(0.3, Vec3::UnitX()).toRotationMatrix();
 
-/// In the robot's frame, in metres.
+/// In the robot's frame, in meters.
 Pose pose_at(const Vec3& point_of_mesh, const Mat3& rotation = tilted) {
   return {registration().point_to_robot(point_of_mesh), rotation};
 }

@@ -92,7 +92,8 @@ TEST(HapticProxy, OnASphereTheForceIsRadialAndTheStiffnessTimesTheDepth) {
   lead(proxy, 56.0 * outwards, hand, 300);
   HapticCycle cycle;
   for (int i = 0; i < 300; ++i) cycle = proxy.cycle(hand);
-  // The polyhedron lies within the sphere by some 1/100, and its facets lean by some 1/50.
+  // The polyhedron lies within the sphere by some 1/100, and its prepared triangles lean by some
+  // 1/50.
   EXPECT_NEAR(cycle.proxy.norm(), 50.0 + kept, 0.05);
   EXPECT_NEAR(cycle.force.norm(), 2.5, 0.05);
   EXPECT_GT(cycle.force.normalized().dot(outwards), 0.999);

@@ -121,7 +121,7 @@ TEST(Registration, ATranslationInTheWrongUnitIsRefused) {
   EXPECT_CONTAINS(complaint(matrix, {.transform = LengthUnit::metre,
                                      .robot = LengthUnit::metre,
                                      .mesh = LengthUnit::millimetre}),
-                  "is its unit millimetres?");
+                  "is its unit millimeters?");
 }
 
 TEST(Registration, AForgottenUnitIsAskedFor) {

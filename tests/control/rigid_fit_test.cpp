@@ -17,7 +17,7 @@ namespace {
 
 using Points = std::vector<Vec3>;
 
-// On a head, in millimetres: five that are in no plane, and four that are in one.
+// On a head, in millimeters: five that are in no plane, and four that are in one.
 const Points on_a_head{{0, 95, 20}, {70, 40, 35}, {-72, 38, 30}, {60, -60, 80}, {-10, -20, 130}};
 const Points in_a_plane{{0, 0, 50}, {90, 0, 50}, {80, 70, 50}, {-10, 60, 50}};
 

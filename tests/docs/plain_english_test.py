@@ -34,14 +34,17 @@ PATTERNS = {
 MATCH = {name: re.compile(pattern, re.I if name != "clause as a subject" and name != "docstring" else 0)
          for name, pattern in PATTERNS.items()}
 COMMENT = re.compile(r"<!--.*?-->", re.S)
+BLOCK_COMMENT = re.compile(r"/\*\*?(.*?)\*/", re.S)
+FORMULA = re.compile(r"\$[^$\n]+\$")
 INLINE_CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.S)
 LINK = re.compile(r"!?\[((?:[^\[\]]|\[[^\]]*\])*)\]\([^)]*\)")
-END = re.compile(r"(?<=[.!?])[\"')*_]*\s+(?=[\"'(*_`]*[A-Z0-9`])")
+END = re.compile(r"(?<=[.!?])[\"')*_]*\s+(?=[\"'(*_`]*(?:[A-Z0-9`]|formula|keepout))")
 
 
 def sentences(line, text):
     """Yields the line number and the text of each sentence of a paragraph that begins at `line`."""
     text = LINK.sub(r"\1", text)
+    text = FORMULA.sub("formula", text)
     text = INLINE_CODE.sub(lambda code: "`code`" + "\n" * code[0].count("\n"), text)
     start = 0
     for end in [*(m.end() for m in END.finditer(text)), len(text)]:
@@ -102,6 +105,7 @@ def paragraphs(path):
     if path.suffix == ".md":
         yield from paragraphs_of_page(text)
     elif path.suffix in (".h", ".cpp", ".mjs", ".js", ".ts", ".css"):
+        text = BLOCK_COMMENT.sub(lambda block: re.sub(r"^[ *]*", "// ", block[1], flags=re.M), text)
         yield from paragraphs_of_comments(text, "//")
     else:
         yield from paragraphs_of_comments(text, "#")
@@ -133,7 +137,7 @@ def main():
     arguments = parser.parse_args()
     root = arguments.root.resolve()
     counts, read = {}, {}
-    for path in of_tree(root, ("*.md", "*.h", "*.cpp", "*.py", "*.pyi", "*.mjs", "*.js", "*.sh", "*.cmake", "CMakeLists.txt", "run", "test")):
+    for path in of_tree(root, ("*.md", "*.h", "*.cpp", "*.py", "*.pyi", "*.mjs", "*.js", "*.ts", "*.css", "*.sh", "*.cmake", "CMakeLists.txt", "run", "test")):
         name = path.relative_to(root)
         area = area_of(name)
         for line, paragraph in paragraphs(path):

@@ -21,20 +21,27 @@ constexpr std::pair<Subject, const char*> subjects[] = {
 std::set<std::string> names_of(Subject subject) {
   switch (subject) {
     case Subject::tip:
-      return {"radius", "tool_radius",         "margin",         "damping", "recovery", "deepest",
-              "limits", "Capacity::triangles", "Capacity::looks"};
+      return {"radius",
+              "tool_radius",
+              "margin",
+              "damping",
+              "recovery",
+              "deepest",
+              "limits",
+              "Capacity::triangles",
+              "Capacity::work_units"};
     case Subject::instrument:
       return {"margin",
               "band",
               "damping",
               "limits",
-              "level",
+              "clearance_fraction",
               "InstrumentCapacity::triangles",
-              "InstrumentCapacity::looks"};
+              "InstrumentCapacity::work_units"};
     case Subject::polytope:
       break;
   }
-  return {"Capacity::triangles", "Capacity::looks"};
+  return {"Capacity::triangles", "Capacity::work_units"};
 }
 
 /// Returns all matches of a pattern's first group.

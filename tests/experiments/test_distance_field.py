@@ -51,7 +51,7 @@ def test_distances_of_a_ball_err_by_the_square_of_the_cell(cell):
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     found = np.array([grid.look(*p) for p in far[:, None] * directions])
     # Of curvature 1 / r in two directions: the interpolation errs by cell^2 / 4 r at most; and the
-    # ball's facets lie up to 0.02 mm within the sphere.
+    # ball's triangles lie up to 0.02 mm within the sphere.
     assert np.abs(found[:, 0] - (far - 10.0)).max() < cell**2 / (4 * 8.0) + 0.02
     assert np.abs(found[:, 1:] - directions).max() < cell * 0.35
     assert (found[far < 9.9, 0] < 0).all() and (found[far > 10.1, 0] > 0).all()

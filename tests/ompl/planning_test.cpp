@@ -231,7 +231,7 @@ TEST(Planning, AStartThatIsNotFreeEndsThePlanner) {
 // What tips have not.
 
 TEST(JointPlanning, ATipThatDipsBetweenTwoSamplesIsSeen) {
-  // It swings about the port, over a plate of no thickness: lowest halfway, by some micrometres.
+  // It swings about the port, over a plate of no thickness: lowest halfway, by some micrometers.
   InstrumentPlace at(mesh_of(make_flat_plate(10.0, 1)));
   at.certify();
   const base::DiscreteMotionValidator sampled(at.space);

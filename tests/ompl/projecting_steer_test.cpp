@@ -130,7 +130,7 @@ TEST(StraightWay, AbsurdWaysAreRefusedInNoTime) {
   EXPECT_FALSE(proves(guard, {0, 0, 60}, {0, 0, huge}));
   EXPECT_FALSE(proves(guard, {0, 0, -huge}, {0, 0, huge}));
   EXPECT_FALSE(proves(guard, {0, 0, 60}, {0, 0, test::nan}));
-  EXPECT_EQ(proven_prefix(guard, {0, 0, 60}, {0, 0, huge}).share, 0.0);
+  EXPECT_EQ(proven_prefix(guard, {0, 0, 60}, {0, 0, huge}).fraction, 0.0);
 }
 
 TEST(GuardPool, MakesOneAtOnceAndNoMoreThanItMay) {

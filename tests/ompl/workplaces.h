@@ -120,7 +120,7 @@ struct TipPlace : Workplace<GuardPool> {
   static int motions() { return 800; }
   static int least_of_each() { return 25; }
 
-  explicit TipPlace(const std::shared_ptr<const Mesh>& of, Inside sides = Inside::led_out)
+  explicit TipPlace(const std::shared_ptr<const Mesh>& of, Inside sides = Inside::escape)
       : Workplace(of), inside(sides), oracle_(of) {
     guards = std::make_shared<GuardPool>([this] { return make(); }, 2);
     auto states = std::make_shared<base::RealVectorStateSpace>(3);

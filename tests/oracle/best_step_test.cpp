@@ -225,7 +225,7 @@ class BestStepOnShapes : public testing::TestWithParam<const char*> {};
 TEST_P(BestStepOnShapes, IsSafeAndNoDirectionOfManyIsBetter) {
   const Mesh mesh(make_shape(GetParam()));
   Random random(11);
-  for (int walk = 0; walk < trials(6); ++walk) {
+  for (int traversal = 0; traversal < trials(6); ++traversal) {
     const double length = random.uniform(0.5, 3.0);
     const double margin = random.uniform(0.1, 0.4);
     Vec3 tip = surface_points(mesh, 1, 1.05 * margin, random)[0];
@@ -241,8 +241,9 @@ TEST_P(BestStepOnShapes, IsSafeAndNoDirectionOfManyIsBetter) {
       EXPECT_GE(slack(mesh, near, tip, step.motion, margin), -1e-9 * length);
       EXPECT_LE(step.cost - step.bound, 1.001e-4 * length);
       const double searched = brute_force(mesh, near, tip, desired, margin, step.cost);
-      EXPECT_LE(step.cost, searched + 1e-4 * length) << "walk " << walk << ", step " << k;
-      EXPECT_LE(step.bound, searched + 1e-9 * length) << "walk " << walk << ", step " << k;
+      EXPECT_LE(step.cost, searched + 1e-4 * length) << "traversal " << traversal << ", step " << k;
+      EXPECT_LE(step.bound, searched + 1e-9 * length)
+          << "traversal " << traversal << ", step " << k;
       tip += step.motion;
     }
   }

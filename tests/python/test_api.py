@@ -22,7 +22,7 @@ def test_parts_are_listed_and_each_can_be_used(mesh):
         step = keepout.MotionConstraint(mesh, index=part.name).step((0, 0, 10.5), (0, 0, -1))
         assert step.status == Status.limited, part.name
     for part in keepout.activations():
-        inside = "taken_as_is" if part.name != "certified" else "led_out"
+        inside = "taken_as_is" if part.name != "certified" else "escape"
         guard = keepout.MotionConstraint(mesh, activation=part.name, inside=inside)
         assert guard.step((0, 0, 10.5), (0, 0, -1)).ok, part.name
 
@@ -34,7 +34,7 @@ def test_status_is_the_one_of_cpp():
         assert all(len(status.reason_for(subject)) > 10 for status in Status)
     with pytest.raises(keepout.Error, match="subject"):
         Status.free.reason_for("robot")
-    assert [s.name for s in Status if s.ok] == ["free", "limited", "recovering", "fallback", "yielding"]
+    assert [s.name for s in Status if s.ok] == ["free", "limited", "recovering", "truncated", "degraded"]
 
 
 def test_a_status_is_written_as_its_name():

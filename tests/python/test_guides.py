@@ -95,7 +95,7 @@ def test_a_text_is_the_guide_that_it_describes():
     with pytest.raises(keepout.Error, match="link 7"):
         arm.set_guides([near.replace(":6:", ":7:")])
     by = (0.0, 0.0, 4.0, 0.0, 0.0, 0.0)
-    assert arm.prove((0.0, 0.0, 60.0, 0.0, 0.0, 0.0), by).share == pytest.approx(0.25, abs=1 / 64 + 1e-9)
+    assert arm.prove((0.0, 0.0, 60.0, 0.0, 0.0, 0.0), by).fraction == pytest.approx(0.25, abs=1 / 64 + 1e-9)
 
 
 def test_tip_axis_and_trocar_are_kept_on_the_way():
@@ -135,8 +135,8 @@ def test_a_proof_ends_where_a_guide_is_left():
     assert guard.prove(q, by).is_clear
     tip = guard.instrument.chain.forward_kinematics(q)[:3, 3]
     guard.set_guides([keepout.Guide.point("near", 6, TIP, keepout.Region.ball(tip, 1.0))])
-    assert guard.prove(q, by).share == pytest.approx(0.25, abs=1 / 64 + 1e-9)
-    assert guard.proofs(q, by).share[0] == pytest.approx(0.25, abs=1 / 64 + 1e-9)
+    assert guard.prove(q, by).fraction == pytest.approx(0.25, abs=1 / 64 + 1e-9)
+    assert guard.proofs(q, by).fraction[0] == pytest.approx(0.25, abs=1 / 64 + 1e-9)
 
 
 def test_orientation_and_remote_center():

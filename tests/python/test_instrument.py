@@ -38,9 +38,9 @@ def lever_guard(**options):
 
 
 def test_a_work_budget_that_ends_is_reported():
-    guard = lever_guard(max_looks=1)
+    guard = lever_guard(max_work_units=1)
     step = guard.step([0.28], increment=[0.01])
-    assert step.status is Status.out_of_budget and "max_looks" in step.reason
+    assert step.status is Status.out_of_budget and "max_work_units" in step.reason
     assert not step.ok and step.increment.tolist() == [0.0] and "budget" in step.limits
     assert lever_guard().step([0.28], increment=[0.01]).ok
 
@@ -99,7 +99,7 @@ def test_what_is_proven_is_almost_all_that_is_clear():
     for motion in (0.2, 0.4, 0.8):
         proof = guard.prove([0.0], [motion])
         true = min(1.0, clear / motion)
-        assert true - 2 / 64 <= proof.share <= true + 1e-9, motion
+        assert true - 2 / 64 <= proof.fraction <= true + 1e-9, motion
         assert proof.is_clear == (motion < clear)
         assert proof.status is (Status.free if motion < clear else Status.limited)
     too_close = guard.prove([np.arcsin(17.7 / 60)], [0.0])
@@ -119,20 +119,20 @@ def test_batches_are_single_proofs_bit_for_bit():
     q, by = motions(300)
     whole = guard.proofs(q, by, threads=1)
     single = [guard.prove(*motion) for motion in zip(q, by)]
-    np.testing.assert_array_equal(whole.share, [proof.share for proof in single])
+    np.testing.assert_array_equal(whole.fraction, [proof.fraction for proof in single])
     np.testing.assert_array_equal(whole.status, [proof.status for proof in single])
     distances = [np.nan if p.distance is None else p.distance for p in single]
     np.testing.assert_array_equal(whole.distance, distances)
     np.testing.assert_array_equal(whole.is_clear, [proof.is_clear for proof in single])
-    assert 20 < whole.is_clear.sum() < 280 and len(set(whole.share)) > 10
+    assert 20 < whole.is_clear.sum() < 280 and len(set(whole.fraction)) > 10
     order = np.random.default_rng(6).permutation(len(q))
     for threads in (2, 5):
         other = guard.proofs(q[order], by[order], threads=threads)
-        np.testing.assert_array_equal(other.share, whole.share[order])
+        np.testing.assert_array_equal(other.fraction, whole.fraction[order])
         np.testing.assert_array_equal(other.distance, whole.distance[order])
-    np.testing.assert_array_equal(guard.proofs(q).share, guard.proofs(q, np.zeros((300, 6))).share)
+    np.testing.assert_array_equal(guard.proofs(q).fraction, guard.proofs(q, np.zeros((300, 6))).fraction)
     one = guard.proofs(q[0], by)
-    np.testing.assert_array_equal(one.share, guard.proofs(np.tile(q[0], (300, 1)), by).share)
+    np.testing.assert_array_equal(one.fraction, guard.proofs(np.tile(q[0], (300, 1)), by).fraction)
     assert len(one) == 300 and len(guard.proofs(q[0])) == 1 and len(guard.proofs(q[:0])) == 0
     assert "300 motions" in repr(one)
 

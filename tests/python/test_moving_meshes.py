@@ -34,10 +34,10 @@ def test_a_mesh_that_comes_on_pushes_the_instrument_before_it():
     guard.place(0, None, linear=(50, 0, 0), angular=(0, 0, np.pi / 6))
     for cycle in range(1000):
         step = guard.step(q, linear=(0, 0, 0))
-        assert step.status in (Status.free, Status.limited) and step.level == 1.0
+        assert step.status in (Status.free, Status.limited) and step.clearance_fraction == 1.0
         q = q + step.increment
         distance = np.linalg.norm(q - (0.05 * (cycle + 1), 0, 0)) - 50.0 - 1.0
-        assert distance > 0.498 - 0.1, "its facets are a little within the sphere"
+        assert distance > 0.498 - 0.1, "its triangles are a little within the sphere"
     assert q[0] > 100.0
     assert np.allclose(guard.place_of(0)[:3, 3], (50, 0, 0)), "and it goes on"
 
@@ -68,13 +68,13 @@ def test_what_outruns_the_joints_is_named():
         step = guard.step(q, linear=(0, 0, 0))
         seen.append(step.status)
         if not step.ok:
-            assert step.level == 0.0 or step.status == Status.touching
+            assert step.clearance_fraction == 0.0 or step.status == Status.touching
             break
-        assert (step.level < 1.0) == (step.status == Status.yielding)
+        assert (step.clearance_fraction < 1.0) == (step.status == Status.degraded)
         q = q + step.increment
-        named = () if step.level == 1.0 else ((0, 0, step.level),)
+        named = () if step.clearance_fraction == 1.0 else ((0, 0, step.clearance_fraction),)
         assert step.degraded == named
-    assert Status.yielding in seen and not step.ok
+    assert Status.degraded in seen and not step.ok
 
 
 def test_a_place_that_is_none_stops_it():

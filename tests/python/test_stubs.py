@@ -55,7 +55,7 @@ instrument = keepout.Instrument(chain, [keepout.Body("tip", [(1, (0, 0, 1))], 0.
 tool: keepout.ConvexTool = keepout.ConvexTool.capsule((0, 0, 0), (0, 0, 9), 1.5).rotated(np.eye(3))
 whole = keepout.InstrumentGuard(mesh, instrument, index=guard.index, margin=0.5)
 q: np.ndarray[Any, np.dtype[np.float64]] = whole.step([0.0], linear=(0, 0, 1)).increment
-share: float = whole.prove(q, increment=[0.1]).share
+share: float = whole.prove(q, increment=[0.1]).fraction
 clear = whole.proofs(np.zeros((4, 1)), threads=2).is_clear.all()
 loaded = keepout.load_mesh("mesh.vtp", space="RAS", unit="m", flip=True)
 notices: list[str] = loaded.notices

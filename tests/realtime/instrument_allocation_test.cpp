@@ -25,10 +25,10 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
   // A mesh that is all near, one cycle's work that does not last, and a ball that is inside.
   const auto cube = mesh_of(make_cube(20.0));
   const auto cube_index = std::make_shared<WideBvh>(cube);
-  for (const std::size_t looks : {std::size_t{0}, std::size_t{60}}) {
+  for (const std::size_t work_units : {std::size_t{0}, std::size_t{60}}) {
     guards.emplace_back(cube, cube_index, psm({Vec3(0, 0, 100), Mat3::Identity()}),
                         std::make_unique<ActiveSet>(), InstrumentOptions{.period = 0.05},
-                        InstrumentCapacity{.looks = looks});
+                        InstrumentCapacity{.work_units = work_units});
   }
   const Chain turning({Joint{}, Joint{}, Joint{}, Joint{}, Joint{}, Joint{}});
   guards.emplace_back(cube, cube_index,

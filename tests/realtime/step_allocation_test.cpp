@@ -38,7 +38,7 @@ std::set<Status> outcomes_of(std::string_view rule, std::string_view index) {
   if (rule == "certified") {
     all.insert({Status::recovering, Status::touching});
     // Of brute force all triangles are candidates, however short the motion.
-    if (!searches && index != "brute_force") all.insert(Status::fallback);
+    if (!searches && index != "brute_force") all.insert(Status::truncated);
   } else {
     all.insert(Status::infeasible);
   }

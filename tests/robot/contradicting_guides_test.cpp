@@ -109,7 +109,7 @@ TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
           for (std::size_t k = 0; k < q.size(); ++k) end[k] += other[k];
           const ChainState at_end = test::state_of(chain, end);
           is_movable =
-              made(at_end) >= 0.1 && are_kept(at_end) && guard.prove(q, other).share == 1.0;
+              made(at_end) >= 0.1 && are_kept(at_end) && guard.prove(q, other).fraction == 1.0;
           for (double& number : other) number *= 0.5;
         }
         movable += is_movable ? 1 : 0;
@@ -162,7 +162,7 @@ TEST(Guides, WithinTheirBandsDoNotStopTheTask) {
       if (made(increment) < 0.05) {
         ++blocked;
         const std::vector<double> other = along_guides(state, guides, 3, way);
-        movable += made(other) >= 0.1 && guard.prove(q, other).share == 1.0 ? 1 : 0;
+        movable += made(other) >= 0.1 && guard.prove(q, other).fraction == 1.0 ? 1 : 0;
       }
       for (std::size_t k = 0; k < q.size(); ++k) q[k] += increment[k];
     }
@@ -244,7 +244,7 @@ TEST(ContradictingGuides, CostNoClearanceFromAMeshThatComesOn) {
       const InstrumentStep step = guard.step(q, Twist{.linear = 0.3 * random.direction()});
       ASSERT_TRUE(step.ok()) << name(step.status) << " in cycle " << cycle;
       ASSERT_TRUE(step.degraded.empty()) << cycle;
-      ASSERT_EQ(step.level, 1.0);
+      ASSERT_EQ(step.clearance_fraction, 1.0);
       q = moved(q, step);
       ASSERT_GE(q[2] - (z + 0.02) - 1.0, 0.198 - 1e-8) << cycle;
       if (step.relaxation != Relaxation::guides) continue;

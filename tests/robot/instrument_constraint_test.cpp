@@ -183,13 +183,13 @@ TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
       for (std::size_t k = 0; k < 6; ++k) there[k] += s / 20.0 * dq[k];
       const double clear = clearance_of(instrument, *mesh, there);
       least = std::min(least, clear);
-      if (s <= 20.0 * proof.share) {
+      if (s <= 20.0 * proof.fraction) {
         ASSERT_GE(clear, kept - 3.0 * guard.tolerance());
       }
     }
     free += least > kept + 0.01 ? 1 : 0;
-    proven += least > kept + 0.01 && proof.share == 1.0 ? 1 : 0;
-    partly += proof.share > 0.0 && proof.share < 1.0 ? 1 : 0;
+    proven += least > kept + 0.01 && proof.fraction == 1.0 ? 1 : 0;
+    partly += proof.fraction > 0.0 && proof.fraction < 1.0 ? 1 : 0;
   }
   EXPECT_GT(free, test::trials(50));
   EXPECT_GT(partly, test::trials(20));
@@ -207,8 +207,8 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoRoomForThemAtOn
   EXPECT_TRUE(clear.is_clear());
   const MotionProof through = guard.prove(q, std::vector<double>{0, 0, 100.0, 0, 0, 0});
   EXPECT_EQ(through.status, Status::limited);
-  EXPECT_NEAR(100.0 * through.share, free, 100.0 / 64.0 + 0.01);
-  EXPECT_LE(100.0 * through.share, free + 0.002);
+  EXPECT_NEAR(100.0 * through.fraction, free, 100.0 / 64.0 + 0.01);
+  EXPECT_LE(100.0 * through.fraction, free + 0.002);
 }
 
 TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoWorkForThemAtOnce) {
@@ -216,19 +216,19 @@ TEST(InstrumentConstraint, ProvesLongMotionsInPartsWhereThereIsNoWorkForThemAtOn
   const Instrument instrument = psm_above();
   std::vector<double> all(6, 0.0);
   all[0] = -0.3;
-  const auto prove = [&](std::size_t looks) {
-    auto guard = guard_of(mesh, instrument, {}, {.looks = looks});
+  const auto prove = [&](std::size_t work_units) {
+    auto guard = guard_of(mesh, instrument, {}, {.work_units = work_units});
     std::vector<double> q = straight_down(20.0);
     q[0] = 0.1;
     const MotionProof proof = guard.prove(q, all);
-    return std::pair(proof, guard.looks());
+    return std::pair(proof, guard.work_units());
   };
-  const auto [whole, looks] = prove(0);
-  ASSERT_GT(whole.share, 0.2) << whole.reason();
-  ASSERT_GT(looks, 50);
-  const auto [parts, spent] = prove(looks - 1);
+  const auto [whole, work_units] = prove(0);
+  ASSERT_GT(whole.fraction, 0.2) << whole.reason();
+  ASSERT_GT(work_units, 50);
+  const auto [parts, spent] = prove(work_units - 1);
   EXPECT_EQ(parts.status, whole.status) << parts.reason();
-  EXPECT_NEAR(parts.share, whole.share, 1.0 / 64.0);
+  EXPECT_NEAR(parts.fraction, whole.fraction, 1.0 / 64.0);
   EXPECT_EQ(prove(3).first.status, Status::out_of_budget);
 }
 

@@ -26,7 +26,7 @@ constexpr double allowed = 1e-12;                  // [m], and for what has no u
 const int configurations = test::trials(500'000);  // of each robot
 constexpr double millimetre = 1e-3;
 
-/// Positions as those who reckon in metres take them.
+/// Positions as those who reckon in meters take them.
 std::vector<double> in_metres(const Chain& chain, std::vector<double> q) {
   for (int k = 1; k <= chain.size(); ++k) {
     if (chain.joint(k).kind == JointKind::prismatic)
@@ -57,7 +57,7 @@ struct Differences {
 
 using Column = Eigen::Matrix<double, 6, 1>;
 
-/// Column k of the Jacobian of the flange, in metres.
+/// Column k of the Jacobian of the flange, in meters.
 Column column(const ChainState& state, int k) {
   Column column;
   const double unit = state.turns(k) ? millimetre : 1.0;
@@ -67,7 +67,7 @@ Column column(const ChainState& state, int k) {
 }
 
 #ifdef KEEPOUT_HAS_KDL
-/// A row after Craig: right angles for alpha and theta, metres.
+/// A row after Craig: right angles for alpha and theta, meters.
 struct Row {
   double a, alpha, d, theta;
   KDL::Joint::JointType type = KDL::Joint::RotZ;

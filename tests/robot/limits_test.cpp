@@ -100,7 +100,7 @@ TEST(Limits, NameEveryCauseAndOnlyCauses) {
       ASSERT_LT(difference(step, alone.step(q, desired)), 1e-9) << i;
       ++free;
     }
-    ASSERT_EQ(step.limits.has(Limit::truncated), step.status == Status::fallback) << i;
+    ASSERT_EQ(step.limits.has(Limit::truncated), step.status == Status::truncated) << i;
     for (std::size_t c = 0; c < causes.size(); ++c) {
       if (!step.limits.has(causes[c].limit)) continue;
       ++seen[c];
@@ -188,7 +188,7 @@ TEST(Limits, TellASpentBudgetFromASmallStore) {
     guard.place(0, {}, {.linear = Vec3(0, 0, speed)});
     return guard.step(std::vector<double>{0.0, 0.0, 51.3}, {.linear = Vec3(0, 0, -5)});
   };
-  const InstrumentStep spent = status({.looks = 20});
+  const InstrumentStep spent = status({.work_units = 20});
   EXPECT_EQ(spent.status, Status::out_of_budget) << spent.reason();
   EXPECT_TRUE(spent.limits.has(Limit::budget));
   EXPECT_FALSE(spent.limits.has(Limit::capacity) || spent.limits.has(Limit::mesh));
@@ -206,19 +206,19 @@ TEST(Limits, TellASpentBudgetFromASearchThatWasTooWide) {
   const auto mesh = mesh_of(make_cube(2.0));
   const auto index = std::make_shared<WideBvh>(mesh);
   std::size_t all = 0;
-  const auto status = [&](std::size_t looks) {
+  const auto status = [&](std::size_t work_units) {
     InstrumentConstraint guard(mesh, index, free_ball(1.0), std::make_unique<ActiveSet>(),
-                               {.margin = 5.0}, {.triangles = 80, .looks = looks});
+                               {.margin = 5.0}, {.triangles = 80, .work_units = work_units});
     const InstrumentStep step =
         guard.step(std::vector<double>{0.0, 0.0, 55.5}, {.linear = Vec3(0, 0, -0.01)});
-    all = guard.looks();
+    all = guard.work_units();
     return step.status;
   };
   ASSERT_TRUE(is_ok(status(Budget::unlimited)));
   int spent = 0;
-  for (std::size_t looks = 1, most = all; looks <= most; looks += 3) {
-    const Status ended = status(looks);
-    EXPECT_NE(ended, Status::over_capacity) << looks;
+  for (std::size_t work_units = 1, most = all; work_units <= most; work_units += 3) {
+    const Status ended = status(work_units);
+    EXPECT_NE(ended, Status::over_capacity) << work_units;
     spent += ended == Status::out_of_budget ? 1 : 0;
   }
   EXPECT_GT(spent, 10);
@@ -254,11 +254,11 @@ struct Swing {
   /// Fails unless all certified parts of the motion are clear. Counts the motions with such a part.
   void expect_safe(int& counted) {
     const MotionProof proof = guard.prove(start, motion);
-    expect_clear(motion, proof.share);
+    expect_clear(motion, proof.fraction);
     const InstrumentStep step = guard.step(start, motion);
     ASSERT_TRUE(step.ok() || step.increment.empty()) << name(step.status);
     if (step.ok()) expect_clear(step.increment, 1.0);
-    counted += proof.share > 0.0 && step.ok() ? 1 : 0;
+    counted += proof.fraction > 0.0 && step.ok() ? 1 : 0;
   }
 
   const std::vector<double> start{-0.3, 0.1};
@@ -270,17 +270,17 @@ struct Swing {
 TEST(SpentCapacity, NothingIsCertifiedThatIsNotClearWhereverTheWorkEnds) {
   Swing whole({});
   const MotionProof proof = whole.guard.prove(whole.start, whole.motion);
-  ASSERT_GT(proof.share, 0.5);
-  ASSERT_LT(proof.share, 1.0) << "the end is in the cube";
-  std::size_t all = whole.guard.looks();
+  ASSERT_GT(proof.fraction, 0.5);
+  ASSERT_LT(proof.fraction, 1.0) << "the end is in the cube";
+  std::size_t all = whole.guard.work_units();
   ASSERT_TRUE(whole.guard.step(whole.start, whole.motion).ok());
-  all = std::max(all, whole.guard.looks());
+  all = std::max(all, whole.guard.work_units());
   ASSERT_GT(all, 50u);
   int certified = 0;
   const std::size_t stride = test::few_trials() ? 10 : 1;
-  for (std::size_t looks = 1; looks <= all + 1; looks += stride) {
-    SCOPED_TRACE(testing::Message() << "looks " << looks);
-    Swing swing({.looks = looks});
+  for (std::size_t work_units = 1; work_units <= all + 1; work_units += stride) {
+    SCOPED_TRACE(testing::Message() << "work units " << work_units);
+    Swing swing({.work_units = work_units});
     ASSERT_NO_FATAL_FAILURE(swing.expect_safe(certified));
   }
   EXPECT_GT(certified, test::trials(50));
@@ -299,14 +299,14 @@ TEST(SpentCapacity, NothingIsCertifiedThatIsNotClearHoweverFewTrianglesFit) {
 // A motion that is made as a whole was not shortened by the budget that ends its refinement.
 TEST(SpentCapacity, IsNoLimitOfAMotionThatIsMadeAsAWhole) {
   int made_as_a_whole = 0;
-  for (std::size_t looks = 800; looks < 1200; ++looks) {
-    Swing swing({.looks = looks});
+  for (std::size_t work_units = 800; work_units < 1200; ++work_units) {
+    Swing swing({.work_units = work_units});
     swing.guard.set_options({.margin = 2.0, .band = 1.0, .check_sides = false});
     const InstrumentStep step = swing.guard.step(swing.start, swing.motion);
     if (step.status != Status::limited) continue;
     ++made_as_a_whole;
-    EXPECT_EQ(step.share, 1.0) << looks;
-    EXPECT_FALSE(step.limits.has(Limit::budget)) << looks;
+    EXPECT_EQ(step.fraction, 1.0) << work_units;
+    EXPECT_FALSE(step.limits.has(Limit::budget)) << work_units;
   }
   EXPECT_GT(made_as_a_whole, 100);
 }

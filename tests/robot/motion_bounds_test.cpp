@@ -174,7 +174,7 @@ TEST(PathBound, AMotionWhoseMiddleComesTooNearIsNotCertifiedWhole) {
     for (const double missing : {5e-4, 0.01, 0.1, 0.3, 0.45, 0.9}) {
       const TurnPastAWall past(-missing, slide);
       ASSERT_LT(past.clear_share, 0.5);
-      EXPECT_LE(past.proof.share, past.clear_share) << slide << ' ' << missing;
+      EXPECT_LE(past.proof.fraction, past.clear_share) << slide << ' ' << missing;
     }
   }
 }

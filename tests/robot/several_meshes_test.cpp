@@ -124,7 +124,7 @@ TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayTo) {
   for (int i = 0; i < 400; ++i) {
     const InstrumentStep step = step_of(guard, at, Vec3::Zero());
     ASSERT_TRUE(step.status == Status::free || step.status == Status::limited) << step.reason();
-    ASSERT_EQ(step.level, 1.0);
+    ASSERT_EQ(step.clearance_fraction, 1.0);
     limited += step.status == Status::limited;
     at = moved(at, step);
     const Pose& now = guard.place_of(0);
@@ -150,7 +150,7 @@ TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayToWithinTheGuides) {
   for (int i = 0; i < 400; ++i) {
     const InstrumentStep step = step_of(guard, at, Vec3(-0.02, i < 200 ? 0.05 : -0.05, 0.0));
     ASSERT_TRUE(step.ok()) << step.reason();
-    ASSERT_EQ(step.level, 1.0) << i;
+    ASSERT_EQ(step.clearance_fraction, 1.0) << i;
     held += step.limits.has(Limit::mesh) && step.limits.has(Limit::guide) ? 1 : 0;
     at = moved(at, step);
     ASSERT_GE(clearance(at, 1.0, *cube, guard.place_of(0)), 0.198 - 1e-8) << i;
@@ -162,7 +162,7 @@ TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayToWithinTheGuides) {
 // Faster than the joints can go: less and less is kept, which is told; and then nothing is proven.
 TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
   const auto cube = cube_of(10.0);
-  int yielding = 0;
+  int degraded = 0;
   int stopped = 0;
   Vec3 at = Vec3::Zero();
   InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);
@@ -175,7 +175,7 @@ TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
       const double clear_before = clearance(at, 1.0, *cube, guard.place_of(0));
       const InstrumentStep step = step_of(guard, at, Vec3::Zero());
       if (!step.ok()) {
-        ASSERT_EQ(step.level, 0.0);
+        ASSERT_EQ(step.clearance_fraction, 0.0);
         ASSERT_TRUE(step.increment.empty());
         ++stopped;
         break;
@@ -183,16 +183,17 @@ TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
       at = moved(at, step);
       const double clear = clearance(at, 1.0, *cube, guard.place_of(0));
       kept = std::min(0.198, clear_before - 0.002);
-      ASSERT_GE(clear, step.level * kept - 1e-8) << name(step.status) << " in cycle " << i;
-      if (step.status == Status::yielding) {
-        ASSERT_LT(step.level, 1.0);
-        ++yielding;
+      ASSERT_GE(clear, step.clearance_fraction * kept - 1e-8)
+          << name(step.status) << " in cycle " << i;
+      if (step.status == Status::degraded) {
+        ASSERT_LT(step.clearance_fraction, 1.0);
+        ++degraded;
       } else {
-        ASSERT_EQ(step.level, 1.0);
+        ASSERT_EQ(step.clearance_fraction, 1.0);
       }
     }
   }
-  EXPECT_GT(yielding, 20);
+  EXPECT_GT(degraded, 20);
   EXPECT_GT(stopped, 5);
 }
 
@@ -217,7 +218,7 @@ TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input);
   guard.place(0, {}, {.angular = Vec3(0, 0, 1001.0)});
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::invalid_input) << "in 1 ms";
-  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).level, 0.0);
+  EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).clearance_fraction, 0.0);
   guard.place(0, {});
   EXPECT_EQ(guard.place(2, {}), Status::invalid_input) << "there are two";
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::free) << "no mesh was touched";
@@ -267,10 +268,10 @@ struct ComingSheet {
       for (const DegradedClearance& each : step.degraded) {
         named[static_cast<std::size_t>(each.body)] += 1;
         dropped[static_cast<std::size_t>(each.body)] += each.is_certified ? 0 : 1;
-        EXPECT_LT(each.level, 1.0);
+        EXPECT_LT(each.fraction, 1.0);
         EXPECT_EQ(each.mesh, 0);
       }
-      EXPECT_EQ(!step.degraded.empty(), step.status == Status::yielding || !step.ok()) << i;
+      EXPECT_EQ(!step.degraded.empty(), step.status == Status::degraded || !step.ok()) << i;
       q = keepout::moved(q, step);
       least = std::min(least, q[2] - (z + 0.02) - 1.0);
     }
@@ -326,7 +327,8 @@ TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
     const InstrumentStep step = blocked.guard.step(blocked.q, Twist{});
     blocked.q = keepout::moved(blocked.q, step);
     const double clear = blocked.q[0] + blocked.q[2] - (z + 0.02) - 1.0;
-    ASSERT_GE(clear, 0.198 - 1e-8) << i << ' ' << name(step.status) << ' ' << step.level;
+    ASSERT_GE(clear, 0.198 - 1e-8)
+        << i << ' ' << name(step.status) << ' ' << step.clearance_fraction;
     for (const DegradedClearance& each : step.degraded) {
       ASSERT_EQ(each.body, 1);
       blocked.named[1] += 1;
@@ -431,7 +433,7 @@ TEST(SeveralMeshes, ABodyThatIsTooCloseNeverUsesUpItsDistance) {
     const Vec3 at(6.0 + distance, 0.1, 0.2);
     const MotionProof proof = guard.prove({at.data(), 3}, std::vector<double>{-0.1, 0, 0});
     EXPECT_EQ(proof.status, Status::recovering);
-    EXPECT_GE(distance - 0.1 * proof.share, 0.5 * distance - 1e-9);
+    EXPECT_GE(distance - 0.1 * proof.fraction, 0.5 * distance - 1e-9);
     const Vec3 to = moved(at, step_of(guard, at, Vec3(-1, 0, 0)));
     EXPECT_GE(clearance(to, 1.0, *cube, {}), 0.5 * distance - 1e-9);
   }
@@ -476,7 +478,7 @@ TEST(SeveralMeshes, OneThatIsRefusedTakesNothingFromABodyThatIsTooClose) {
     ASSERT_TRUE(step.ok()) << step.reason();
     EXPECT_EQ(step.status, expected.status);
     EXPECT_EQ(moved(at, step), moved(at, expected));
-    EXPECT_EQ(guard.looks(), undisturbed.looks());
+    EXPECT_EQ(guard.work_units(), undisturbed.work_units());
     at = moved(at, step);
     if (i % 2 == 0) {
       EXPECT_THROW(guard.add_mesh(cube, index, 0.001), Error) << "below the band";

@@ -54,7 +54,7 @@ void run(double speed, Tally& tally) {
       tally.shortened += is_shortened ? 1 : 0;
       tally.truncated += step.limits.has(Limit::truncated) ? 1 : 0;
       // Far from the mesh, nothing else shortens a motion.
-      ASSERT_EQ(step.status == Status::fallback, step.limits.has(Limit::truncated));
+      ASSERT_EQ(step.status == Status::truncated, step.limits.has(Limit::truncated));
       const bool is_singular = step.limits.has(Limit::singularity);
       ASSERT_TRUE(is_shortened || is_singular || step.status == Status::free);
       ASSERT_TRUE(step.status != Status::free || tally.missed.back() <= 0.5 + 1e-9);

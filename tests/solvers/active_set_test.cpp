@@ -180,7 +180,7 @@ TEST_F(ActiveSetTest, ARowThatHoldsWithoutPushingIsNotListed) {
 }
 
 TEST_F(ActiveSetTest, ACavityOfThousandsOfNearlyEqualPlanesStaysWithinTheBudget) {
-  // Tangent planes of a sphere, pushed against from inside: neighbours differ by milliradians, and
+  // Tangent planes of a sphere, pushed against from inside: neighbors differ by milliradians, and
   // the exact answer has three of them active among hundreds that nearly are.
   for (int i = 0; i < 50; ++i) {
     Random random(static_cast<std::uint64_t>(i));

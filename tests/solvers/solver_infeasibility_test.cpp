@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems without a solution are recognised, and those with one are not mistaken for them.
+// Problems without a solution are recognized, and those with one are not mistaken for them.
 #include "solvers/solver_contract.h"
 
 namespace keepout::test {

@@ -15,7 +15,7 @@ using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 /// A vertex computed in 64 bits of mantissa from numbers of size 1 is feasible to this.
 constexpr Real tolerance = 1e-13L;
 
-/// The minimiser by trying every set of active rows, in extended precision: exponential in m, and
+/// The minimizer by trying every set of active rows, in extended precision: exponential in m, and
 /// too simple to be wrong. Nothing if no set of rows yields a feasible point.
 std::optional<Eigen::VectorXd> enumerate_minimum(const StepProblem& problem) {
   const Eigen::Index n = problem.jacobian.cols();

@@ -167,7 +167,7 @@ inline std::vector<Vec3> random_points(const Mesh& mesh, std::size_t count, Rand
   return points;
 }
 
-/// In any direction, 1 to 1e4 sizes from the centre of the bounds, each decade alike. The last bit
+/// In any direction, 1 to 1e4 sizes from the center of the bounds, each decade alike. The last bit
 /// is up to the system's pow.
 inline std::vector<Vec3> far_points(const Mesh& mesh, std::size_t count, Random& random) {
   const double size = mesh.bounds().size().norm();

@@ -15,7 +15,7 @@ namespace keepout {
 //
 //   bool stands(state)                   it may be stood on
 //   bool goes(from, to)                  the whole motion is proven, both of its ends included
-//   double goes_until(from, to, end)     the share of a motion that is proven from its start on,
+//   double goes_until(from, to, end)     the fraction of a motion that is proven from its start on,
 //                                        and the state there
 
 template <class Proof>

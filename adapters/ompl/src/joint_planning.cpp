@@ -143,8 +143,8 @@ struct Pieces {
     if (width > 0.0) count = std::clamp(std::ceil(path / width), 1.0, most);
   }
 
-  double at(std::size_t k, double share) const {
-    return share == 1.0 ? end[k] : from[k] + share * (end[k] - from[k]);
+  double at(std::size_t k, double fraction) const {
+    return fraction == 1.0 ? end[k] : from[k] + fraction * (end[k] - from[k]);
   }
 
   std::size_t n;  // joints
@@ -164,7 +164,7 @@ double proven_share(InstrumentConstraint& guard, const Pieces& pieces) {
     const MotionProof proof = guard.prove({start.data(), pieces.n}, {increment.data(), pieces.n});
     if (proof.is_clear()) continue;
     // Recovering: it starts too close, and nothing of it counts.
-    return (i + (proof.status == Status::recovering ? 0.0 : proof.share)) / pieces.count;
+    return (i + (proof.status == Status::recovering ? 0.0 : proof.fraction)) / pieces.count;
   }
   return 1.0;
 }
@@ -185,9 +185,10 @@ struct JointProof {
     double* const there = values_of(end);
     // The state there is rounded: where it is found too close by that, a little less will do.
     double less = 1.0 / (64.0 * pieces.count);
-    for (double share = proven_share(*guard, pieces); share > 0.0; share -= less, less *= 2.0) {
-      for (std::size_t k = 0; k < pieces.n; ++k) there[k] = pieces.at(k, share);
-      if (proves(*guard, pieces.from, there) && proves(*guard, there, there)) return share;
+    for (double fraction = proven_share(*guard, pieces); fraction > 0.0;
+         fraction -= less, less *= 2.0) {
+      for (std::size_t k = 0; k < pieces.n; ++k) there[k] = pieces.at(k, fraction);
+      if (proves(*guard, pieces.from, there) && proves(*guard, there, there)) return fraction;
     }
     std::copy_n(pieces.from, pieces.n, there);
     return 0.0;

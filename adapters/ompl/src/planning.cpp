@@ -85,7 +85,7 @@ struct TipProof {
   double goes_until(const base::State* from, const base::State* to, base::State* end) const {
     const ProvenPrefix prefix = proven_prefix(*guards->borrow(), tip_of(from), tip_of(to));
     put(prefix.end, end);
-    return prefix.share;
+    return prefix.fraction;
   }
 };
 

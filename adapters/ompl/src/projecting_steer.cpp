@@ -15,7 +15,7 @@ bool is_within(const Box& box, const Vec3& point) noexcept {
 }
 
 /// A long step that is held back gives more away than short ones do; unless it comes nearer by
-/// this share of its length.
+/// this fraction of its length.
 constexpr double good_gain = 0.5;
 
 }  // namespace

@@ -24,23 +24,23 @@ struct Pieces {
   Vec3 to;
   double count;
 
-  Vec3 at(double share) const noexcept {
-    return share == 1.0 ? to : Vec3(from + share * (to - from));
+  Vec3 at(double fraction) const noexcept {
+    return fraction == 1.0 ? to : Vec3(from + fraction * (to - from));
   }
 };
 
 /// One piece after the other, as far as each is proven; of the first that is not, so many halvings
 /// are tried. `from` itself is not asked about.
-ProvenPrefix walk(MotionConstraint& guard, const Vec3& from, const Vec3& to,
-                  int halvings) noexcept {
+ProvenPrefix traversal(MotionConstraint& guard, const Vec3& from, const Vec3& to,
+                       int halvings) noexcept {
   const double length = (to - from).norm();
   const Pieces pieces{from, to, std::max(1.0, std::ceil(length / guard.options().radius))};
-  ProvenPrefix prefix{.share = 0.0, .end = from, .may_start = true};
+  ProvenPrefix prefix{.fraction = 0.0, .end = from, .may_start = true};
   if (!(pieces.count <= most_pieces)) return prefix;
-  const auto extend_to = [&](double share) {
-    const Vec3 end = pieces.at(share);
+  const auto extend_to = [&](double fraction) {
+    const Vec3 end = pieces.at(fraction);
     if (!steps_to(guard, prefix.end, end)) return false;
-    prefix.share = share;
+    prefix.fraction = fraction;
     prefix.end = end;
     return true;
   };
@@ -49,7 +49,7 @@ ProvenPrefix walk(MotionConstraint& guard, const Vec3& from, const Vec3& to,
     double step = 0.5 / pieces.count;
     for (int i = 0; i < halvings; ++i) {
       // Equal shares would say that nothing was gained.
-      if (prefix.share + step > prefix.share) extend_to(prefix.share + step);
+      if (prefix.fraction + step > prefix.fraction) extend_to(prefix.fraction + step);
       step *= 0.5;
     }
     break;
@@ -64,12 +64,12 @@ bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept {
 }
 
 bool proves(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
-  return walk(guard, from, to, 0).whole();
+  return traversal(guard, from, to, 0).whole();
 }
 
 ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
   if (!keeps_margin(guard, from)) return {.end = from};
-  return walk(guard, from, to, 8);
+  return traversal(guard, from, to, 8);
 }
 
 }  // namespace keepout

@@ -15,7 +15,7 @@ enum class Route : std::uint8_t {
   // A tip stays on its route:
   push,       // straight into the surface
   slide,      // into the surface and along it
-  walk,       // anywhere, in steps of all lengths
+  traversal,  // anywhere, in steps of all lengths
   aim,        // at the corners and edges of the nearest triangle
   ping_pong,  // from wall to wall
   tremor,     // to a place behind the surface, trembling

@@ -43,8 +43,9 @@ void append_degraded(std::string& out, std::span<const DegradedClearance> degrad
                                    return [&pair](std::string& object) {
                                      append_member(object, "body", pair.body);
                                      append_member(object, "mesh", pair.mesh);
-                                     append_member(object, "level",
-                                                   pair.is_certified ? pair.level : std::nan(""));
+                                     append_member(
+                                         object, "clearance_fraction",
+                                         pair.is_certified ? pair.fraction : std::nan(""));
                                    };
                                  }));
 }
@@ -101,8 +102,9 @@ void append_joint_step(std::string& out, const InstrumentStep& step, std::size_t
   append_outcome(out, step);
   append_limits(out, step.limits);
   append_increment(out, step.increment, joints);
-  append_member(out, "share", step.share);
-  if (step.level < 1.0) append_member(out, "level", step.level);
+  append_member(out, "fraction", step.fraction);
+  if (step.clearance_fraction < 1.0)
+    append_member(out, "clearance_fraction", step.clearance_fraction);
   append_degraded(out, step.degraded);
   if (!step.distance) return;
   append_member(out, "distance", *step.distance);

@@ -7,7 +7,7 @@
 
 #include "keepout/error.h"
 #include "keepout/factory/for_each_option.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/version.h"
 #include "serve/answer.h"
 #include "shared/names.h"
@@ -15,7 +15,7 @@
 namespace keepout::app {
 namespace {
 
-constexpr int protocol = 1;  // goes up when an old client would no longer be understood
+constexpr int protocol = 2;  // goes up when an old client would no longer be understood
 constexpr std::size_t enough_output = std::size_t{1} << 16;  // for a turn [bytes]
 
 /// With capacity for the largest request.

@@ -14,7 +14,7 @@
 #include "keepout/error.h"
 #include "keepout/factory/convex_tool_text.h"
 #include "keepout/factory/guide_text.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/solvers/registry.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"

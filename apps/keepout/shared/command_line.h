@@ -78,7 +78,7 @@ enum class Zero { allowed, refused };
 /// pass and tell their range in 300 digits. `type`: what the help calls it.
 CLI::Validator number_within(double low, double high, std::string expected, std::string type);
 
-/// A length in millimetres. The limit keeps squares of lengths, and sums of them, far from the end
+/// A length in millimeters. The limit keeps squares of lengths, and sums of them, far from the end
 /// of a double's range.
 CLI::Validator length(Zero zero);
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "keepout/index/self_intersection.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 
 namespace keepout::app {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 
 namespace keepout::app {
 namespace {
@@ -140,7 +140,7 @@ bool PathAudit::changes_side(Side now) {
   if (now == Side::touching) return false;
   const Side before = std::exchange(side_, now);
   if (before == now || before == Side::touching) return false;
-  // Whoever leaves a closed surface went through it; an open one can be walked around.
+  // Whoever leaves a closed surface went through it; an open one can be traversed around.
   return audit_->surface() == SurfaceKind::closed || met_;
 }
 

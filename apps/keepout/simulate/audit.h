@@ -66,8 +66,8 @@ class Audit {
 /// was last seen clear of it: a guarded tool that gets through does so by touching first, and while
 /// it touches it is on neither side.
 ///
-/// Around the rim of an open surface a tip may walk freely; one that slides around it in contact is
-/// counted as having passed through.
+/// Around the rim of an open surface a tip may traversal freely; one that slides around it in
+/// contact is counted as having passed through.
 class PathAudit {
  public:
   /// `audit` must outlive this object.

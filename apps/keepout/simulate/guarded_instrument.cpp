@@ -22,8 +22,8 @@ namespace keepout::app {
 namespace {
 
 /// The guard of an instrument.
-enum class Mode : std::uint8_t { certified, linearised, tip_only, none };
-const std::vector<std::string> mode_names{"certified", "linearised", "tip only", "none"};
+enum class Mode : std::uint8_t { certified, linearized, tip_only, none };
+const std::vector<std::string> mode_names{"certified", "linearized", "tip only", "none"};
 
 /// The bodies of the PSM, in its order.
 constexpr std::array<const char*, 3> body_names{"shaft", "wrist", "jaw"};
@@ -114,7 +114,7 @@ class GuardedInstrument final : public SimulatedTool {
     const Scene& scene = on_->scene;
     const Instrument instrument = on_->robot.make(stroke.start.base);
     InstrumentOptions step = options_of({.margin = margin_}, instrument.chain(), stroke.speed);
-    if (mode == Mode::linearised) step.certified = CertifiedMotion::linearised;
+    if (mode == Mode::linearized) step.certified = CertifiedMotion::linearized;
     joints_.emplace(instrument, std::make_unique<ActiveSet>(), step);
     if (mode != Mode::none) joints_->set_guides(guides_);
     tip_.reset();

@@ -126,7 +126,7 @@ struct Tally {
   std::uint64_t blocked = 0, worse = 0;
   std::uint64_t rounds = 0, most_rounds = 0;
   std::uint64_t rows = 0;  // that limited motions, in all
-  std::uint64_t most_looks = 0;
+  std::uint64_t most_work_units = 0;
   Timing step = {};              // [us]
   Timing point = {};             // of the certified step of a ball at the tip, beside each [us]
   double excess = 0.0;           // of all samples

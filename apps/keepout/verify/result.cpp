@@ -38,7 +38,7 @@ Columns<Json> tip_columns() {
   };
   const auto other = [](const Json& row) {
     std::uint64_t others = count(row, "steps");
-    for (const char* known : {"free", "limited", "recovering", "fallback", "unsolved"}) {
+    for (const char* known : {"free", "limited", "recovering", "truncated", "unsolved"}) {
       others -= count(row.at("statuses"), known);
     }
     return Json(others);
@@ -59,7 +59,7 @@ Columns<Json> tip_columns() {
           column("/statuses/limited", "limited", 12),
           column("/statuses/recovering", "recovering", 11),
           column("/led_out", "led out", 9),
-          column("/statuses/fallback", "fallback", 9),
+          column("/statuses/truncated", "truncated", 9),
           column("/statuses/unsolved", "unsolved", 9),
           {"", other, "other", 9, &count_text},
           column("/breaches/penetration", "crossed", 7),

@@ -9,7 +9,7 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "shared/named_mesh.h"
 
 namespace keepout::app {

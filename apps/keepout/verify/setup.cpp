@@ -254,7 +254,7 @@ Setup draw_setup(Scene& scene, Random& random) {
   setup.options.refinements = draw(refinements, random).value;
   setup.options.nodes = draw(nodes, random).value;
   setup.options.query = random.uniform() < 0.25 ? Query::sphere : Query::motion;
-  if (scene.has_sides() && random.uniform() < 0.75) setup.inside = Inside::led_out;
+  if (scene.has_sides() && random.uniform() < 0.75) setup.inside = Inside::escape;
 
   const double edge = scene.mean_edge();
   setup.longest_step = log_uniform(1e-3, 10.0, random) * edge;

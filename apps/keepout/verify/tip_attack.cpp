@@ -83,7 +83,7 @@ struct Tip {
         attacker(scene, random, setup.route, setup.longest_step, required_clearance(setup.options)),
         joints(setup, random),
         judge(scene.judged(), setup.options,
-              setup.inside == Inside::led_out && scene.has_sides() && setup.joints == 0, setup.tip),
+              setup.inside == Inside::escape && scene.has_sides() && setup.joints == 0, setup.tip),
         place(setup.tip) {
     guard.begin(setup.options, setup.inside);
   }
@@ -208,7 +208,7 @@ Guard::Guard(const Scene& scene)
 
 void Guard::begin(const StepOptions& options, Inside inside) {
   constraint_.set_options(options);
-  sides_ = inside == Inside::led_out ? SideWatch() : SideWatch::off();
+  sides_ = inside == Inside::escape ? SideWatch() : SideWatch::off();
 }
 
 Step Guard::step(const Motion& motion) noexcept { return constraint_.step(motion, sides_); }

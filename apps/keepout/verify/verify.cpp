@@ -153,7 +153,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       "Ctrl-C ends it early: what is finished is printed and written.\n"
       "The exit status is 0 only if no step broke what docs/certified-step.md promises, and with\n"
       "--robot or --scenario docs/joint-space-step.md and docs/guides.md; but with --motion\n"
-      "linearised nothing is promised.\n\n"
+      "linearized nothing is promised.\n\n"
       "--scenario without --robot draws a chain and bodies anew for each start, and without MESH\n"
       "a mesh of up to 400 triangles: soup, fan, sheets, cone, bowl, saddle. 'stuck', "
       "'tip_guides'\n"

@@ -23,7 +23,7 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/status.h"
 #include "shared/findings.h"

@@ -23,7 +23,7 @@ struct IndexedMesh {
 /// With our index, wide_bvh.
 IndexedMesh with_index(std::shared_ptr<const Mesh> mesh);
 
-/// The same index as one that only answers queries: no rule walks it by itself.
+/// The same index as one that only answers queries: no rule traversals it by itself.
 IndexedMesh queried(const IndexedMesh& on);
 
 /// The same surface with coordinates as an STL file holds them.

@@ -50,7 +50,7 @@ void measure_builds(SpeedRun& run, const IndexedMesh& on) {
   }
 }
 
-/// The surface as it breathes: every vertex is elsewhere, and neighbours stay neighbours.
+/// The surface as it breathes: every vertex is elsewhere, and neighbors stay neighbors.
 std::shared_ptr<const Mesh> deformed(const Mesh& mesh) {
   Surface surface = surface_of(mesh);
   for (Vec3& vertex : surface.vertices) {

@@ -263,7 +263,7 @@ void measure_index_costs(SpeedRun& run);
 /// Page faults, allocations and locks of steps after warm-up, and a histogram of their times.
 void measure_steadiness(SpeedRun& run);
 
-/// The inside of a sphere: at the centre all triangles are equally far.
+/// The inside of a sphere: at the center all triangles are equally far.
 void measure_concave_sphere(SpeedRun& run);
 
 /// From a file to the first step.

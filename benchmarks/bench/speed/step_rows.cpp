@@ -119,7 +119,7 @@ void measure_concave_sphere(SpeedRun& run) {
   const MotionKind kind;
   const MeasuredSide centre = time_certified(run, sphere, "centre", kind.clearance,
                                              central_motions(run.effort.steps, kind, run.random()));
-  run.add(ratio("certified in a concave sphere", "tip at the centre / free space", at_most(3.0),
+  run.add(ratio("certified in a concave sphere", "tip at the center / free space", at_most(3.0),
                 centre, run.free_side));
   MeasuredSide wall = in_contact(run, sphere);
   wall.name = "wall";

@@ -13,8 +13,8 @@ enum class Status : std::uint8_t {
   free,              // the desired increment: no constraint limits it; of a polytope: complete
   limited,           // the nearest motion that the constraints allow: see Limits
   recovering,        // something was too close or out of its region: the motion recovers from it
-  fallback,          // a shorter motion: nothing longer was proved, see Limits
-  yielding,          // instruments only: a mesh approaches too fast to keep the clearance
+  truncated,         // a shorter motion: nothing longer was proved, see Limits
+  degraded,          // instruments only: a mesh approaches too fast to keep the clearance
   infeasible,        // the constraints contradict each other
   ill_posed,         // the Jacobian lacks full column rank and there is no damping
   invalid_input,     // a number is not finite or out of range
@@ -27,6 +27,9 @@ enum class Status : std::uint8_t {
   mesh_changed,      // the index was refit to another mesh, which is not followed yet
   out_of_budget,     // the work budget of the cycle ended before a motion was proved
   unsupported,       // polytopes only: the rule cannot answer this query
+  // Names before version 0.3.
+  fallback [[deprecated("use truncated")]] = truncated,
+  yielding [[deprecated("use degraded")]] = degraded,
 };
 
 /// Number of statuses.
@@ -36,7 +39,7 @@ inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::uns
 enum class Subject : std::uint8_t { tip, instrument, polytope };
 
 /// Returns true if a motion comes with the status, which may be executed.
-constexpr bool is_ok(Status status) noexcept { return status <= Status::yielding; }
+constexpr bool is_ok(Status status) noexcept { return status <= Status::degraded; }
 
 /// Returns the name as it stands in the enumeration, for files and logs.
 std::string_view name(Status status) noexcept;

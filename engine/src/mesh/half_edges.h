@@ -20,7 +20,7 @@ struct HalfEdge {
 };
 
 /// A triangle that names a vertex twice is a segment: it has no sides, and the triangles beside it
-/// are neighbours of each other.
+/// are neighbors of each other.
 inline bool repeats_a_vertex(const Corners& c) noexcept {
   return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }

@@ -12,7 +12,7 @@
 
 #include "../parallel.h"
 #include "half_edges.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 
 namespace keepout {
 namespace {
@@ -107,7 +107,7 @@ std::string short_number(double value) {
 /// What its size says of the unit; empty for one that organs have.
 std::string doubt_of_unit(const Mesh& mesh, double scale) {
   const double extent = mesh.bounds().size().maxCoeff();
-  if (extent >= MeshFindings::metres_below && extent <= MeshFindings::micrometres_above) return {};
+  if (extent >= MeshFindings::meters_below && extent <= MeshFindings::micrometers_above) return {};
   const std::string size = "the mesh is " + short_number(extent) + " mm across";
   if (scale != 1.0) {
     return size + " after it was scaled by " + short_number(scale) +
@@ -170,10 +170,10 @@ std::span<const UnitGuess> length_units() noexcept {
 }
 
 std::vector<UnitGuess> other_units(double extent) {
-  // Sizes of organs and bones, and one from which on millimetres are not in doubt. [mm]
+  // Sizes of organs and bones, and one from which on millimeters are not in doubt. [mm]
   constexpr double smallest = 20.0, largest = 600.0, usual = 30.0;
   std::vector<UnitGuess> guesses;
-  if (extent >= usual && extent <= MeshFindings::micrometres_above) return guesses;
+  if (extent >= usual && extent <= MeshFindings::micrometers_above) return guesses;
   for (const UnitGuess& guess : length_units()) {
     const double size = extent * guess.millimetres;
     const bool is_another = guess.millimetres != 1.0;

@@ -91,7 +91,7 @@ Step Cycle::run() noexcept {
     if (!may_stand_still()) {
       step.limits = constraints;
     } else {
-      found = {Status::fallback};
+      found = {Status::truncated};
       limits_.add(constraints);
       limits_.add(Limit::truncated);
       memory_.store_zero_result(request_, relaxation_, limits_);
@@ -108,7 +108,7 @@ Step Cycle::run() noexcept {
     step.status = Status::limited;
     step.limits.add(Limit::singularity);
   }
-  if (target_halvings_ > 0) step.status = Status::fallback;
+  if (target_halvings_ > 0) step.status = Status::truncated;
   if (recovering) step.status = Status::recovering;
   return step;
 }
@@ -134,7 +134,8 @@ Opening Cycle::open_as_far_as_fits() noexcept {
   return opening;
 }
 
-/// Has the rule gather the triangles that matter for the target, or begin a walk to them, and open.
+/// Has the rule gather the triangles that matter for the target, or begin a traversal to them, and
+/// open.
 Opening Cycle::open() noexcept {
   memory_.planes.clear();
   const bool fits = rule_.gather(input_);
@@ -219,7 +220,7 @@ Cycle::Outcome Cycle::cut(const LastTrial& last) noexcept {
   if (allowed < 1.0) limits_.add(Limit::guide);
   memory_.guides.note_left_by(last.motion);
   memory_.store_result(request_, part, fraction, last.solution, relaxation_, limits_);
-  return {Status::fallback, part};
+  return {Status::truncated, part};
 }
 
 /// Returns the kinds of the constraints for which no motion was found, and marks their guides as

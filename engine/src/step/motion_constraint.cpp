@@ -10,7 +10,7 @@
 #include "input.h"
 #include "keepout/error.h"
 #include "keepout/index/query.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 
 namespace keepout {
 namespace {
@@ -50,9 +50,9 @@ Capacity checked(Capacity capacity, const StepOptions& options) {
 
 }  // namespace
 
-std::size_t Capacity::looks_or_default(std::size_t looks, const SpatialIndex& index) {
-  if (looks > 0) return looks;
-  return index.walks() ? looks_of_a_walk : looks_of_queries;
+std::size_t Capacity::work_units_or_default(std::size_t work_units, const SpatialIndex& index) {
+  if (work_units > 0) return work_units;
+  return index.traverses() ? work_units_of_traversals : work_units_of_queries;
 }
 
 MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
@@ -71,8 +71,8 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
       polytope_(mesh, neighborhood_->room()),
       polytope_planes_(std::max(memory_->planes.capacity(), planes_to_hold_still)),
       inside_(inside),
-      has_sides_(inside == Inside::led_out && is_watertight(*mesh)) {
-  if (inside == Inside::led_out && rule_->guards_a_tool()) {
+      has_sides_(inside == Inside::escape && is_watertight(*mesh)) {
+  if (inside == Inside::escape && rule_->guards_a_tool()) {
     throw Error(
         "a tip that starts inside is led out without regard to the rest of a tool: with a rule "
         "that guards a whole tool, ask for Inside::taken_as_is");
@@ -91,7 +91,7 @@ void MotionConstraint::reserve_solver(std::size_t guides) {
 /// Prepares the rule and the work budget for the mesh and its index.
 void MotionConstraint::prepare() {
   is_prepared_ = false;
-  *budget_ = Budget(Capacity::looks_or_default(capacity_.looks, index()));
+  *budget_ = Budget(Capacity::work_units_or_default(capacity_.work_units, index()));
   rule_->prepare(*neighborhood_);
   is_prepared_ = true;
 }
@@ -102,7 +102,7 @@ void MotionConstraint::follow(std::shared_ptr<const Mesh> moved,
       neighborhood_of(moved, std::move(index), rule_.get(), solver_.get(), capacity_, *budget_);
   FreePolytope polytope(moved, near->room());
   const bool has_same_triangles = std::ranges::equal(moved->triangles(), mesh().triangles());
-  if (!has_same_triangles) has_sides_ = inside_ == Inside::led_out && is_watertight(*moved);
+  if (!has_same_triangles) has_sides_ = inside_ == Inside::escape && is_watertight(*moved);
   *neighborhood_ = std::move(*near);
   polytope_ = std::move(polytope);
   forget();

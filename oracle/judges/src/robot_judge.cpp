@@ -39,11 +39,11 @@ double certified(double distance, double floor, double target, double band, doub
 }
 
 /// Returns the fraction of the certified distance that a step promises to a body and a mesh.
-double promised_level(const InstrumentStep& step, std::size_t body, std::size_t mesh) {
-  if (!step.ok()) return step.level;
+double promised_fraction(const InstrumentStep& step, std::size_t body, std::size_t mesh) {
+  if (!step.ok()) return step.clearance_fraction;
   for (const DegradedClearance& pair : step.degraded) {
     const bool is_it = pair.body == static_cast<int>(body) && pair.mesh == static_cast<int>(mesh);
-    if (is_it) return pair.level;
+    if (is_it) return pair.fraction;
   }
   return 1.0;
 }
@@ -177,7 +177,7 @@ RobotVerdict RobotJudge::judge(std::span<const double> next) {
 RobotVerdict RobotJudge::judge(std::span<const double> next, const InstrumentStep& step,
                                std::optional<std::size_t> must_keep) {
   for (std::size_t p = 0; p < levels_.size(); ++p) {
-    levels_[p] = must_keep == p % bodies_ ? 1.0 : promised_level(step, p % bodies_, p / bodies_);
+    levels_[p] = must_keep == p % bodies_ ? 1.0 : promised_fraction(step, p % bodies_, p / bodies_);
   }
   return judge_promised(next);
 }

@@ -40,7 +40,7 @@ TEST(IndexAgreement, StepsTheFormsThatAreShipped) {
   EXPECT_EQ(asked, 3u * 3 * 30) << "of brute force and of each index, under each rule";
   for (const IndexAgreement& row : rows) {
     SCOPED_TRACE(row.index + " " + row.activation);
-    // The one offers a walk along motions, both their triangles in blocks.
+    // The one offers a traversal along motions, both their triangles in blocks.
     const bool offers = row.activation == "certified"
                             ? row.index == "wide_bvh"
                             : row.activation == "paper" && row.index != "fcl_obbrss";

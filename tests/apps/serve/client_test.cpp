@@ -510,7 +510,7 @@ TEST_F(ClientTest, InstrumentsOfTwoClientsStepAsTheirOwnConstraintsBitForBit) {
           << answer;
       const Answer told = Answer::parse(answer);
       ASSERT_EQ(told["status"], name(step.status));
-      ASSERT_EQ(told["share"], step.share);
+      ASSERT_EQ(told["fraction"], step.fraction);
       ASSERT_EQ(told.contains("distance"), step.distance.has_value());
       if (step.distance) {
         ASSERT_EQ(told["distance"], *step.distance);
@@ -562,8 +562,8 @@ TEST_F(ClientTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
   EXPECT_LT(pushed["increment"][2], -0.05) << "it is drawn back";
   ASSERT_EQ(talk_.told(place(1, "133.25", R"(,"linear":[0,0,30000])"))["ok"], true);
   const Answer outrun = step("[0,0,0]");
-  EXPECT_TRUE(!outrun["ok"] || outrun["status"] == "yielding") << outrun;
-  EXPECT_LT(outrun["level"], 1.0);
+  EXPECT_TRUE(!outrun["ok"] || outrun["status"] == "degraded") << outrun;
+  EXPECT_LT(outrun["clearance_fraction"], 1.0);
   EXPECT_EQ(talk_.refusal(place(2, "0")), "no_anatomy");
   const auto add_wall = [&](const std::string& more) {
     return talk_.told(R"({"do":"anatomy","file":")" + file + "\"," + more + '}');

@@ -184,7 +184,7 @@ bool is_joint_step(const Json& request, const Json& answer) {
   const auto increment = answer["increment"].get<std::vector<double>>();
   const std::vector<double> zeros(request["q"].size(), 0.0);
   return answer.contains("reason") == !ok && increment.size() == zeros.size() &&
-         (ok ? answer["share"] >= 0.0 && answer["share"] <= 1.0 : increment == zeros);
+         (ok ? answer["fraction"] >= 0.0 && answer["fraction"] <= 1.0 : increment == zeros);
 }
 
 /// The lines of a text that are to be answered.

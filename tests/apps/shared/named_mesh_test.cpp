@@ -134,7 +134,7 @@ TEST_F(NamedMesh, EveryCommandTellsOfMetresHolesAndWindingOnceOnStderr) {
     };
     // Whether or not the command can do something with it.
     const std::string metres = told("metres.stl");
-    EXPECT_EQ(occurrences(metres, "keepout: metres.stl: the mesh is 0.1 mm across"), 1u)
+    EXPECT_EQ(occurrences(metres, "keepout: meters.stl: the mesh is 0.1 mm across"), 1u)
         << command << '\n'
         << metres;
     const std::string open = told("bad.stl");

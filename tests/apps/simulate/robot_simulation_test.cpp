@@ -42,7 +42,7 @@ TEST(SimulateRobot, WhatIsCertifiedKeepsAllBodiesOutAndNothingElseDoes) {
     EXPECT_TRUE(row["mode"] != "tip only" || row["shaft_deepest_mm"] > 1.0) << row;
     EXPECT_TRUE(row["mode"] != "none" || row["in_mesh"] > 100u) << row;
   }
-  EXPECT_EQ(rows[5]["mode"], "linearised");
+  EXPECT_EQ(rows[5]["mode"], "linearized");
   EXPECT_EQ(rows[5]["speed"], 20.0);
   EXPECT_GT(rows[5]["in_mesh"], 0u);
 }

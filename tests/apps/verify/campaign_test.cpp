@@ -37,7 +37,7 @@ TEST_P(CampaignOnIndex, NoStepBreaksTheTheoremOnAnyGeneratedShape) {
   EXPECT_EQ(reported, 200'000u);
   EXPECT_EQ(sum["trajectories"], 400u);
   EXPECT_EQ(findings.rows.size(), shapes().size());
-  // It is no walk in the park.
+  // It is no traversal in the park.
   EXPECT_GT(sum["statuses"]["limited"], 60'000u);
   EXPECT_GT(sum["statuses"]["free"], 20'000u);
   EXPECT_GT(sum["statuses"]["recovering"], 500u);
@@ -142,7 +142,7 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
       sum.*count += row.*count;
     }
   }
-  // It is no walk in the park.
+  // It is no traversal in the park.
   EXPECT_GT(sum.cycles, 4000 * arenas.size());
   EXPECT_GT(sum.blocked, 100 * arenas.size());
   EXPECT_GT(sum.rows, 1000 * arenas.size());

@@ -155,7 +155,7 @@ void forget_a_mesh(RobotSetup& setup) { setup.meshes.pop_back(); }
 
 /// Stands still where it should give way.
 void freeze(InstrumentStep& step, std::vector<double>&) {
-  if (step.status != Status::free) step = {.status = Status::unsolved, .level = 0.0};
+  if (step.status != Status::free) step = {.status = Status::unsolved, .clearance_fraction = 0.0};
 }
 
 /// Makes twice the motion that is free.
@@ -290,7 +290,7 @@ TEST(SabotagedStep, StandingStillForNothingIsCounted) {
 TEST(SabotagedStep, WhereTheLinearisedMotionIsCertifiedTheJudgeSeesItTooClose) {
   const Findings findings = campaign_on(
       "gear",
-      {.robot = "psm", .cycles = 4000, .speeds = {20.0}, .motion = CertifiedMotion::linearised});
+      {.robot = "psm", .cycles = 4000, .speeds = {20.0}, .motion = CertifiedMotion::linearized});
   const Tally& row = findings.rows.at(0);
   EXPECT_GT(row[Breach::too_near], 0u);
   EXPECT_LT(row.least_beyond, -1e-3);

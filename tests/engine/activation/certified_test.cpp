@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "keepout/activation/facet.h"
+#include "keepout/activation/prepared_triangle.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/query.h"
@@ -170,8 +170,8 @@ TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
     const HalfSpace plane = scene.planes[0];
     ASSERT_LT(plane.normal.dot(trial), plane.offset);
     ASSERT_LE(plane.offset, 3.0 * scene.tau());
-    const Facet facet(mesh.triangle(plane.source), tip, plane.source);
-    ASSERT_EQ(facet.support(plane.normal) + 0.2, plane.offset);
+    const PreparedTriangle prepared(mesh.triangle(plane.source), tip, plane.source);
+    ASSERT_EQ(prepared.support(plane.normal) + 0.2, plane.offset);
     ASSERT_GE(judgement.free_fraction, 0.0);
     ASSERT_LE(judgement.free_fraction, 1.0);
     // Up to the contact the way is free.
@@ -245,8 +245,9 @@ TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
       ASSERT_NEAR(plane.normal.norm(), 1.0, 1e-15);
       ASSERT_LE(plane.offset, std::max(old.offset, 0.0) + slack) << "the tip may stay";
       ASSERT_GE(plane.normal.dot(accepted), plane.offset - slack) << "the motion is allowed";
-      const Facet facet(mesh.triangle(plane.source), tip, plane.source);
-      ASSERT_NEAR(facet.support(plane.normal) + 0.2, plane.offset, 1e-14) << "the facet is behind";
+      const PreparedTriangle prepared(mesh.triangle(plane.source), tip, plane.source);
+      ASSERT_NEAR(prepared.support(plane.normal) + 0.2, plane.offset, 1e-14)
+          << "the prepared triangle is behind";
     }
     EXPECT_GT(changed, 10u) << name;
   }

@@ -120,7 +120,7 @@ TEST(ConvexToolRule, IsNotLedOutByItsTip) {
                             std::make_unique<ActiveSet>(), {.radius = radius, .margin = margin}, {},
                             inside);
   };
-  EXPECT_THROW(make(Inside::led_out), Error);
+  EXPECT_THROW(make(Inside::escape), Error);
   EXPECT_NO_THROW(make(Inside::taken_as_is));
 }
 
@@ -148,7 +148,7 @@ TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
     if (judgement.verdict == Judgement::Verdict::accepted) continue;
     ASSERT_EQ(planes.size(), 1u);
     const HalfSpace& plane = planes[0];
-    // At the contact the plane goes through the point nearest to the centre.
+    // At the contact the plane goes through the point nearest to the center.
     const Vec3 there = tip + judgement.free_fraction * trial;
     const ClosestPoint closest = closest_point(mesh->triangle(plane.source), there);
     EXPECT_NEAR(closest.distance, r + margin, 1e-8);

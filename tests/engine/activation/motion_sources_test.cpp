@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sources of triangles that indices offer, held to each other by the certified rule bit for
-// bit: the walk of a WideBvh, and all hits around.
+// bit: the traversal of a WideBvh, and all hits around.
 
 #include "engine/activation/sources.h"
-#include "index/wide_bvh/walk/tree_walk.h"
+#include "index/wide_bvh/traversal/tree_traversal.h"
 #include "keepout/fixtures/poses.h"
-#include "keepout/index/motion_walk.h"
+#include "keepout/index/motion_traversal.h"
 #include "keepout/index/query.h"
 #include "trials.h"
 
@@ -52,7 +52,7 @@ class SourcesOn : public ::testing::TestWithParam<std::string> {};
 TEST_P(SourcesOn, AgreeBitForBitOnEachTarget) {
   Sources sources(make_shape(GetParam()));
   Budget budget;
-  ASSERT_NE(sources.tree->walk_along_motions(budget), nullptr);
+  ASSERT_NE(sources.tree->traverse_along_motions(budget), nullptr);
   std::vector<Outcome> on_the_first;
   on_each_simd_target([&] {
     std::vector<Outcome> made;
@@ -61,7 +61,7 @@ TEST_P(SourcesOn, AgreeBitForBitOnEachTarget) {
         const StepOptions options{
             .radius = 1.1 * length, .margin = margin, .recovery = 0.2 * margin};
         made.push_back(sources.asking(motion, options));
-        EXPECT_EQ(sources.walking(motion, options), made.back())
+        EXPECT_EQ(sources.traversing(motion, options), made.back())
             << motion.tip.transpose() << " by " << motion.desired.transpose();
         return made.back().motion;
       });
@@ -103,7 +103,7 @@ TEST(SourcesWithOptions, AgreeBitForBitWithJointsAndRowsOnEachTarget) {
           options.damping = 1e-3;
         }
         const Outcome expected = sources.asking(asked, options);
-        EXPECT_EQ(sources.walking(asked, options), expected) << "variant " << variant;
+        EXPECT_EQ(sources.traversing(asked, options), expected) << "variant " << variant;
         limited += expected.status == Status::limited;
         if (variant == 0) way = expected.motion;
       }
@@ -116,12 +116,12 @@ TEST(SourcesWithOptions, AgreeBitForBitWithJointsAndRowsOnEachTarget) {
   EXPECT_GT(limited, 100u);
 }
 
-TEST(TreeWalkMemory, DoesNotChangeAnswers) {
+TEST(TreeTraversalMemory, DoesNotChangeAnswers) {
   Sources sources(make_shape("star_bumps"));
   std::size_t limited = 0;
   drag(sources, scales[0], 10, [&](const Motion& motion, double margin, double length) {
     const StepOptions options{.radius = 1.1 * length, .margin = margin};
-    const Outcome remembered = sources.walking(motion, options);
+    const Outcome remembered = sources.traversing(motion, options);
     const auto fresh = guard(sources.mesh, sources.tree, options);
     EXPECT_EQ(Outcome(fresh->step(motion)), remembered);
     limited += remembered.status == Status::limited;
@@ -132,7 +132,7 @@ TEST(TreeWalkMemory, DoesNotChangeAnswers) {
 
 /// A reach that grew with every stroke until large boxes were left over would have each cycle look
 /// into them, and would cover all that is asked about, so that nothing would ever mend it.
-TEST(TreeWalkMemory, IsOfLeavesHoweverManyStrokesThereWere) {
+TEST(TreeTraversalMemory, IsOfLeavesHoweverManyStrokesThereWere) {
   const auto mesh = mesh_of("cortex");
   const auto tree = std::make_shared<WideBvh>(mesh);
   const PdTree nearby(mesh);
@@ -141,7 +141,7 @@ TEST(TreeWalkMemory, IsOfLeavesHoweverManyStrokesThereWere) {
   const StepOptions options{.radius = 2e-3 * size, .margin = 2e-3 * size};
   const auto constraint = guard(mesh, tree, options);
   Budget unlimited;
-  TreeWalk walk(tree->tree(), unlimited);
+  TreeTraversal traversal(tree->tree(), unlimited);
   Random random(3);
   int limited = 0, unopened = 0;
   for (Vec3 tip : surface_points(*mesh, 300, 1.2 * options.margin, random)) {
@@ -150,10 +150,10 @@ TEST(TreeWalkMemory, IsOfLeavesHoweverManyStrokesThereWere) {
       const Vec3 way = nearest(tip).closest.offset.normalized() + along;
       const Vec3 desired = 0.5 * options.radius * way.normalized();
       const Ball region{tip + 0.5 * desired, 0.5 * desired.norm() + options.margin};
-      ASSERT_TRUE(walk.begin({tip, region, options.margin, desired.norm()}));
+      ASSERT_TRUE(traversal.begin({tip, region, options.margin, desired.norm()}));
       const Step made = constraint->step({.tip = tip, .desired = desired});
       limited += made.status == Status::limited;
-      unopened += walk.frontier().is_opened() ? 0 : 1;
+      unopened += traversal.cache().is_opened() ? 0 : 1;
       tip += made.motion;
     }
   }
@@ -161,24 +161,24 @@ TEST(TreeWalkMemory, IsOfLeavesHoweverManyStrokesThereWere) {
   EXPECT_LT(unopened, 60);  // one in a hundred, at the end of a reach that was tried
 }
 
-TEST(MotionWalk, IsOfferedByWideBvhAndMadeOfHitsForOthers) {
+TEST(MotionTraversal, IsOfferedByWideBvhAndMadeOfHitsForOthers) {
   const auto mesh = mesh_of(make_cube(0.5));
   Budget budget;
-  EXPECT_NE(WideBvh(mesh).walk_along_motions(budget), nullptr);
-  EXPECT_EQ(PdTree(mesh).walk_along_motions(budget), nullptr);
+  EXPECT_NE(WideBvh(mesh).traverse_along_motions(budget), nullptr);
+  EXPECT_EQ(PdTree(mesh).traverse_along_motions(budget), nullptr);
   Neighborhood near(mesh, std::make_shared<PdTree>(mesh), 100, budget);
-  EXPECT_NE(make_motion_walk(near), nullptr);
+  EXPECT_NE(make_motion_traversal(near), nullptr);
 }
 
 /// The wall comes to where it was free: what was known of free space must not let the tip through.
-TEST(TreeWalk, StopsOnceItsTreeIsRefit) {
+TEST(TreeTraversal, StopsOnceItsTreeIsRefit) {
   Sources sources(make_cube(5.0));
   const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
   const StepOptions options{.radius = 5.0, .margin = 1.0};
-  ASSERT_EQ(sources.walking(motion, options).status, Status::free);
+  ASSERT_EQ(sources.traversing(motion, options).status, Status::free);
   const auto mesh = mesh_of(moved(surface_of(*sources.mesh), {0.0, 0.0, 5.0}));
   sources.tree->refit(mesh);
-  const Outcome stopped = sources.walking(motion, options);
+  const Outcome stopped = sources.traversing(motion, options);
   EXPECT_EQ(stopped.status, Status::mesh_changed);
   EXPECT_EQ(stopped.motion, Vec3::Zero());
 
@@ -209,7 +209,7 @@ TEST(SourcesAtTheLeastMargin, AgreeBitForBitOnEachTarget) {
           const StepOptions options{.radius = 1.1 * length, .margin = 1.02 * margin};
           const Motion motion{.tip = tip, .desired = length * way};
           const Outcome expected = sources.asking(motion, options);
-          EXPECT_EQ(sources.walking(motion, options), expected)
+          EXPECT_EQ(sources.traversing(motion, options), expected)
               << shape << " " << times << " " << tip.transpose();
           held += expected.status == Status::limited || expected.status == Status::recovering;
           tip += expected.motion;
@@ -237,7 +237,7 @@ TEST(SourcesFarOff, AgreeBitForBitFarFromTheOrigin) {
   drag(sources, scales[0], 10, [&](const Motion& motion, double margin, double length) {
     const StepOptions options{.radius = 1.1 * length, .margin = margin};
     const Outcome expected = sources.asking(motion, options);
-    EXPECT_EQ(sources.walking(motion, options), expected);
+    EXPECT_EQ(sources.traversing(motion, options), expected);
     limited += expected.status == Status::limited;
     return expected.motion;
   });
@@ -256,7 +256,7 @@ TEST(SourcesOfFewTriangles, AgreeBitForBitWhereAllOfThemAreTooNear) {
                       .desired = {0.34218607883870539, 0, 0}};
   const Outcome expected = sources.asking(motion, options);
   EXPECT_EQ(expected.status, Status::recovering);
-  EXPECT_EQ(sources.walking(motion, options), expected);
+  EXPECT_EQ(sources.traversing(motion, options), expected);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count) {
     add(surface_points(mesh, count, offset * size, random));
   }
   add(random_points(mesh, count, random));
-  // Right above a corner or an edge: the neighbours' nearest points are the same.
+  // Right above a corner or an edge: the neighbors' nearest points are the same.
   for (std::size_t i = 0; i < 2 * count; ++i) tips.push_back(tips[i] + Vec3(0, 0, 1e-3 * size));
   return tips;
 }

@@ -43,23 +43,23 @@ inline std::unique_ptr<MotionConstraint> guard(const std::shared_ptr<const Mesh>
                                                const StepOptions& options) {
   return std::make_unique<MotionConstraint>(
       mesh, std::move(index), std::make_unique<CertifiedRule>(), std::make_unique<ActiveSet>(),
-      options, Capacity{.nodes = 16, .looks = Budget::unlimited});
+      options, Capacity{.nodes = 16, .work_units = Budget::unlimited});
 }
 
-/// The rule on one mesh and two indices: one that walks along motions, and one that does not.
+/// The rule on one mesh and two indices: one that traverses along motions, and one that does not.
 class Sources {
  public:
   explicit Sources(Surface surface)
       : mesh(mesh_of(std::move(surface))),
         tree(std::make_shared<WideBvh>(mesh)),
-        walking_(guard(mesh, tree, harmless())),
+        traversing_(guard(mesh, tree, harmless())),
         asking_(guard(mesh, std::make_shared<PdTree>(mesh), harmless())) {}
 
-  Outcome walking(const Motion& motion) { return Outcome(walking_->step(motion)); }
+  Outcome traversing(const Motion& motion) { return Outcome(traversing_->step(motion)); }
   Outcome asking(const Motion& motion) { return Outcome(asking_->step(motion)); }
-  Outcome walking(const Motion& motion, const StepOptions& options) {
-    walking_->set_options(options);
-    return walking(motion);
+  Outcome traversing(const Motion& motion, const StepOptions& options) {
+    traversing_->set_options(options);
+    return traversing(motion);
   }
   Outcome asking(const Motion& motion, const StepOptions& options) {
     asking_->set_options(options);
@@ -67,7 +67,7 @@ class Sources {
   }
   /// Of all steps to come.
   void set_options(const StepOptions& options) {
-    walking_->set_options(options);
+    traversing_->set_options(options);
     asking_->set_options(options);
   }
 
@@ -80,7 +80,7 @@ class Sources {
     return {.radius = size, .margin = size};
   }
 
-  std::unique_ptr<MotionConstraint> walking_;
+  std::unique_ptr<MotionConstraint> traversing_;
   std::unique_ptr<MotionConstraint> asking_;
 };
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hostile_triangle.h"
-#include "keepout/activation/facet.h"
+#include "keepout/activation/prepared_triangle.h"
 #include "keepout/fixtures/random.h"
 #include "trials.h"
 
@@ -129,20 +129,20 @@ void expect_a9(const Triangle& t) {
   const double kappa = 0.006 * tau;
   const double distance = independent_distance(t, Vec3::Zero());
   if (!(distance >= 3.9 * tau)) return;
-  const Facet facet(t, TriangleId(0));
-  const double proved = -facet.at_tip().support;
-  ASSERT_GE(facet.distance(), distance - kappa);
-  ASSERT_LE(facet.distance(), distance + tau / 128.0);
+  const PreparedTriangle prepared(t, TriangleId(0));
+  const double proved = -prepared.at_tip().support;
+  ASSERT_GE(prepared.distance(), distance - kappa);
+  ASSERT_LE(prepared.distance(), distance + tau / 128.0);
   double longest = 0.0;
   for (int i = 0; i < 3; ++i) longest = std::max(longest, (t[(i + 1) % 3] - t[i]).norm());
   const double height = (t[1] - t[0]).cross(t[2] - t[0]).norm() / longest;
   const bool is_needle = height < 0.01 * longest;
   const bool is_assumed = !is_needle || distance >= 1e-6 * size;
-  ASSERT_GE(proved, distance - (is_assumed ? kappa : 2.0 * tau) - 1e-12 * facet.distance())
+  ASSERT_GE(proved, distance - (is_assumed ? kappa : 2.0 * tau) - 1e-12 * prepared.distance())
       << "needle: " << is_needle << ", distance / size " << distance / size;
 }
 
-TEST(Facet, DistancesNearTheTipAreAsTheProofAssumes) {
+TEST(PreparedTriangle, DistancesNearTheTipAreAsTheProofAssumes) {
   // The worst that a search found: the normal proves 0.0133 tau less than the distance.
   expect_a9({Vec3(-0x1.251e468024715p-1, -0x1.1f496e2a4161p-1, 0x1.0234b444f1349p-1),
              Vec3(0x1.9772aa3be8f97p-6, 0x1.8f578a807abb7p-6, -0x1.66eb08564746fp-6),

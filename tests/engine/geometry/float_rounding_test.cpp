@@ -3,7 +3,7 @@
 // Screens in float stand on a tip being the sum of two floats. GCC 12 once dropped the second.
 #include <gtest/gtest.h>
 
-#include "index/wide_bvh/walk/filters.h"
+#include "index/wide_bvh/traversal/filters.h"
 #include "keepout/fixtures/random.h"
 
 namespace keepout {

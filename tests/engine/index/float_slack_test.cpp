@@ -7,8 +7,8 @@
 
 #include "engine/index/exact_index.h"
 #include "index/tree_parts/ball_screen.h"
-#include "index/wide_bvh/walk/filters.h"
-#include "index/wide_bvh/walk/frontier.h"
+#include "index/wide_bvh/traversal/filters.h"
+#include "index/wide_bvh/traversal/traversal_cache.h"
 
 namespace keepout {
 namespace {
@@ -117,7 +117,7 @@ TEST(FloatSlack, NoBoxIsPassedOverThatAMotionComesWithinTheMarginOf) {
 }
 
 // Each ball just touches one of the boxes.
-TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
+TEST(FloatSlack, ATraversalCacheHasEveryBoxThatItsBallTouches) {
   const auto mesh = beginning_of("cortex", LeafBlock::lanes * NodeBlock::lanes);
   const WideBvh index(mesh);
   ASSERT_EQ(index.tree().nodes().size(), 1u);
@@ -138,10 +138,10 @@ TEST(FloatSlack, AFrontierHasEveryBoxThatItsBallTouches) {
     }
     const std::size_t touched = random.below(NodeBlock::lanes);
     const double radius = distances[touched] * (1.0 + 1e-10);
-    Frontier frontier;
-    frontier.cover(index.tree(), {center, radius});
+    TraversalCache cache;
+    cache.cover(index.tree(), {center, radius});
     std::set<std::uint32_t> found;
-    for (const NodeBlock& block : frontier.blocks()) {
+    for (const NodeBlock& block : cache.blocks()) {
       found.insert(std::begin(block.child), std::end(block.child));
     }
     for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {

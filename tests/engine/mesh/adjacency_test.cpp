@@ -161,7 +161,7 @@ TEST(Adjacency, AgreesWithAnIndependentRecount) {
         ASSERT_EQ(kind, EdgeKind::inconsistent);
         continue;
       }
-      // The apex of the neighbour is below the plane of t at a ridge, and above it in a valley.
+      // The apex of the neighbor is below the plane of t at a ridge, and above it in a valley.
       const Vec3 apex = mesh.vertex(mesh.corners(other)[(back + 2) % 3]);
       const double height = mesh.normal(t).dot(apex - mesh.triangle(t)[0]);
       ASSERT_EQ(kind, height < -1e-9  ? EdgeKind::convex

@@ -13,7 +13,7 @@
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/self_intersection.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/mesh/load_mesh.h"
 
 namespace keepout {

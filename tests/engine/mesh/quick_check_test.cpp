@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <utility>
 
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "meshes.h"
 #include "messages.h"
 
 namespace keepout {
 namespace {
 
-void expect_what_the_doctor_finds(const Mesh& mesh, std::string_view what) {
+void expect_diagnostics(const Mesh& mesh, std::string_view what) {
   const MeshFindings findings = examine(mesh);
   for (const unsigned threads : {1u, 3u}) {
     const EdgeFaults faults = find_edge_faults(mesh, threads);
@@ -17,9 +17,9 @@ void expect_what_the_doctor_finds(const Mesh& mesh, std::string_view what) {
   }
 }
 
-TEST(QuickCheck, FindsWhatTheDoctorFindsOnEveryShape) {
+TEST(QuickCheck, AgreesWithExamineOnEveryShape) {
   for (const Shape& shape : shapes()) {
-    expect_what_the_doctor_finds(Mesh(shape.make()), shape.name);
+    expect_diagnostics(Mesh(shape.make()), shape.name);
   }
 }
 
@@ -37,9 +37,9 @@ TEST(QuickCheck, FindsOneMissingTriangleAndOneTurnedOneAmongThousands) {
       surface->triangles[other] = surface->triangles.back();
       surface->triangles.pop_back();
     }
-    expect_what_the_doctor_finds(Mesh(std::move(missing)), shape.name);
-    expect_what_the_doctor_finds(Mesh(std::move(turned)), shape.name);
-    expect_what_the_doctor_finds(Mesh(std::move(both)), shape.name);
+    expect_diagnostics(Mesh(std::move(missing)), shape.name);
+    expect_diagnostics(Mesh(std::move(turned)), shape.name);
+    expect_diagnostics(Mesh(std::move(both)), shape.name);
   }
 }
 
@@ -96,7 +96,7 @@ TEST(QuickCheck, TrianglesThatNameAVertexTwiceHaveNoEdges) {
   EXPECT_TRUE(quick_check(Mesh(std::move(surface))).empty());
 }
 
-TEST(Watertight, IsWhatTheDoctorFinds) {
+TEST(Watertight, AgreesWithExamine) {
   std::size_t watertight = 0;
   for (const Shape& shape : shapes()) {
     const Mesh mesh(shape.make());

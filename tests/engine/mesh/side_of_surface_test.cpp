@@ -3,7 +3,7 @@
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/index/pd_tree.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "meshes.h"
 #include "step/escape.h"

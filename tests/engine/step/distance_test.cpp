@@ -31,7 +31,7 @@ std::vector<MotionConstraint> forms_of(std::string_view rule,
   std::vector<MotionConstraint> forms;
   for (const auto& index : indices) {
     forms.emplace_back(mesh, index, make_activation(rule), std::make_unique<ActiveSet>(), options,
-                       Capacity{}, rule == "certified" ? Inside::led_out : Inside::taken_as_is);
+                       Capacity{}, rule == "certified" ? Inside::escape : Inside::taken_as_is);
   }
   return forms;
 }

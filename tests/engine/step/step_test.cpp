@@ -60,7 +60,7 @@ TEST(Step, ATipWithinTheMarginIsPushedOut) {
 }
 
 TEST(Step, AMarginThatNoMotionCanKeepMeansNoMotion) {
-  // Between two plates with a gap of 1, half a millimetre too narrow for the margin.
+  // Between two plates with a gap of 1, half a millimeter too narrow for the margin.
   auto constraint = guard<PaperRule>(mesh_of("thin_plates"), {.radius = 2.0, .margin = 0.75});
   const Box& bounds = constraint.mesh().bounds();
   const Vec3 in_the_gap(0, 0, bounds.low.z() + 1.5);

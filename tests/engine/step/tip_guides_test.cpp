@@ -214,7 +214,7 @@ TEST(TipGuides, HoldWhateverASolverAnswers) {
     if (i % 2 == 1) motion.jacobian = jacobian;
     const Step step = guard.step(motion);
     ASSERT_TRUE(step.ok() || step.motion.isZero(0.0)) << name(step.status);
-    if (step.status == Status::fallback) {
+    if (step.status == Status::truncated) {
       EXPECT_TRUE(step.limits.has(Limit::guide) && step.guides[0].limits);
       ++truncated;
     }
@@ -301,7 +301,7 @@ TEST(GuidesAndRows, NoPartOfATrialIsExecutedThatBreaksARow) {
     const double bound = 0.9 * desired.squaredNorm();
     // With a Jacobian no projection corrects the solver's answer.
     Motion motion{.tip = tip, .desired = desired, .jacobian = identity};
-    ASSERT_EQ(guard.step(motion).status, Status::fallback) << "without a row a part is executed";
+    ASSERT_EQ(guard.step(motion).status, Status::truncated) << "without a row a part is executed";
     motion.rows = ExtraRows(desired.data(), &bound, 1);
     const Step step = guard.step(motion);
     ASSERT_FALSE(step.ok()) << name(step.status);

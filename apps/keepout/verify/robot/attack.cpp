@@ -204,7 +204,8 @@ class RobotAttempt {
     tally_.rounds += rounds;
     tally_.most_rounds = std::max(tally_.most_rounds, rounds);
     tally_.rows += step.rows;
-    tally_.most_looks = std::max<std::uint64_t>(tally_.most_looks, subject_->looks());
+    tally_.most_work_units =
+        std::max<std::uint64_t>(tally_.most_work_units, subject_->work_units());
   }
 
   /// Counts cycles that execute almost nothing of the commanded motion, and searches for a better
@@ -227,7 +228,7 @@ class RobotAttempt {
     ++tally_.samples;
     tally_.excess += found.saved;
     tally_.useful += found.saved > useful_above ? 1 : 0;
-    tally_.movable += found.share >= movable_above ? 1 : 0;
+    tally_.movable += found.fraction >= movable_above ? 1 : 0;
   }
 
   const Campaign& campaign_;

@@ -32,7 +32,7 @@ auto per(std::uint64_t Tally::*of, Part Tally::*part) {
 }
 
 Json cut_share(const Tally& t) {
-  return ratio(t.statuses[static_cast<std::size_t>(Status::fallback)], t.cycles);
+  return ratio(t.statuses[static_cast<std::size_t>(Status::truncated)], t.cycles);
 }
 
 /// Returns the fraction of cycles that ended without a motion that may be executed.
@@ -85,7 +85,7 @@ const Columns<Tally>& robot_columns() {
       {"rows_mean", per(&Tally::cycles, &Tally::rows), "rows", 5, &figure_text<2>},
       {"step_us", &Tally::step, "us p50/p99/p99.9/max", 22, &times_text},
       {"point_us", &Tally::point, "point us p50/p99/p99.9/max", 26, &times_text},
-      {"looks_max", &Tally::most_looks, "looks", 8, &count_text},
+      {"looks_max", &Tally::most_work_units, "looks", 8, &count_text},
       {"excess_mean", per(&Tally::samples, &Tally::excess), "excess", 7, &figure_text<2>},
       {"excess_samples", &Tally::samples, "of", 5, &count_text},
       {"useful", &Tally::useful, "useful", 6, &count_text},
@@ -135,7 +135,7 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
   total.update(
       {{"blocked", blocked}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
-  if (!is_actual) account.emplace_back("The linearised motion was certified: unsafe, to compare.");
+  if (!is_actual) account.emplace_back("The linearized motion was certified: unsafe, to compare.");
   const auto count = [&](const char* key) { return total[key].get<std::uint64_t>(); };
   if (!findings.is_complete) {
     account.push_back("Incomplete: it was interrupted after " + counted(count("cycles"), "cycle") +
@@ -165,7 +165,7 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
                                                             : enumerated(campaign.scenarios, ",")},
                     {"cycles", grouped(campaign.cycles)},
                     {"speed", enumerated(speeds, ",")},
-                    {"motion", is_actual ? "actual" : "linearised"},
+                    {"motion", is_actual ? "actual" : "linearized"},
                     {"margin", trimmed(campaign.margin) + " mm"},
                     {"seed", std::to_string(campaign.seed)},
                     {"index", campaign.index}}});

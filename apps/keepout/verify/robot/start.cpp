@@ -25,7 +25,7 @@ Target before_surface(const SurfacePoint& on, double ahead, Random& random) {
 }
 
 /// Returns a place on the normal that is as far from another wall, where a tool that keeps `least`
-/// from both walls has a millimetre of room at most.
+/// from both walls has a millimeter of room at most.
 std::optional<Target> between_walls(Scene& scene, const SurfacePoint& on, double least,
                                     Random& random) {
   for (double way = least; way < least + 1.2; way += 0.1) {

@@ -68,7 +68,7 @@ class InstrumentSubject final : public RobotSubject {
   InstrumentStep step(std::span<const double> positions, const Twist& desired) override {
     return constraint_.step(positions, desired);
   }
-  std::size_t looks() const override { return constraint_.looks(); }
+  std::size_t work_units() const override { return constraint_.work_units(); }
   double tolerance() const override { return constraint_.tolerance(); }
 
  private:

@@ -22,7 +22,7 @@ class RobotSubject {
   /// Views in the result stay valid until the next step.
   virtual InstrumentStep step(std::span<const double> positions, const Twist& desired) = 0;
   /// The work of the last step.
-  virtual std::size_t looks() const { return 0; }
+  virtual std::size_t work_units() const { return 0; }
   /// The tolerance that the step claims for itself. [length]
   virtual double tolerance() const = 0;
 };

@@ -4,7 +4,7 @@ import { type PathFormat, PathRecord, pathFormat } from "./path_record.ts";
 
 /** How long the hand takes to come by 63 % to where the pointer has jumped. [cycles] */
 const handSmoothing = 8;
-/** Statuses up to this one, yielding, come with a motion: see keepout/status.h. */
+/** Statuses up to this one, degraded, come with a motion: see keepout/status.h. */
 const lastOk = 4;
 /** Nearer than this the hand is there. [mm] */
 const arrival = 1e-6;

@@ -10,8 +10,8 @@ const moods: Readonly<Record<string, "free" | "limited">> = {
   free: "free",
   limited: "limited",
   recovering: "limited",
-  fallback: "limited",
-  yielding: "limited",
+  truncated: "limited",
+  degraded: "limited",
 };
 
 /** The number of the body that is held back: the nearest to the surface while a row of it holds; else -1. */

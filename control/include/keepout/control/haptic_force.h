@@ -79,7 +79,7 @@ struct HeldForce {
 };
 
 /// Where the energy of a haptic display went since it was engaged. [N length]: millijoules, when
-/// the mesh is in millimetres. It adds up, to rounding:
+/// the mesh is in millimeters. It adds up, to rounding:
 ///
 ///     to_hand + stored + dissipated = from_proxy
 struct EnergyReport {

@@ -101,7 +101,9 @@ class HapticProxy {
   /// Returns the state of each of the options' guides in the last step; empty before it.
   std::span<const GuideState> guides() const noexcept { return guide_states_; }
   /// Returns the work of the last step: see Budget.
-  std::size_t looks() const noexcept { return guard_.looks(); }
+  std::size_t work_units() const noexcept { return guard_.work_units(); }
+  /// Returns work_units().
+  [[deprecated("use work_units()")]] std::size_t looks() const noexcept { return work_units(); }
   /// What went to and fro since it was engaged.
   const EnergyReport& energy() const noexcept { return energy_; }
   /// As they were given.

@@ -32,7 +32,7 @@ Mat3 nearest_rotation(const Mat3& matrix) noexcept;
 /// Whether a pose may be acted upon: its position is finite and its rotation is one.
 bool is_valid(const Pose& pose) noexcept;
 
-/// The rotation of a quaternion, which is normalised. Nothing when it is not finite, or when its
+/// The rotation of a quaternion, which is normalized. Nothing when it is not finite, or when its
 /// length is off 1 by more than the tolerance: an empty message has zeros.
 std::optional<Mat3> to_rotation(const Quaternion& quaternion) noexcept;
 
@@ -42,7 +42,7 @@ Quaternion to_quaternion(const Mat3& rotation) noexcept;
 /// What lengths are measured in. There is no default: whoever forgets is told.
 enum class LengthUnit : std::uint8_t { unstated, millimetre, metre };
 
-/// The unit of each side of a registration. CRTK and ROS speak metres; meshes are in millimetres.
+/// The unit of each side of a registration. CRTK and ROS speak meters; meshes are in millimeters.
 struct RegistrationUnits {
   LengthUnit transform = LengthUnit::unstated;  // of the matrix's translation
   LengthUnit robot = LengthUnit::unstated;      // of the robot's poses
@@ -88,7 +88,7 @@ class Registration {
   /// The inverse of force_to_mesh.
   Vec3 force_to_robot(const Vec3& force) const noexcept { return rotation_.transpose() * force; }
 
-  /// How many of the mesh's units one of the robot's is: 1000 for metres and millimetres.
+  /// How many of the mesh's units one of the robot's is: 1000 for meters and millimeters.
   double scale() const noexcept { return scale_; }
 
  private:

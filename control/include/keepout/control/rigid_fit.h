@@ -40,11 +40,11 @@ struct RigidFit {
 };
 
 /// The rigid fit, without a scale, of points measured in the robot's frame to the same ones in the
-/// mesh's: it minimises sum w |R s + t - m|^2 (Horn 1987; by singular values, and never a
+/// mesh's: it minimizes sum w |R s + t - m|^2 (Horn 1987; by singular values, and never a
 /// reflection: Umeyama 1991).
 ///
-/// Both in the mesh's unit: what is measured in metres has to be multiplied by 1000 for a mesh in
-/// millimetres. `weights`: one for each pair, or none for all alike; only their ratios count. They
+/// Both in the mesh's unit: what is measured in meters has to be multiplied by 1000 for a mesh in
+/// millimeters. `weights`: one for each pair, or none for all alike; only their ratios count. They
 /// are best proportional to 1 / (localisation error)^2 of the pair, and target_error takes them
 /// for that.
 ///

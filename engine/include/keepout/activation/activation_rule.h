@@ -88,7 +88,7 @@ class ActivationRule {
   virtual bool guards_a_tool() const noexcept { return false; }
 
   /// Returns true if the rule queries the index for all triangles in the region; false if it uses
-  /// the index's own walk (SpatialIndex::walk_along_motions). Precondition: prepare.
+  /// the index's own traversal (SpatialIndex::traverse_along_motions). Precondition: prepare.
   virtual bool makes_queries() const noexcept { return true; }
 
   /// Returns the region in which the cycle must keep the ends of motions if there are neither
@@ -99,8 +99,8 @@ class ActivationRule {
   /// searched_ends(), grown by the required clearance. Precondition: prepare.
   virtual Ball region(const RuleInput& input) const noexcept;
 
-  /// Gathers the triangles that touch region() from the index, or begins a walk that finds them
-  /// trial by trial. Returns false if they exceed the capacity or the work budget.
+  /// Gathers the triangles that touch region() from the index, or begins a traversal that finds
+  /// them trial by trial. Returns false if they exceed the capacity or the work budget.
   [[nodiscard]] virtual bool gather(const RuleInput& input) noexcept;
 
   /// Opens a cycle: finds if the tip is too close, and appends the planes that hold for every

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "keepout/activation/activation_rule.h"
-#include "keepout/activation/facet.h"
 #include "keepout/activation/first_contact.h"
-#include "keepout/index/motion_walk.h"
+#include "keepout/activation/prepared_triangle.h"
+#include "keepout/index/motion_traversal.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
@@ -25,9 +25,9 @@ struct CertifiedTerms;
 /// at most one plane in a search. Proof: docs/certified-step.md. Search and tolerances:
 /// docs/certified-step-algorithm.md.
 ///
-/// The triangles come from the index, by a walk along each trial motion. The rule judges them here,
-/// in double, one triangle at a time: so the answers are bitwise identical on every index, whatever
-/// the index left out as surely clear.
+/// The triangles come from the index, by a traverse along each trial motion. The rule judges them
+/// here, in double, one triangle at a time: so the answers are bitwise identical on every index,
+/// whatever the index left out as surely clear.
 ///
 /// Guarantee, for every motion dx that judge() accepts, under the assumptions of
 /// docs/certified-step.md: dist(x + s dx, mesh) >= min(clearance, dist(x, mesh)) - 3 tolerance for
@@ -49,7 +49,7 @@ class CertifiedRule final : public ActivationRule {
   bool relinearize(const RuleInput& input, std::span<const HalfSpace> planes,
                    HalfSpaceBuffer& next) noexcept override;
   void add_alternatives(TriangleId triangle, HalfSpaceBuffer& planes) const noexcept override;
-  std::size_t triangles() const noexcept override { return facets_.size(); }
+  std::size_t triangles() const noexcept override { return prepared_.size(); }
 
   /// Returns tau, the tolerance of distances at a tip: 2e-10 of longest edge, radius and clearance,
   /// plus 4e-16 of the 1-norm of the tip. It depends on the whole mesh and not on the triangles
@@ -58,40 +58,42 @@ class CertifiedRule final : public ActivationRule {
   double tolerance(const RuleInput& input) const noexcept;
 
  private:
-  /// The result of a walk along a trial.
+  /// The result of a traverse along a trial.
   struct Passage {
     /// The first contact that speaks against the trial.
-    Contact contact{MotionWalk::never, {Vec3::Zero(), 0.0, no_triangle}};
-    std::uint32_t facet = MotionWalk::no_note;  // its index in facets_; no_note: no contact
-    bool is_too_close = false;  // a triangle is too close to the tip: contacts mean nothing
-    bool nothing_near = false;  // neither this trial nor one like it comes near anything
+    Contact contact{MotionTraversal::never, {Vec3::Zero(), 0.0, no_triangle}};
+    std::uint32_t prepared =
+        MotionTraversal::no_note;  // its index in prepared_; no_note: no contact
+    bool is_too_close = false;     // a triangle is too close to the tip: contacts mean nothing
+    bool nothing_near = false;     // neither this trial nor one like it comes near anything
 
-    bool has_contact() const noexcept { return facet != MotionWalk::no_note; }
+    bool has_contact() const noexcept { return prepared != MotionTraversal::no_note; }
   };
   class ContactSearch;
 
-  void forget_facets(double level) noexcept;
-  Passage walk_along(const Vec3& trial, std::span<const HalfSpace> planes,
-                     double too_close) noexcept;
+  void forget_prepared_triangles(double level) noexcept;
+  Passage traverse_along(const Vec3& trial, std::span<const HalfSpace> planes,
+                         double too_close) noexcept;
   template <class Accepts>
-  const Facet* nearest(const Accepts& accepts) const noexcept;
-  void choose_walls(const Facet& first, double too_close) noexcept;
+  const PreparedTriangle* nearest(const Accepts& accepts) const noexcept;
+  void choose_walls(const PreparedTriangle& first, double too_close) noexcept;
   void add_planes_of_walls(HalfSpaceBuffer& planes) noexcept;
-  const Facet& facet(TriangleId triangle) const noexcept;
+  const PreparedTriangle& prepared(TriangleId triangle) const noexcept;
 
-  std::unique_ptr<MotionWalk> walk_;
+  std::unique_ptr<MotionTraversal> traversal_;
 
   // Of this cycle.
   std::unique_ptr<CertifiedTerms> terms_;
-  /// The walk along the target without planes, if open() made it: judge() uses it for the first
+  /// The traverse along the target without planes, if open() made it: judge() uses it for the first
   /// trial, which is the target.
   std::optional<Passage> at_target_;
-  /// The facets that were examined. The walk's notes are indices in here, so the walk begins again
-  /// whenever the facets are cleared. A triangle may be here twice, if the walk forgot its note.
-  Buffer<Facet> facets_;
+  /// The prepared triangles that were examined. The traversal's notes are indices in here, so the
+  /// traversal begins again whenever the prepared triangles are cleared. A triangle may be here
+  /// twice, if the traversal forgot its note.
+  Buffer<PreparedTriangle> prepared_;
   static constexpr std::size_t most_walls = 12;
-  Buffer<Facet> walls_{most_walls};  // near a tip that is too close, one for each direction, until
-                                     // their planes are added
+  Buffer<PreparedTriangle> walls_{most_walls};  // near a tip that is too close, one for each
+                                                // direction, until their planes are added
 };
 
 }  // namespace keepout

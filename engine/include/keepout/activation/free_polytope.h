@@ -38,7 +38,7 @@ void hold_still(HalfSpaceBuffer& planes) noexcept;
 /// reach of it is behind an earlier one. Of its face plane, and of the plane across the way to its
 /// closest point, that one is taken which leaves more of what the earlier planes left, counted on
 /// fixed probe points in the ball. Planes stand off by a hundredth of the radius, or by a quarter
-/// of their room if that is less, so that nearly coplanar neighbours are behind them as well: that
+/// of their room if that is less, so that nearly coplanar neighbors are behind them as well: that
 /// costs a hundredth of the volume and saves a quarter of the planes.
 ///
 /// Not thread-safe: one for each thread; the mesh is shared.

@@ -12,7 +12,7 @@ namespace keepout {
 
 class PaperBlocks;
 
-/// Algorithm 1 of Li et al. 2020: three conditions on each triangle and its neighbours decide which
+/// Algorithm 1 of Li et al. 2020: three conditions on each triangle and its neighbors decide which
 /// planes are active. Kept for comparison: it is not always safe, nor tight (docs/activation.md).
 ///
 /// Where the paper is silent or contradicts itself, we decide:
@@ -21,7 +21,7 @@ class PaperBlocks;
 /// - At a vertex, both edges of T_i that meet there are asked. Condition 2 goes first; Condition 3
 ///   applies if either edge is concave.
 /// - The plane of Condition 2 is shared by all triangles with that closest point. One whose
-///   qualifying neighbour has a lower id leaves it to that neighbour.
+///   qualifying neighbor has a lower id leaves it to that neighbor.
 /// - With the tip on the surface, x - CP has no direction: the face plane {N_i, CP_i} is taken.
 /// - Boundary edges have no adjacent triangle, so neither condition can hold. Non-manifold edges,
 ///   and edges whose two windings contradict each other, are treated likewise.

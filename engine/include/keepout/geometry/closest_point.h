@@ -31,7 +31,7 @@ struct ClosestPoint {
 
 /// Returns the point of `triangle` nearest to `query`: the exact kernel of queries. It decides
 /// which triangles touch a ball and which is the nearest, so that accuracy does not depend on the
-/// index. (The certified rule judges trials by Facet.)
+/// index. (The certified rule judges trials by PreparedTriangle.)
 ///
 /// The offset and the distance are the same, bit for bit, in whatever order the corners are given.
 /// All arithmetic is relative to the query, so the error (some 1e-15 of the largest distance from

@@ -10,12 +10,12 @@
 
 namespace keepout {
 
-/// The work that a control cycle may do, counted in work units ("looks" in names of options), so
+/// The work that a control cycle may do, counted in work units, so
 /// that it is the same on every processor. It also depends on what the caches of an index remember
-/// of earlier cycles (Frontier). A unit is about the time of an examination of sixteen boxes or
-/// triangles in single precision, of one triangle in double, or of sixteen planes; the constants
+/// of earlier cycles (TraversalCache). A unit is about the time of an examination of sixteen boxes
+/// or triangles in single precision, of one triangle in double, or of sixteen planes; the constants
 /// work_of_* count what takes longer. (Not counted: the nodes that a traversal cache opens,
-/// Frontier::cover, at most 32 each time, at most twice when a walk begins.)
+/// TraversalCache::cover, at most 32 each time, at most twice when a traversal begins.)
 ///
 /// Each part spends its units, before or after the work, and stops once all are spent. Triangles
 /// that were not examined are then unknown, so no motion is accepted that could depend on them.
@@ -25,8 +25,9 @@ class Budget {
   static constexpr std::size_t unlimited = std::numeric_limits<std::ptrdiff_t>::max() / 4;
 
   /// With so many work units in a cycle, at most `unlimited`.
-  explicit Budget(std::size_t looks = unlimited) noexcept
-      : all_(static_cast<std::int64_t>(looks < unlimited ? looks : unlimited)), left_(all_) {}
+  explicit Budget(std::size_t work_units = unlimited) noexcept
+      : all_(static_cast<std::int64_t>(work_units < unlimited ? work_units : unlimited)),
+        left_(all_) {}
 
   /// A new cycle begins.
   void renew() noexcept {
@@ -35,7 +36,7 @@ class Budget {
   }
 
   /// Takes so many work units away.
-  void spend(std::size_t looks) noexcept { left_ -= static_cast<std::int64_t>(looks); }
+  void spend(std::size_t work_units) noexcept { left_ -= static_cast<std::int64_t>(work_units); }
 
   /// Spends all: nothing more may be examined.
   void spend_all() noexcept { left_ = 0; }

@@ -33,8 +33,8 @@ class PdTree1997 final : public SpatialIndex {
 
   /// Of nodes, one below the other: what most_triangles need. At the mean a mesh may be split into
   /// one triangle and all the others, time and again; below twice the levels of a balanced tree it
-  /// is split at the median, so that a tree is at most three times as deep as that and a walk needs
-  /// no more than a fixed piece of stack.
+  /// is split at the median, so that a tree is at most three times as deep as that and a traversal
+  /// needs no more than a fixed piece of stack.
   static constexpr std::size_t most_levels = 93;
 
   /// Throws Error for a mesh of more than most_triangles.

@@ -35,8 +35,8 @@ void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> cand
 /// A mesh with its index and a work budget, and the triangles that touch a ball, exactly, on any
 /// index: the index proposes candidates, and refine() keeps the hits. All memory is made at
 /// construction. One for each thread; mesh and index are shared. Where the index has a search of
-/// its own, as for a walk along motions, this only carries mesh, index and the budget of the cycle,
-/// which is the one that the cycle itself spends.
+/// its own, as for a traversal along motions, this only carries mesh, index and the budget of the
+/// cycle, which is the one that the cycle itself spends.
 class Neighborhood {
  public:
   /// With a capacity of `room` candidates in a query, or of all triangles if they are fewer.

@@ -9,7 +9,7 @@
 #include "keepout/geometry/shapes.h"
 #include "keepout/ids.h"
 #include "keepout/index/budget.h"
-#include "keepout/index/motion_walk.h"
+#include "keepout/index/motion_traversal.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout {
@@ -53,15 +53,15 @@ class SpatialIndex {
     return no_triangle;
   }
 
-  /// Returns a walk of its own along motions, which shows far fewer triangles than are near; null
-  /// if the index has none: see make_motion_walk. Its work is taken from the budget. Index and
-  /// budget must outlive it, and the index must not be refit.
-  virtual std::unique_ptr<MotionWalk> walk_along_motions(Budget& /*budget*/) const {
+  /// Returns a traversal of its own along motions, which shows far fewer triangles than are near;
+  /// null if the index has none: see make_motion_traversal. Its work is taken from the budget.
+  /// Index and budget must outlive it, and the index must not be refit.
+  virtual std::unique_ptr<MotionTraversal> traverse_along_motions(Budget& /*budget*/) const {
     return nullptr;
   }
 
-  /// Returns true if walk_along_motions() returns a walk: override both.
-  virtual bool walks() const noexcept { return false; }
+  /// Returns true if traverse_along_motions() returns a traversal: override both.
+  virtual bool traverses() const noexcept { return false; }
 
   /// An index of a mesh whose triangles are the same, of as many vertices that are elsewhere, made
   /// from this one in a fraction of the time of a build, while this one is asked; null of an index

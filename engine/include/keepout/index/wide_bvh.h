@@ -30,8 +30,8 @@ class WideBvh final : public SpatialIndex {
   explicit WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
 
   /// Makes it the index of a mesh whose triangles are the same, of as many vertices that are
-  /// elsewhere: in about a tenth of the time of a new one, and nearly as good while neighbours stay
-  /// neighbours. Not to be called while others ask. Every motion constraint on it stops its steps
+  /// elsewhere: in about a tenth of the time of a new one, and nearly as good while neighbors stay
+  /// neighbors. Not to be called while others ask. Every motion constraint on it stops its steps
   /// from then on, until it is told to go on with the moved mesh: see MotionConstraint::follow.
   /// Throws Error, and stays as it is, if the corners of a triangle differ, or without a mesh.
   void refit(std::shared_ptr<const Mesh> moved, unsigned threads = 0);
@@ -48,7 +48,7 @@ class WideBvh final : public SpatialIndex {
     collect(ball, candidates, nullptr);
   }
 
-  /// In one walk: what has a box that comes near the segment.
+  /// In one traversal: what has a box that comes near the segment.
   void collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept override;
 
   /// The same, and adds to `counts` what it had to look at, unless it is null.
@@ -58,8 +58,8 @@ class WideBvh final : public SpatialIndex {
   TriangleId nearest(const Vec3& point, Budget& budget) const noexcept override;
 
   /// Through the boxes along the motion, to the first triangle in its way.
-  std::unique_ptr<MotionWalk> walk_along_motions(Budget& budget) const override;
-  bool walks() const noexcept override { return true; }
+  std::unique_ptr<MotionTraversal> traverse_along_motions(Budget& budget) const override;
+  bool traverses() const noexcept override { return true; }
 
   std::unique_ptr<SpatialIndex> refitted(std::shared_ptr<const Mesh> moved) const override;
 

@@ -22,7 +22,7 @@ enum class EdgeKind : std::uint8_t {
 };
 
 /// Which triangle lies across each edge of a welded mesh, and how the surface bends there. Only the
-/// rules that reason about neighbours need it: it is built apart from the mesh.
+/// rules that reason about neighbors need it: it is built apart from the mesh.
 class Adjacency {
  public:
   /// Of a welded mesh, on all processors. The mesh need not outlive it.

@@ -73,11 +73,11 @@ struct LoadedMesh {
 std::string lower_extension(const std::filesystem::path& path);
 
 /// Reads a triangle mesh from a file and welds it exactly: STL, PLY, OBJ, OFF, legacy VTK or VTP,
-/// by its extension in any case. Polygons are triangulated. Nothing is repaired: see doctor.h. The
-/// mesh is scaled, turned or flipped only if the options say so, and `notices` reports it. A file
-/// that states its space (as 3D Slicer writes it) gets a warning unless `options.space` says what
-/// is wanted, and one that states two is an error; so is a demand on a file of unknown space. A
-/// file that states a unit other than the one that it is read in gets a warning. The mesh gets a
+/// by its extension in any case. Polygons are triangulated. Nothing is repaired: see diagnostics.h.
+/// The mesh is scaled, turned or flipped only if the options say so, and `notices` reports it. A
+/// file that states its space (as 3D Slicer writes it) gets a warning unless `options.space` says
+/// what is wanted, and one that states two is an error; so is a demand on a file of unknown space.
+/// A file that states a unit other than the one that it is read in gets a warning. The mesh gets a
 /// warning for a size that is none of anatomy in mm, for an open surface, and for an inconsistent
 /// winding.
 ///

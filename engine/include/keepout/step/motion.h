@@ -84,9 +84,9 @@ struct Step {
 /// The time of each stage of a cycle. Stages that a step does not reach stay at zero: all of them
 /// in an escape. [ns]
 struct StageTimes {
-  std::int64_t query = 0;       // the rule gathers triangles: a query, or the beginning of a walk
-  std::int64_t activation = 0;  // the rule opens the cycle; may walk along the target
-  std::int64_t solve = 0;       // solve, judge, cut and refine; may walk along each trial
+  std::int64_t query = 0;  // the rule gathers triangles: a query, or the beginning of a traversal
+  std::int64_t activation = 0;  // the rule opens the cycle; may traverse along the target
+  std::int64_t solve = 0;       // solve, judge, cut and refine; may traverse along each trial
 
   /// Returns the time of all stages. [ns]
   std::int64_t total() const noexcept { return query + activation + solve; }

@@ -23,12 +23,12 @@ class TipMemory;
 
 /// The treatment of a tip that starts on the forbidden side. For the certified rule.
 enum class Inside : std::uint8_t {
-  led_out,     // escapes straight through the nearest point of the surface, before anything else
+  escape,      // escapes straight through the nearest point of the surface, before anything else
   taken_as_is  // is not classified: the tip keeps its clearance on whichever side it is
 };
 
 /// The names of Inside.
-inline constexpr std::array<std::string_view, 2> inside_names{"led_out", "taken_as_is"};
+inline constexpr std::array<std::string_view, 2> inside_names{"escape", "taken_as_is"};
 
 /// Planes around a tip.
 struct Polytope {
@@ -45,20 +45,20 @@ struct Polytope {
 /// solver together, with their memory. Every step of a tip runs through here. Examples call an
 /// object of this type `guard`.
 ///
-///     target -> trial -> rule <-> index walk -> accepted: step
+///     target -> trial -> rule <-> index traversal -> accepted: step
 ///                 ^        |
 ///                 |        v
 ///                 +-- solver <- planes
 ///
 /// This is the loop by default, under the rule certified on a WideBvh. The first trial is the
 /// target itself, without planes. The index shows the rule the triangles in the way of each trial
-/// (MotionWalk). The rule accepts the trial, or adds a plane, and the solver finds the next trial
-/// within the planes. Other indices and rules work on exact hits instead: the index proposes
+/// (MotionTraversal). The rule accepts the trial, or adds a plane, and the solver finds the next
+/// trial within the planes. Other indices and rules work on exact hits instead: the index proposes
 /// candidates, and the exact kernel keeps those in the region (Neighborhood).
 ///
 /// Not thread-safe: one for each control loop; mesh and index may be shared.
 ///
-/// On a watertight mesh with Inside::led_out, a tip that the last step did not move there is
+/// On a watertight mesh with Inside::escape, a tip that the last step did not move there is
 /// classified as inside or outside. From there on no certified step changes sides.
 class MotionConstraint {
  public:
@@ -66,7 +66,7 @@ class MotionConstraint {
   /// of other threads too; rule and solver may not. Throws Error when a part is missing, when the
   /// index is of another mesh, when the mesh, an option or a capacity is out of range, and when
   /// tips are to be led out under a rule that guards a whole tool. Makes all memory here.
-  /// Unlike make_motion_constraint, whose default is Inside::led_out, this does not classify tips
+  /// Unlike make_motion_constraint, whose default is Inside::escape, this does not classify tips
   /// unless `inside` says so.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                    std::unique_ptr<ActivationRule> rule, std::unique_ptr<Solver> solver,
@@ -116,9 +116,11 @@ class MotionConstraint {
   /// follow(), and after a follow() that threw an Error of the rule.
   bool is_current() const noexcept { return is_prepared_ && neighborhood_->is_current(); }
 
-  /// Returns the work units (looks) that the last step or polytope spent: see Budget. The most that
-  /// it may spend: Capacity::looks.
-  std::size_t looks() const noexcept { return budget_->spent(); }
+  /// Returns the work units that the last step or polytope spent: see Budget. The most that
+  /// it may spend: Capacity::work_units.
+  std::size_t work_units() const noexcept { return budget_->spent(); }
+  /// Returns work_units().
+  [[deprecated("use work_units()")]] std::size_t looks() const noexcept { return work_units(); }
 
   /// Keeps the tip in these guides' regions as well from the next step on, instead of those that
   /// there are: see Guide. Within the same cycle and work budget as the mesh. Throws Error, and

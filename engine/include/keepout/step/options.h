@@ -101,7 +101,7 @@ constexpr double longest_motion(const StepOptions& options) noexcept {
 
 /// Capacity for the largest step; a step that needs more ends with over_capacity.
 struct Capacity {
-  /// Candidates of one query. Under the certified rule, on an index that walks along motions, a
+  /// Candidates of one query. Under the certified rule, on an index that traverses along motions, a
   /// step makes queries only to classify a tip.
   std::size_t triangles = std::size_t{1} << 16;
   /// Planes of a rule at the same time; see most_cutting_planes.
@@ -110,15 +110,19 @@ struct Capacity {
   std::size_t extra_rows = 64;  // of the caller's own
   std::size_t nodes = 0;        // of the branch and bound; at least StepOptions::nodes
   /// Work units of one cycle: see Budget. A motion that cannot be proven with them is not made. 0:
-  /// looks_of_a_walk on an index that walks along motions, such as wide_bvh, and looks_of_queries
-  /// on others, which return all triangles in the region.
-  std::size_t looks = 0;
+  /// work_units_of_traversals on an index that traverses along motions, such as wide_bvh, and
+  /// work_units_of_queries on others, which return all triangles in the region.
+  union {
+    std::size_t work_units = 0;
+    [[deprecated("use work_units")]] std::size_t looks;
+  };
 
-  static constexpr std::size_t looks_of_a_walk = std::size_t{1} << 16;   // of an index that walks
-  static constexpr std::size_t looks_of_queries = std::size_t{1} << 22;  // not for real time
+  static constexpr std::size_t work_units_of_traversals = std::size_t{1}
+                                                          << 16;  // of an index that traverses
+  static constexpr std::size_t work_units_of_queries = std::size_t{1} << 22;  // not for real time
 
-  /// Returns `looks`, or if that is 0, the default for an index. Allocates.
-  static std::size_t looks_or_default(std::size_t looks, const SpatialIndex& index);
+  /// Returns `work_units`, or if that is 0, the default for an index. Allocates.
+  static std::size_t work_units_or_default(std::size_t work_units, const SpatialIndex& index);
 };
 
 /// The table of these options.
@@ -130,9 +134,9 @@ inline constexpr std::array capacity_options{
                                  "Capacity for the columns of a Jacobian."),
     option<&Capacity::extra_rows>("max_rows", "", {0, 1 << 30},
                                   "Capacity for the caller's own rows."),
-    option<&Capacity::looks>(
-        "max_looks", "", {0, static_cast<double>(Budget::unlimited)},
-        "Work budget of a cycle, in looks; 0: 65,536 on wide_bvh, 4,194,304 on other "
+    option<&Capacity::work_units>(
+        "max_work_units", "", {0, static_cast<double>(Budget::unlimited)},
+        "Work budget of a cycle, in work units; 0: 65,536 on wide_bvh, 4,194,304 on other "
         "indices.")};
 
 /// See table_of(const StepOptions&).

@@ -10,18 +10,19 @@
 
 namespace keepout {
 
-/// Finds the first contact that speaks against a trial, among the triangles that the walk shows:
-/// rule 5 of docs/certified-step.md. Adds the triangles that it examines to the facets of the rule.
+/// Finds the first contact that speaks against a trial, among the triangles that the traversal
+/// shows: rule 5 of docs/certified-step.md. Adds the triangles that it examines to the prepared
+/// triangles of the rule.
 class CertifiedRule::ContactSearch final : public TriangleVisitor {
  public:
   /// Writes to `passage`, all but nothing_near. A triangle nearer to the tip than `too_close` ends
-  /// the search for contacts: visit() returns 0, and the walk then shows only triangles that may be
-  /// within the level at the start of the motion. So the facets get all triangles nearer than
-  /// `too_close`.
+  /// the search for contacts: visit() returns 0, and the traversal then shows only triangles that
+  /// may be within the level at the start of the motion. So the prepared triangles get all
+  /// triangles nearer than `too_close`.
   ContactSearch(CertifiedRule& rule, const Vec3& trial, std::span<const HalfSpace> planes,
                 double too_close, Passage& passage) noexcept
       : terms_(*rule.terms_),
-        facets_(rule.facets_),
+        prepared_(rule.prepared_),
         budget_(rule.budget()),
         trial_(trial),
         length_(trial.norm()),
@@ -30,7 +31,7 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
         too_close_(too_close),
         passage_(passage) {}
 
-  /// `note`: the triangle's index in the facets of the rule.
+  /// `note`: the triangle's index in the prepared triangles of the rule.
   double visit(TriangleId triangle, std::uint32_t& note,
                const Triangle* corners) noexcept override {
     examine(triangle, note, corners);
@@ -39,7 +40,7 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
 
  private:
   // In work units, about as long as each takes.
-  static constexpr std::size_t work_of_facet = 2;
+  static constexpr std::size_t work_of_a_triangle = 2;
   static constexpr std::size_t work_of_contact = 6;
 
   /// Returns the time after which contacts do not matter.
@@ -47,54 +48,54 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
 
   void examine(TriangleId triangle, std::uint32_t& note, const Triangle* corners) noexcept {
     budget_.spend(work_of_planes_);
-    const bool is_known = note != MotionWalk::no_note;
-    if (is_known) corners = &facets_[note].corners();
+    const bool is_known = note != MotionTraversal::no_note;
+    if (is_known) corners = &prepared_[note].corners();
     if (terms_.is_covered(*corners, trial_, planes_)) return;
     if (!is_known) {
-      if (facets_.size() == facets_.capacity()) {
+      if (prepared_.size() == prepared_.capacity()) {
         budget_.mark_overflow();
         budget_.spend_all();
         return;
       }
-      budget_.spend(work_of_facet);
-      facets_.push(Facet(*corners, triangle));
-      note = static_cast<std::uint32_t>(facets_.size() - 1);
+      budget_.spend(work_of_a_triangle);
+      prepared_.push(PreparedTriangle(*corners, triangle));
+      note = static_cast<std::uint32_t>(prepared_.size() - 1);
     }
-    const Facet& facet = facets_[note];
+    const PreparedTriangle& prepared = prepared_[note];
     // Rule 5 (b): too far for a motion of this length.
-    if (facet.distance() - length_ > terms_.demand(facet)) return;
-    if (facet.distance() < too_close_) {
+    if (prepared.distance() - length_ > terms_.demand(prepared)) return;
+    if (prepared.distance() < too_close_) {
       passage_.is_too_close = true;
       return;
     }
-    if (terms_.is_clear_at_once(facet, trial_)) return;
+    if (terms_.is_clear_at_once(prepared, trial_)) return;
     budget_.spend(work_of_contact);
     // The time of contact is cheaper to find than a proof of clearance, and most triangles that
-    // come this far are met. It is a lower bound (Lemma 6), so a facet whose contact is later than
-    // that with another facet does not matter. latest() is beyond the end until there is a contact:
-    // up to then a time after the end, which is a proof by rule 5 (d), still goes to stays_clear().
-    // If that finds no proof, the facet objects to the end of the trial, with free_fraction 1: that
-    // costs motion, not safety.
-    const Contact contact = terms_.contact(facet, trial_, latest());
-    if (!is_sooner(contact, facet)) return;
-    if (!terms_.is_surely_too_close(contact, facet, trial_)) {
-      const bool has_own_plane = has_plane(facet.triangle(), planes_);
-      if (terms_.stays_clear(facet, trial_, has_own_plane)) return;
+    // come this far are met. It is a lower bound (Lemma 6), so a prepared triangle whose contact is
+    // later than that with another prepared triangle does not matter. latest() is beyond the end
+    // until there is a contact: up to then a time after the end, which is a proof by rule 5 (d),
+    // still goes to stays_clear(). If that finds no proof, the prepared triangle objects to the end
+    // of the trial, with free_fraction 1: that costs motion, not safety.
+    const Contact contact = terms_.contact(prepared, trial_, latest());
+    if (!is_sooner(contact, prepared)) return;
+    if (!terms_.is_surely_too_close(contact, prepared, trial_)) {
+      const bool has_own_plane = has_plane(prepared.triangle(), planes_);
+      if (terms_.stays_clear(prepared, trial_, has_own_plane)) return;
     }
     passage_.contact = contact;
-    passage_.facet = note;
+    passage_.prepared = note;
   }
 
   /// Returns true if the contact is before the first one so far; of equals the first by its
   /// corners.
-  bool is_sooner(const Contact& contact, const Facet& facet) const noexcept {
+  bool is_sooner(const Contact& contact, const PreparedTriangle& prepared) const noexcept {
     const Contact& first = passage_.contact;
     return contact.time < first.time || (contact.time == first.time && passage_.has_contact() &&
-                                         facet.before(facets_[passage_.facet]));
+                                         prepared.before(prepared_[passage_.prepared]));
   }
 
   const CertifiedTerms& terms_;
-  Buffer<Facet>& facets_;
+  Buffer<PreparedTriangle>& prepared_;
   Budget& budget_;
   const Vec3& trial_;
   double length_;
@@ -113,15 +114,15 @@ constexpr double almost_parallel = 0.99;
 
 }  // namespace
 
-CertifiedRule::CertifiedRule() : terms_(std::make_unique<CertifiedTerms>()), facets_(0) {}
+CertifiedRule::CertifiedRule() : terms_(std::make_unique<CertifiedTerms>()), prepared_(0) {}
 
 CertifiedRule::~CertifiedRule() = default;
 
 void CertifiedRule::prepare(Neighborhood& neighborhood) {
   ActivationRule::prepare(neighborhood);
-  walk_ = make_motion_walk(neighborhood);
-  // The walls are in facets_ twice if the walk shows them again.
-  facets_ = Buffer<Facet>(walk_->room() + most_walls);
+  traversal_ = make_motion_traversal(neighborhood);
+  // The walls are in prepared_ twice if the traversal shows them again.
+  prepared_ = Buffer<PreparedTriangle>(traversal_->room() + most_walls);
 }
 
 double CertifiedRule::tolerance(const RuleInput& input) const noexcept {
@@ -135,16 +136,16 @@ Ball CertifiedRule::region(const RuleInput& input) const noexcept {
   return ball;
 }
 
-bool CertifiedRule::makes_queries() const noexcept { return !index().walks(); }
+bool CertifiedRule::makes_queries() const noexcept { return !index().traverses(); }
 
-/// Sets the levels, and begins the walk, which shows triangles trial by trial: none is gathered
-/// yet.
+/// Sets the levels, and begins the traversal, which shows triangles trial by trial: none is
+/// gathered yet.
 bool CertifiedRule::gather(const RuleInput& input) noexcept {
-  facets_.clear();
+  prepared_.clear();
   *terms_ = CertifiedTerms::keeping(input.clearance, tolerance(input));
   // A motion that ends in the ball over the target is no longer than its diameter.
   const double longest = std::min(input.longest, 2.0 * searched_ends(input).radius * (1.0 + 1e-9));
-  return walk_->begin({input.tip, region(input), terms_->plane_level, longest});
+  return traversal_->begin({input.tip, region(input), terms_->plane_level, longest});
 }
 
 /// Called twice in a recovery (Cycle::run): the same tip gives the same levels and walls, and the
@@ -154,15 +155,15 @@ Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
   walls_.clear();
   const double tau = terms_->tolerance;
   if (!(input.clearance > needed_clearance * tau)) return {Status::margin_too_small};
-  if (walk_->region_is_empty()) return {};
+  if (traversal_->region_is_empty()) return {};
 
-  // The walk shows the triangles near the tip first. If the tip has its clearance, the walk also
-  // finds what speaks against the target, which is the first trial.
+  // The traversal shows the triangles near the tip first. If the tip has its clearance, the
+  // traversal also finds what speaks against the target, which is the first trial.
   const double too_close = input.clearance - lost_below * tau;
-  const Passage passage = walk_along(input.target, {}, too_close);
+  const Passage passage = traverse_along(input.target, {}, too_close);
   if (budget().is_spent()) return {budget().failure()};
-  // Now facets_ has all triangles nearer than `too_close`.
-  const Facet* closest = nearest([](const Facet&) { return true; });
+  // Now prepared_ has all triangles nearer than `too_close`.
+  const PreparedTriangle* closest = nearest([](const PreparedTriangle&) { return true; });
   const std::optional<double> distance = known_distance(closest, input.clearance, tau);
   if (closest == nullptr || closest->distance() >= too_close) {
     at_target_ = passage;
@@ -178,70 +179,71 @@ Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
   const Vec3 target = retreat_target(input, closest->towards_tip(), lift);
   *terms_ = CertifiedTerms::recovering(closest->distance(), lift, tau);
   choose_walls(*closest, too_close);
-  forget_facets(terms_->plane_level);
+  forget_prepared_triangles(terms_->plane_level);
   return {Status::recovering, target, distance};
 }
 
-/// Forgets the facets together with the walk's notes, which are indices of facets. `level`: of the
-/// walks to come. [length]
-void CertifiedRule::forget_facets(double level) noexcept {
-  facets_.clear();
-  walk_->begin_again(level);
+/// Forgets the prepared triangles together with the traversal's notes, which are indices of
+/// prepared triangles. `level`: of the traversals to come. [length]
+void CertifiedRule::forget_prepared_triangles(double level) noexcept {
+  prepared_.clear();
+  traversal_->begin_again(level);
 }
 
-/// Walks along a trial to the first contact that speaks against it; see ContactSearch.
-CertifiedRule::Passage CertifiedRule::walk_along(const Vec3& trial,
-                                                 std::span<const HalfSpace> planes,
-                                                 double too_close) noexcept {
+/// Traverses the index along a trial to the first contact that speaks against it; see
+/// ContactSearch.
+CertifiedRule::Passage CertifiedRule::traverse_along(const Vec3& trial,
+                                                     std::span<const HalfSpace> planes,
+                                                     double too_close) noexcept {
   Passage passage;
   ContactSearch visitor(*this, trial, planes, too_close, passage);
-  passage.nothing_near = walk_->walk(trial, visitor);
+  passage.nothing_near = traversal_->traversal(trial, visitor);
   return passage;
 }
 
-/// Returns the nearest of the facets that `accepts` accepts, of equals the first by their corners;
-/// null if it accepts none.
+/// Returns the nearest of the prepared triangles that `accepts` accepts, of equals the first by
+/// their corners; null if it accepts none.
 template <class Accepts>
-const Facet* CertifiedRule::nearest(const Accepts& accepts) const noexcept {
-  const Facet* found = nullptr;
-  for (const Facet& facet : facets_) {
-    if (found != nullptr && facet.distance() > found->distance()) continue;
-    if (!accepts(facet)) continue;
+const PreparedTriangle* CertifiedRule::nearest(const Accepts& accepts) const noexcept {
+  const PreparedTriangle* found = nullptr;
+  for (const PreparedTriangle& prepared : prepared_) {
+    if (found != nullptr && prepared.distance() > found->distance()) continue;
+    if (!accepts(prepared)) continue;
     const bool is_first =
-        found == nullptr || facet.distance() < found->distance() || facet.before(*found);
-    if (is_first) found = &facet;
+        found == nullptr || prepared.distance() < found->distance() || prepared.before(*found);
+    if (is_first) found = &prepared;
   }
   return found;
 }
 
-/// Chooses facets nearer to the tip than `too_close` that face it from different directions, the
-/// nearest first. Precondition: `first` is the nearest, and it is nearer than that.
-void CertifiedRule::choose_walls(const Facet& first, double too_close) noexcept {
-  const auto is_new = [&](const Facet& facet) {
-    return facet.distance() < too_close &&
-           std::none_of(walls_.begin(), walls_.end(), [&](const Facet& wall) {
-             return wall.towards_tip().dot(facet.towards_tip()) > same_direction;
+/// Chooses prepared triangles nearer to the tip than `too_close` that face it from different
+/// directions, the nearest first. Precondition: `first` is the nearest, and it is nearer than that.
+void CertifiedRule::choose_walls(const PreparedTriangle& first, double too_close) noexcept {
+  const auto is_new = [&](const PreparedTriangle& prepared) {
+    return prepared.distance() < too_close &&
+           std::none_of(walls_.begin(), walls_.end(), [&](const PreparedTriangle& wall) {
+             return wall.towards_tip().dot(prepared.towards_tip()) > same_direction;
            });
   };
-  for (const Facet* next = &first; next != nullptr; next = nearest(is_new)) {
+  for (const PreparedTriangle* next = &first; next != nullptr; next = nearest(is_new)) {
     walls_.push(*next);
     if (walls_.size() == most_walls) return;
-    budget().spend(1 + facets_.size() / 8);
+    budget().spend(1 + prepared_.size() / 8);
   }
 }
 
 /// Adds the planes of all walls together, unless the planes have a similar one: between many faces
 /// a trial for each would cost too much of the budget.
 void CertifiedRule::add_planes_of_walls(HalfSpaceBuffer& planes) noexcept {
-  for (const Facet& wall : walls_) {
+  for (const PreparedTriangle& wall : walls_) {
     const bool has_similar = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
       return plane.source == wall.triangle() ||
              plane.normal.dot(wall.towards_tip()) > almost_parallel;
     });
-    if (has_similar || facets_.size() == facets_.capacity()) continue;
+    if (has_similar || prepared_.size() == prepared_.capacity()) continue;
     planes.push({wall.towards_tip(), wall.support(wall.towards_tip()) + terms_->plane_level,
                  wall.triangle()});
-    facets_.push(wall);
+    prepared_.push(wall);
   }
   walls_.clear();
 }
@@ -249,15 +251,15 @@ void CertifiedRule::add_planes_of_walls(HalfSpaceBuffer& planes) noexcept {
 Judgement CertifiedRule::judge(const RuleInput& input, const Vec3& trial,
                                HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
-  if (walk_->region_is_empty()) return {Verdict::accepted};
+  if (traversal_->region_is_empty()) return {Verdict::accepted};
   if (at_target_ && at_target_->nothing_near &&
-      (trial - input.target).norm() <= MotionWalk::alike * input.target.norm()) {
+      (trial - input.target).norm() <= MotionTraversal::alike * input.target.norm()) {
     return {Verdict::accepted};
   }
   const bool is_known = at_target_ && planes.empty() && trial == input.target;
   // No triangle ends the search for contacts: open() has dealt with the distance of the tip.
   constexpr double too_close = 0.0;
-  const Passage passage = is_known ? *at_target_ : walk_along(trial, planes.view(), too_close);
+  const Passage passage = is_known ? *at_target_ : traverse_along(trial, planes.view(), too_close);
   // If the budget is spent, triangles may have been left out, and nothing may be concluded.
   if (budget().is_spent()) return {Verdict::blocked, 0.0};
   if (!passage.has_contact()) return {Verdict::accepted};
@@ -266,7 +268,7 @@ Judgement CertifiedRule::judge(const RuleInput& input, const Vec3& trial,
   if (has_plane(plane.source, planes.view()) || planes.size() >= most_cutting_planes) {
     return {Verdict::blocked, free_fraction};
   }
-  planes.push(terms_->plane_for(facets_[passage.facet], input, trial, plane));
+  planes.push(terms_->plane_for(prepared_[passage.prepared], input, trial, plane));
   // With the first objection. A single wall gets its plane by an objection of its own.
   if (walls_.size() > 1) add_planes_of_walls(planes);
   return {Verdict::objected, free_fraction};
@@ -280,12 +282,12 @@ bool CertifiedRule::relax(HalfSpaceBuffer& planes) noexcept {
 bool CertifiedRule::relinearize(const RuleInput& input, std::span<const HalfSpace> planes,
                                 HalfSpaceBuffer& next) noexcept {
   bool changed = false;
-  budget().spend(planes.size() * (4 + facets_.size() / 64));
+  budget().spend(planes.size() * (4 + prepared_.size() / 64));
   for (const HalfSpace& plane : planes) {
     if (is_idle(plane, input)) continue;
     HalfSpace turned = plane;
     if (plane.source != no_triangle) {  // not the bound of the motion sphere
-      turned = terms_->turned(plane, facet(plane.source), input.accepted, input.accepted);
+      turned = terms_->turned(plane, prepared(plane.source), input.accepted, input.accepted);
     }
     next.push(turned);
     changed = changed || (turned.normal - plane.normal).squaredNorm() > least_turn * least_turn;
@@ -294,13 +296,13 @@ bool CertifiedRule::relinearize(const RuleInput& input, std::span<const HalfSpac
 }
 
 void CertifiedRule::add_alternatives(TriangleId triangle, HalfSpaceBuffer& planes) const noexcept {
-  if (triangle != no_triangle) terms_->add_alternatives(facet(triangle), planes);
+  if (triangle != no_triangle) terms_->add_alternatives(prepared(triangle), planes);
 }
 
-/// Returns the facet of a triangle that has a plane. Precondition: it was examined.
-const Facet& CertifiedRule::facet(TriangleId triangle) const noexcept {
-  return *std::find_if(facets_.begin(), facets_.end(),
-                       [&](const Facet& one) { return one.triangle() == triangle; });
+/// Returns the prepared triangle of a triangle that has a plane. Precondition: it was examined.
+const PreparedTriangle& CertifiedRule::prepared(TriangleId triangle) const noexcept {
+  return *std::find_if(prepared_.begin(), prepared_.end(),
+                       [&](const PreparedTriangle& one) { return one.triangle() == triangle; });
 }
 
 }  // namespace keepout

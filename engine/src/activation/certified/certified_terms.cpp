@@ -138,18 +138,18 @@ bool CertifiedTerms::is_covered(const Triangle& corners, const Vec3& trial,
   });
 }
 
-bool CertifiedTerms::stays_clear(const Facet& facet, const Vec3& trial,
+bool CertifiedTerms::stays_clear(const PreparedTriangle& prepared, const Vec3& trial,
                                  bool has_own_plane) const noexcept {
-  const double level = has_own_plane ? floor(facet) : demand(facet);
-  return proof_of_clearance(facet, trial, level, proof_slack * tolerance).has_value();
+  const double level = has_own_plane ? floor(prepared) : demand(prepared);
+  return proof_of_clearance(prepared, trial, level, proof_slack * tolerance).has_value();
 }
 
-Contact CertifiedTerms::contact(const Facet& facet, const Vec3& trial,
+Contact CertifiedTerms::contact(const PreparedTriangle& prepared, const Vec3& trial,
                                 double latest) const noexcept {
-  return first_contact(facet, trial, plane_level, contact_slack * tolerance, latest);
+  return first_contact(prepared, trial, plane_level, contact_slack * tolerance, latest);
 }
 
-bool CertifiedTerms::is_surely_too_close(const Contact& contact, const Facet& facet,
+bool CertifiedTerms::is_surely_too_close(const Contact& contact, const PreparedTriangle& prepared,
                                          const Vec3& trial) const noexcept {
   if (!contact.is_reached) return false;
   const double along = contact.touched.dot(trial) / trial.squaredNorm();
@@ -157,30 +157,30 @@ bool CertifiedTerms::is_surely_too_close(const Contact& contact, const Facet& fa
   // Closer by more than the rounding of `touched`, and than the slack of stays_clear, however small
   // the floor is.
   constexpr double clearly = 1.0 - 1e-5;
-  return nearest.norm() < clearly * floor(facet) - 2.0 * proof_slack * tolerance;
+  return nearest.norm() < clearly * floor(prepared) - 2.0 * proof_slack * tolerance;
 }
 
-HalfSpace CertifiedTerms::plane_for(const Facet& facet, const RuleInput& input, const Vec3& trial,
-                                    const HalfSpace& contact) const noexcept {
+HalfSpace CertifiedTerms::plane_for(const PreparedTriangle& prepared, const RuleInput& input,
+                                    const Vec3& trial, const HalfSpace& contact) const noexcept {
   if (input.accepted.isZero(0.0)) return contact;
   const std::optional<Vec3> proof =
-      proof_of_clearance(facet, input.accepted, floor(facet), proof_slack * tolerance);
+      proof_of_clearance(prepared, input.accepted, floor(prepared), proof_slack * tolerance);
   if (!proof) return contact;
-  const HalfSpace plane{*proof, facet.support(*proof) + plane_level, facet.triangle()};
-  return turned(plane, facet, input.accepted, trial);
+  const HalfSpace plane{*proof, prepared.support(*proof) + plane_level, prepared.triangle()};
+  return turned(plane, prepared, input.accepted, trial);
 }
 
-HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, const Vec3& kept,
-                                 const Vec3& towards) const noexcept {
-  const Vec3 change = facet.nearest_to(towards).normal - plane.normal;
+HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const PreparedTriangle& prepared,
+                                 const Vec3& kept, const Vec3& towards) const noexcept {
+  const Vec3 change = prepared.nearest_to(towards).normal - plane.normal;
   if (!(change.squaredNorm() > least_turn * least_turn)) return plane;
-  Turn turn(plane, change, facet.corners(), plane_level, kept, proof_slack * tolerance);
+  Turn turn(plane, change, prepared.corners(), plane_level, kept, proof_slack * tolerance);
   constexpr int most_evaluations = 16;  // five were seen
   double theta = 1.0;
   for (int i = 0; i < most_evaluations; ++i) {
     if (turn.is_allowed_at(theta)) {
       const Vec3 n = turn.normal();
-      return {n, facet.support(n) + plane_level, plane.source};
+      return {n, prepared.support(n) + plane_level, plane.source};
     }
     theta = std::min(turn.next(theta), theta);
     if (!(theta > 1e-6)) break;  // not worth it
@@ -188,22 +188,23 @@ HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const Facet& facet, con
   return plane;
 }
 
-void CertifiedTerms::add_alternatives(const Facet& facet, HalfSpaceBuffer& planes) const noexcept {
+void CertifiedTerms::add_alternatives(const PreparedTriangle& prepared,
+                                      HalfSpaceBuffer& planes) const noexcept {
   const auto add = [&](const Vec3& n) {
-    const double offset = facet.support(n) + plane_level;
+    const double offset = prepared.support(n) + plane_level;
     if (!n.isZero(0.0) && offset <= proof_slack * tolerance) {
-      planes.push({n, offset, facet.triangle()});
+      planes.push({n, offset, prepared.triangle()});
     }
   };
-  add(facet.normal_against(facet.corners()[0]));  // of the face, towards the tip
-  for (int edge = 0; edge < 3; ++edge) add(facet.normal_around(edge, plane_level));
+  add(prepared.normal_against(prepared.corners()[0]));  // of the face, towards the tip
+  for (int edge = 0; edge < 3; ++edge) add(prepared.normal_around(edge, plane_level));
 }
 
 bool is_idle(const HalfSpace& plane, const RuleInput& input) noexcept {
   return plane.normal.dot(input.accepted) - plane.offset > idle_slack * input.target.norm();
 }
 
-std::optional<double> known_distance(const Facet* nearest, double clearance,
+std::optional<double> known_distance(const PreparedTriangle* nearest, double clearance,
                                      double tolerance) noexcept {
   const double beyond = std::min(0.5 * region_beyond * tolerance, 5e-7 * clearance);
   if (nearest == nullptr || nearest->distance() > clearance + beyond) return std::nullopt;

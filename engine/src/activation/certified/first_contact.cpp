@@ -13,8 +13,9 @@ namespace {
 // Far above the most ever seen (9): beyond it the time is earlier than the contact, which is safe.
 constexpr int most_newton_steps = 48;
 
-HalfSpace plane_of(const Facet::Nearest& nearest, const Facet& facet, double level) noexcept {
-  return {nearest.normal, nearest.support + level, facet.triangle()};
+HalfSpace plane_of(const PreparedTriangle::Nearest& nearest, const PreparedTriangle& prepared,
+                   double level) noexcept {
+  return {nearest.normal, nearest.support + level, prepared.triangle()};
 }
 
 /// Returns the time until a motion along z comes within `level` of a point, where `away` leads from
@@ -28,41 +29,43 @@ double time_until(const Vec3& away, const Vec3& z, double level) noexcept {
   return missing / (falling + std::sqrt(square));
 }
 
-/// Returns the part of v across an edge: bitwise identical for every facet that shares the edge.
+/// Returns the part of v across an edge: bitwise identical for every prepared triangle that shares
+/// the edge.
 Vec3 across_edge(const Vec3& v, const Vec3& along) noexcept {
   return v - along * (along.dot(v) / along.squaredNorm());
 }
 
-/// Returns the time until a motion along z comes within `level` of a facet's corner, or of the line
-/// of its edge, where `away` leads from there to the start, across the edge; 0 for the face, or if
-/// it does not.
-double time_until(const Vec3& away, const Vec3& z, const Facet& facet, Feature feature,
-                  double level) noexcept {
+/// Returns the time until a motion along z comes within `level` of a prepared triangle's corner, or
+/// of the line of its edge, where `away` leads from there to the start, across the edge; 0 for the
+/// face, or if it does not.
+double time_until(const Vec3& away, const Vec3& z, const PreparedTriangle& prepared,
+                  Feature feature, double level) noexcept {
   if (is_face(feature)) return 0.0;
   if (is_vertex(feature)) return time_until(away, z, level);
-  return time_until(away, across_edge(z, facet.edge(number_of(feature))), level);
+  return time_until(away, across_edge(z, prepared.edge(number_of(feature))), level);
 }
 
-/// Returns the vector from a facet's corner, or across the line of its edge, to the tip. It depends
-/// on corner or edge alone, so times that are computed from it are bitwise identical for all facets
-/// that share them: their corners decide which is first, and not rounding.
-Vec3 from_feature_to_tip(const Facet& facet, Feature feature) noexcept {
+/// Returns the vector from a prepared triangle's corner, or across the line of its edge, to the
+/// tip. It depends on corner or edge alone, so times that are computed from it are bitwise
+/// identical for all prepared triangles that share them: their corners decide which is first, and
+/// not rounding.
+Vec3 from_feature_to_tip(const PreparedTriangle& prepared, Feature feature) noexcept {
   const int number = number_of(feature);
-  if (is_vertex(feature)) return -facet.corners()[number];
-  return -across_edge(facet.corners()[number == 2 ? 0 : number], facet.edge(number));
+  if (is_vertex(feature)) return -prepared.corners()[number];
+  return -across_edge(prepared.corners()[number == 2 ? 0 : number], prepared.edge(number));
 }
 
 /// Returns the contact of a motion with the plane of the face, which is no later than that with the
-/// facet. Reached if it is over the face. Returns nothing if the motion does not approach the
-/// plane.
-std::optional<Contact> contact_of_face_plane(const Facet& facet, const Vec3& z,
+/// prepared triangle. Reached if it is over the face. Returns nothing if the motion does not
+/// approach the plane.
+std::optional<Contact> contact_of_face_plane(const PreparedTriangle& prepared, const Vec3& z,
                                              double level) noexcept {
-  const Facet::Nearest nearest = facet.on_face_plane(Vec3::Zero());
+  const PreparedTriangle::Nearest nearest = prepared.on_face_plane(Vec3::Zero());
   const Line fall = line_of(nearest, z, level);
   if (!(fall.at_0 > 0.0 && fall.slope < 0.0)) return std::nullopt;
   const double time = -fall.at_0 / fall.slope;
-  Contact contact{time, plane_of(nearest, facet, level)};
-  if (facet.has_above(time * z)) {
+  Contact contact{time, plane_of(nearest, prepared, level)};
+  if (prepared.has_above(time * z)) {
     contact.is_reached = true;
     contact.touched = time * z - level * nearest.normal;
   }
@@ -71,9 +74,9 @@ std::optional<Contact> contact_of_face_plane(const Facet& facet, const Vec3& z,
 
 }  // namespace
 
-Contact first_contact(const Facet& facet, const Vec3& z, double level, double slack,
+Contact first_contact(const PreparedTriangle& prepared, const Vec3& z, double level, double slack,
                       double latest) noexcept {
-  Facet::Nearest nearest = facet.at_tip();
+  PreparedTriangle::Nearest nearest = prepared.at_tip();
   double time = 0.0;
   // A contact that is given up is later than `latest` by more than its last digits.
   const double digits = slack / z.norm();
@@ -88,32 +91,33 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
     if (nearest.distance - level <= slack) {
       const bool is_on_face = is_face(nearest.feature);
       const double direct = is_on_face ? 0.0
-                                       : time_until(from_feature_to_tip(facet, nearest.feature), z,
-                                                    facet, nearest.feature, level);
+                                       : time_until(from_feature_to_tip(prepared, nearest.feature),
+                                                    z, prepared, nearest.feature, level);
       if (direct > 0.0 && std::abs(direct - time) <= digits) time = direct;
-      return {time, plane_of(nearest, facet, level), true,
+      return {time, plane_of(nearest, prepared, level), true,
               last * z - nearest.distance * nearest.normal};
     }
     // Too late, or no progress in double.
     if (time > too_late || !(time > last && time < 1.0)) break;
     if (is_face(nearest.feature)) {
       // The contact of its plane is the contact if it is over the face.
-      if (facet.has_above(time * z)) {
-        return {time, plane_of(nearest, facet, level), true, time * z - level * nearest.normal};
+      if (prepared.has_above(time * z)) {
+        return {time, plane_of(nearest, prepared, level), true, time * z - level * nearest.normal};
       }
     } else {
-      if (i == 0 && facet.has_face()) {
-        if (const auto plane = contact_of_face_plane(facet, z, level)) {
+      if (i == 0 && prepared.has_face()) {
+        if (const auto plane = contact_of_face_plane(prepared, z, level)) {
           if (plane->time > too_late || !(plane->time < 1.0)) return {plane->time, plane->plane};
           if (plane->is_reached) return *plane;
           time = std::max(time, plane->time);
         }
       }
-      // The leap: to the contact of the nearest corner or edge, if the facet is no closer there.
-      const double leap = last + time_until(nearest.distance * nearest.normal, z, facet,
+      // The leap: to the contact of the nearest corner or edge, if the prepared triangle is no
+      // closer there.
+      const double leap = last + time_until(nearest.distance * nearest.normal, z, prepared,
                                             nearest.feature, level + 0.5 * slack);
       if (leap > time && leap < 1.0) {
-        const Facet::Nearest there = facet.nearest_to(leap * z, nearest.feature);
+        const PreparedTriangle::Nearest there = prepared.nearest_to(leap * z, nearest.feature);
         if (there.distance >= level && there.normal.dot(z) < 0.0) {
           nearest = there;
           time = leap;
@@ -121,9 +125,9 @@ Contact first_contact(const Facet& facet, const Vec3& z, double level, double sl
         }
       }
     }
-    nearest = facet.nearest_to(time * z);
+    nearest = prepared.nearest_to(time * z);
   }
-  return {time, plane_of(nearest, facet, level)};
+  return {time, plane_of(nearest, prepared, level)};
 }
 
 }  // namespace keepout

@@ -16,13 +16,13 @@ Vec3 level_blend(const Vec3& falling, double fall, const Vec3& rising, double ri
 
 }  // namespace
 
-std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
-                                       double slack) noexcept {
-  Vec3 n_left = facet.towards_tip();
-  Line left = line_of(facet.at_tip(), z, level);
+std::optional<Vec3> proof_of_clearance(const PreparedTriangle& prepared, const Vec3& z,
+                                       double level, double slack) noexcept {
+  Vec3 n_left = prepared.towards_tip();
+  Line left = line_of(prepared.at_tip(), z, level);
   if (left.proves_clear(slack)) return n_left;
 
-  const Facet::Nearest at_end = facet.nearest_to(z);
+  const PreparedTriangle::Nearest at_end = prepared.nearest_to(z);
   if (!(at_end.distance - level >= -slack)) return std::nullopt;
   Vec3 n_right = at_end.normal;
   Line right = line_of(at_end, z, level);
@@ -35,9 +35,9 @@ std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double
   // blended normal is a better bound; it is exact if both normals are of the same corner or edge.
   for (int i = 0; i < most_blends; ++i) {
     const Vec3 blend = level_blend(n_left, left.slope, n_right, right.slope);
-    if (separates(blend, facet.corners(), z, level, slack)) return blend;
+    if (separates(blend, prepared.corners(), z, level, slack)) return blend;
     const double t = (left.at_0 - right.at_0) / (right.slope - left.slope);
-    const Facet::Nearest nearest = facet.nearest_to(t * z);
+    const PreparedTriangle::Nearest nearest = prepared.nearest_to(t * z);
     if (!(nearest.distance - level >= -slack)) return std::nullopt;
     const Line line = line_of(nearest, z, level);
     if (line.proves_clear(slack)) return nearest.normal;

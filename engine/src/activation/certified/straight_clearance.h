@@ -3,12 +3,12 @@
 
 #include <optional>
 
-#include "keepout/activation/facet.h"
+#include "keepout/activation/prepared_triangle.h"
 
 namespace keepout {
 
-/// A lower bound of the distance of t z from a facet, less a level: `at_0` + t `slope` (Lemma 2 of
-/// docs/certified-step.md).
+/// A lower bound of the distance of t z from a prepared triangle, less a level: `at_0` + t `slope`
+/// (Lemma 2 of docs/certified-step.md).
 struct Line {
   double at_0;
   double slope;
@@ -21,16 +21,17 @@ struct Line {
 };
 
 /// Returns the bound that the normal of a closest point gives.
-inline Line line_of(const Facet::Nearest& nearest, const Vec3& z, double level) noexcept {
+inline Line line_of(const PreparedTriangle::Nearest& nearest, const Vec3& z,
+                    double level) noexcept {
   return {-nearest.support - level, nearest.normal.dot(z)};
 }
 
 /// Returns the normal of a plane that proves that the whole motion from 0 to z stays `level` away
-/// from the facet: dist(t z, T) >= level - slack for all t in [0, 1]. Returns nothing if the motion
-/// comes closer, or if rounding hides the answer. Precondition: level <= facet.distance() + slack,
-/// and far above the rounding of lengths. [length]
-std::optional<Vec3> proof_of_clearance(const Facet& facet, const Vec3& z, double level,
-                                       double slack) noexcept;
+/// from the prepared triangle: dist(t z, T) >= level - slack for all t in [0, 1]. Returns nothing
+/// if the motion comes closer, or if rounding hides the answer. Precondition: level <= prepared
+/// triangle.distance() + slack, and far above the rounding of lengths. [length]
+std::optional<Vec3> proof_of_clearance(const PreparedTriangle& prepared, const Vec3& z,
+                                       double level, double slack) noexcept;
 
 /// Returns true if a plane with normal n is such a proof: the triangle, relative to the tip and
 /// grown by `level`, is on one side, and both ends of the motion are on the other.

@@ -3,12 +3,12 @@
 // A floating-point filter: floats decide where they are sure, within bands of their rounding.
 //
 // A first look at the leaves settles what is out of the ball, and what is in it and has no plane
-// that is wanted. It needs neither the closest point nor the neighbours. What is left is brought
-// close together and looked at again: where is its closest point, and do the neighbours share it?
+// that is wanted. It needs neither the closest point nor the neighbors. What is left is brought
+// close together and looked at again: where is its closest point, and do the neighbors share it?
 //
 // A point c of a triangle is its nearest to the origin if c . v >= |c|^2 for all its corners v. For
 // a corner, and for a point inside a side, these are signs of polynomials in the products of the
-// corners, relative to the ball's centre. That c is nearest for the triangle across a side as well
+// corners, relative to the ball's center. That c is nearest for the triangle across a side as well
 // is the same question about its third corner, the apex.
 //
 // Rounding. Let u = 2^-24, S a bound of all corners and apexes, E the error of a corner but for 2 u

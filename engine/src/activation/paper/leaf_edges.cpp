@@ -16,7 +16,7 @@ bool is_sturdy(const Triangle& t) noexcept {
   return (t[1] - t[0]).cross(t[2] - t[0]).norm() > least_height * longest2;
 }
 
-/// The corner of a neighbour that is not on the edge it shares.
+/// The corner of a neighbor that is not on the edge it shares.
 Vec3 apex_across(const Mesh& mesh, TriangleId from, int edge, TriangleId neighbor) noexcept {
   const VertexId a = mesh.corners(from)[static_cast<std::size_t>(edge)];
   const VertexId b = mesh.corners(from)[static_cast<std::size_t>((edge + 1) % 3)];

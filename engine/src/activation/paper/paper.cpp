@@ -71,7 +71,7 @@ std::optional<HalfSpace> PaperRule::plane_of(const RuleInput& input,
     if (!positive) return std::nullopt;
     return plane_through(hit, normal, input.clearance);
   }
-  // Condition 2: on a ridge, and nearest for the neighbour as well.
+  // Condition 2: on a ridge, and nearest for the neighbor as well.
   switch (role_in_condition_2(input, hit)) {
     case Role::speaks: {
       if (!touches(input, hit)) return plane_through(hit, away_from(hit), input.clearance);

@@ -14,7 +14,7 @@
 namespace keepout {
 namespace {
 
-// How far a plane stands off from what it separates, to have its neighbours behind it as well: a
+// How far a plane stands off from what it separates, to have its neighbors behind it as well: a
 // share of the radius, but no more than a share of its room, so that the tip still gets close.
 constexpr double standoff_of_radius = 0.01;
 constexpr double standoff_of_room = 0.25;
@@ -153,12 +153,12 @@ std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hi
 
 Status FreePolytope::separate(const Query& query, std::span<const Hit> hits, Budget& budget,
                               HalfSpaceBuffer& planes) noexcept {
-  // In looks; that of a hit is mostly for the memory of its corners, and for sorting.
+  // In work units; that of a hit is mostly for the memory of its corners, and for sorting.
   constexpr std::size_t work_of_plane = 24;
   budget.spend(2 * work_of_hit * hits.size());
   if (budget.is_spent()) return Status::out_of_budget;
   is_left_.fill(true);
-  std::size_t latest = 0;  // neighbours tend to be behind the same plane
+  std::size_t latest = 0;  // neighbors tend to be behind the same plane
   for (const Turn& turn : by_distance(hits)) {
     if (turn.distance > query.reach) break;
     if (budget.is_spent()) return Status::out_of_budget;

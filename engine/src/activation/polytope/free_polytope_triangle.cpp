@@ -79,7 +79,7 @@ double support_of_disc(const TriangleFromTip& triangle, const Vec3& normal, doub
   slope -= triangle.normal * triangle.normal.dot(slope);
   const double steepness = slope.norm();
   // Seen along its normal the disc is level, and what is left of the slope points anywhere. Where
-  // its centre is outside of the triangle, a side of the triangle crosses it or all of it is.
+  // its center is outside of the triangle, a side of the triangle crosses it or all of it is.
   const Vec3 extreme = steepness > level ? Vec3(foot + slope * (rim / steepness)) : foot;
   if (!is_inside(triangle, extreme, slack)) return nothing;
   return normal.dot(foot) + rim * steepness;

@@ -138,7 +138,7 @@ class Builder {
     const std::span inside = leaves_.subspan(first_leaf, node.leaves);
     float low[3], high[3];
     HWY_DYNAMIC_DISPATCH(extent_of)(node, inside, low, high);
-    // The middle of the extents is the better centre, to the rounding of its coordinates; how much
+    // The middle of the extents is the better center, to the rounding of its coordinates; how much
     // that shifts the extents is known exactly.
     Vec3 shift = Vec3::Zero();  // along the mesh's axes, then along the directions
     for (int axis = 0; axis < 3; ++axis) {

@@ -18,7 +18,7 @@ namespace keepout::HWY_NAMESPACE {
 
 /// A ball as floats see it beside oriented boxes (PdNode).
 ///
-/// The place of the centre c in a box's frame is off by at most 8 u |c - center| + A, with u and A
+/// The place of the center c in a box's frame is off by at most 8 u |c - center| + A, with u and A
 /// of ball_screen.cpp: two roundings of the difference, four of the products and their sum. Where a
 /// triangle in the box is as near as the radius r, |c - center| is at most r plus half the box's
 /// diagonal; the box was enlarged for the latter's share. The frame stretches lengths by at most
@@ -35,7 +35,7 @@ struct OrientedScreen {
     inside2 = core > 0.0 ? at_most(core * core * (1.0 - band)) : -1.0f;
   }
 
-  float high_part[3];  // of the centre, and what is left of it; the sum of both is meant [length]
+  float high_part[3];  // of the center, and what is left of it; the sum of both is meant [length]
   float low_part[3];
   float reach2;   // a box is out of reach if its squared distance computes to more
   float inside2;  // all that is in a box touches the ball if its farthest corner's does not
@@ -44,7 +44,7 @@ struct OrientedScreen {
 /// How much of a box is in the ball.
 enum class Overlap { none, some, all };
 
-/// The squares of how far the ball's centre is beyond a box along each of its directions, and of
+/// The squares of how far the ball's center is beyond a box along each of its directions, and of
 /// how far from the box's other side.
 struct Squares {
   alignas(16) float beyond[4];  // the last is of no meaning
@@ -91,7 +91,8 @@ HWY_INLINE Overlap overlap(const PdNode& node, const OrientedScreen& screen) {
 
 /// Shows a visitor the leaves that the ball reaches.
 template <class Visitor>
-HWY_NOINLINE void walk(const PdNode* nodes, const OrientedScreen& screen, const Visitor& visitor) {
+HWY_NOINLINE void traversal(const PdNode* nodes, const OrientedScreen& screen,
+                            const Visitor& visitor) {
   struct Subtree {
     std::uint32_t node;
     std::uint32_t first_leaf;
@@ -127,17 +128,17 @@ HWY_NOINLINE void walk(const PdNode* nodes, const OrientedScreen& screen, const 
   list.show(visitor);
 }
 
-void walk_pd_tree(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                  const BallScreen& ball, TriangleBuffer& out, QueryCounts* counts) {
+void traverse_pd_tree(const PdNode* nodes, const LeafBlock* leaves, const Mesh& mesh,
+                      const BallScreen& ball, TriangleBuffer& out, QueryCounts* counts) {
   const OrientedScreen screen(ball);
   if (counts == nullptr) {
-    return walk(nodes, screen, TouchingTriangles<false>{leaves, mesh, ball, out, counts});
+    return traversal(nodes, screen, TouchingTriangles<false>{leaves, mesh, ball, out, counts});
   }
-  walk(nodes, screen, TouchingTriangles<true>{leaves, mesh, ball, out, counts});
+  traversal(nodes, screen, TouchingTriangles<true>{leaves, mesh, ball, out, counts});
 }
 
-void walk_pd_tree_to_leaves(const PdNode* nodes, const BallScreen& ball, LeafBuffer& found) {
-  walk(nodes, OrientedScreen(ball), TouchedLeaves{found});
+void traverse_pd_tree_to_leaves(const PdNode* nodes, const BallScreen& ball, LeafBuffer& found) {
+  traversal(nodes, OrientedScreen(ball), TouchedLeaves{found});
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -147,8 +148,8 @@ HWY_AFTER_NAMESPACE();
 
 namespace keepout {
 
-HWY_EXPORT(walk_pd_tree);
-HWY_EXPORT(walk_pd_tree_to_leaves);
+HWY_EXPORT(traverse_pd_tree);
+HWY_EXPORT(traverse_pd_tree_to_leaves);
 
 void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
                      QueryCounts* counts) const noexcept {
@@ -157,14 +158,14 @@ void PdTree::collect(const Ball& ball, TriangleBuffer& candidates,
     if (counts != nullptr) counts->triangles += mesh().triangle_count();
     return BruteForce(shared_mesh()).collect(ball, candidates);
   }
-  HWY_DYNAMIC_DISPATCH(walk_pd_tree)
+  HWY_DYNAMIC_DISPATCH(traverse_pd_tree)
   (tree_->nodes().data(), tree_->leaves().data(), mesh(), screen, candidates, counts);
 }
 
 void PdTree::Tree::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
   const BallScreen screen(ball, mesh().bounds(), frame_);
   if (!screen.fits) return collect_all_leaves(found);
-  HWY_DYNAMIC_DISPATCH(walk_pd_tree_to_leaves)(nodes_.data(), screen, found);
+  HWY_DYNAMIC_DISPATCH(traverse_pd_tree_to_leaves)(nodes_.data(), screen, found);
 }
 
 }  // namespace keepout

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Why floats may decide. Let u = 2^-24 be the rounding of a float, c the ball's centre and r its
+// Why floats may decide. Let u = 2^-24 be the rounding of a float, c the ball's center and r its
 // radius, E the error of the floats' coordinates, M the distance from c to a triangle's farthest
 // corner.
 //
-// 1. A corner relative to the centre, p = (v - high) - low. Both subtractions round by u of what
+// 1. A corner relative to the center, p = (v - high) - low. Both subtractions round by u of what
 //    they yield, and high + low is c to u^2 |c|. So p is off by at most
 //        2.1 u |p| + A,    A = sqrt(3) (E + 2.1 u^2 |c|),
 //    and with the corners, by no more than that, the triangle's distance. The exact kernel is in
@@ -23,7 +23,7 @@
 // Products too small for a float to keep its digits are excluded by bounds of their own; those too
 // large become infinite, and then prove nothing.
 //
-// Boxes are rounded outward; their distance, of a centre rounded to either side, is off by the
+// Boxes are rounded outward; their distance, of a center rounded to either side, is off by the
 // rounding of the three differences, of their squares and their sum alone. The kernel's error,
 // here relative to the way to the far end of the mesh, goes into the radius.
 #include "ball_screen.h"

@@ -20,9 +20,9 @@ struct BallScreen {
   Ball ball;
   double off;          // how far all corners may be moved, as floats see them [length]
   double pad;          // how far the exact kernel may be off [length]
-  float high_part[3];  // of the centre in the frame: the floats nearest to its coordinates [length]
+  float high_part[3];  // of the center in the frame: the floats nearest to its coordinates [length]
   float low_part[3];   // and to what they leave of them [length]
-  float below[3];      // floats around the centre [length]
+  float below[3];      // floats around the center [length]
   float above[3];
 
   float box_reach2;   // a box is out of reach if its squared distance computes to more

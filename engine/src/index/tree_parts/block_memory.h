@@ -8,12 +8,12 @@
 namespace keepout {
 
 /// Memory of at least `bytes`, aligned to a cache line; in pages of 2 MiB where there is much of it
-/// and the system has them, for a walk jumps from page to page. Throws std::bad_alloc.
+/// and the system has them, for a traversal jumps from page to page. Throws std::bad_alloc.
 void* allocate_blocks(std::size_t bytes);
 /// Gives back what allocate_blocks gave; null is allowed.
 void free_blocks(void* memory) noexcept;
 
-/// For std::vector: leaves new elements uninitialised, so that the threads that fill them are the
+/// For std::vector: leaves new elements uninitialized, so that the threads that fill them are the
 /// first to touch them.
 template <class T>
 struct BlockAllocator {

@@ -202,7 +202,7 @@ HWY_INLINE void append_touching(const LeafBlock& leaf, const BallScreen& ball, c
   }
 }
 
-/// A leaf as walks name it: its number, and whether all of it is in the ball.
+/// A leaf as traversals name it: its number, and whether all of it is in the ball.
 constexpr std::uint32_t whole_leaf = std::uint32_t{1} << 30;
 constexpr std::uint32_t leaf_number = whole_leaf - 1;
 

@@ -10,8 +10,8 @@
 #include "../../parallel.h"
 #include "../tree_parts/leaf_fill.h"
 #include "keepout/error.h"
+#include "traversal/tree_traversal.h"
 #include "tree.h"
-#include "walk/tree_walk.h"
 
 namespace keepout {
 
@@ -93,8 +93,8 @@ double WideBvh::rounding() const noexcept { return tree_->frame().error; }
 
 std::size_t WideBvh::memory() const noexcept { return tree_->memory(); }
 
-std::unique_ptr<MotionWalk> WideBvh::walk_along_motions(Budget& budget) const {
-  return std::make_unique<TreeWalk>(*tree_, budget);
+std::unique_ptr<MotionTraversal> WideBvh::traverse_along_motions(Budget& budget) const {
+  return std::make_unique<TreeTraversal>(*tree_, budget);
 }
 
 }  // namespace keepout

@@ -33,7 +33,7 @@ struct MotionConstraintSettings {
   std::string narrow_phase = "exact";  // of a tool; see narrow_phase_backends()
   /// What becomes of a tip that starts inside; of a ball, under the rule certified. The constructor
   /// of MotionConstraint takes any rule: its default is Inside::taken_as_is.
-  Inside inside = Inside::led_out;
+  Inside inside = Inside::escape;
   Capacity capacity = {};  // for the largest step
 };
 

@@ -45,7 +45,7 @@ inline Bounds inflated(const Bounds& box, double reach) noexcept {
   return {low - (low.abs() * 0x1p-52 + 1e-300), high + (high.abs() * 0x1p-52 + 1e-300)};
 }
 
-/// Finds the triangles in some place. A binary tree of boxes, split at the median centre along the
+/// Finds the triangles in some place. A binary tree of boxes, split at the median center along the
 /// longest side: its depth is log2 n and its size 2 n whatever the triangles are like, huge, equal
 /// or in one place. Immutable, so any number of threads may ask.
 ///

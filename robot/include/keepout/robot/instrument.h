@@ -53,7 +53,7 @@ class Instrument {
 };
 
 /// The ball of a tool's tip on three joints that slide along the axes of the world, without limits:
-/// q is where its centre is. So a tip has what instruments have, several meshes that move, and
+/// q is where its center is. So a tip has what instruments have, several meshes that move, and
 /// guides; beside one mesh that stands still MotionConstraint is several times faster. [length]
 Instrument free_ball(double radius);
 

@@ -31,7 +31,8 @@ namespace keepout {
 ///
 /// If a mesh moves in the cycle as `place` says, this holds for its pose at each s, and only if all
 /// of the increment is carried out: a part of it is not proved. A pair in InstrumentStep::degraded
-/// maintains level x F, or no clearance if it is not certified; all other pairs maintain F.
+/// maintains that fraction of F, or no clearance if it is not certified; all other pairs maintain
+/// F.
 ///
 /// Not thread-safe: make one for each control loop. Mesh and index may be shared.
 class InstrumentConstraint {
@@ -66,9 +67,9 @@ class InstrumentConstraint {
   /// Adds a mesh from the next step on, and returns its number; the first has 0.
   /// `margin`: beside this mesh, above the band; 0: that of the options [length]. Forgets the last
   /// cycle, like forget(). All meshes share the work budget of a cycle, which is by default that of
-  /// the slowest index: see InstrumentCapacity::looks. Throws Error, and changes nothing, for more
-  /// meshes than InstrumentCapacity::most_meshes and like the constructor. Allocates: not for the
-  /// control path.
+  /// the slowest index: see InstrumentCapacity::work_units. Throws Error, and changes nothing, for
+  /// more meshes than InstrumentCapacity::most_meshes and like the constructor. Allocates: not for
+  /// the control path.
   std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        double margin = 0.0);
 
@@ -134,7 +135,9 @@ class InstrumentConstraint {
   /// and meshes. [length]
   double tolerance() const noexcept;
   /// Returns the work units that the last step spent: see Budget.
-  std::size_t looks() const noexcept;
+  std::size_t work_units() const noexcept;
+  /// Returns work_units().
+  [[deprecated("use work_units()")]] std::size_t looks() const noexcept { return work_units(); }
 
  private:
   struct State;

@@ -14,13 +14,14 @@ namespace keepout {
 
 /// On which motion the certificate is taken.
 enum class CertifiedMotion : std::uint8_t {
-  actual,     // the one that the joints make
-  linearised  // of points on straight lines, p + s J dq: what others do. Unsafe; for comparison
-              // only
+  actual,      // the one that the joints make
+  linearized,  // of points on straight lines, p + s J dq: what others do. Unsafe; for comparison
+               // only
+  linearised [[deprecated("use linearized")]] = linearized
 };
 
 /// The names of CertifiedMotion.
-inline constexpr std::array<std::string_view, 2> certified_motion_names{"actual", "linearised"};
+inline constexpr std::array<std::string_view, 2> certified_motion_names{"actual", "linearized"};
 
 /// Options of an instrument constraint that stay the same from cycle to cycle. The table below says
 /// what each means, and its range.
@@ -89,7 +90,10 @@ struct InstrumentCapacity {
   std::size_t triangles = std::size_t{1} << 14;  // near one body
   std::size_t planes = 128;                      // rows of a cycle
   /// Work units of a cycle, for all meshes; 0: the largest of the defaults of their indices.
-  std::size_t looks = 0;
+  union {
+    std::size_t work_units = 0;
+    [[deprecated("use work_units")]] std::size_t looks;
+  };
 };
 
 /// The table of these options.
@@ -98,9 +102,10 @@ inline constexpr std::array instrument_capacity_options{
                                            "Capacity for the triangles of one mesh near one body."),
     option<&InstrumentCapacity::planes>("max_planes", "", {1, 1 << 16},
                                         "Capacity for the rows of a cycle, joint limits apart."),
-    option<&InstrumentCapacity::looks>(
-        "max_looks", "", {0, static_cast<double>(Budget::unlimited)},
-        "Work budget of a cycle, in looks; 0: 65,536 on wide_bvh, 4,194,304 on other indices.")};
+    option<&InstrumentCapacity::work_units>("max_work_units", "",
+                                            {0, static_cast<double>(Budget::unlimited)},
+                                            "Work budget of a cycle, in work units; 0: 65,536 on "
+                                            "wide_bvh, 4,194,304 on other indices.")};
 
 /// See table_of(const StepOptions&).
 constexpr const auto& table_of(const InstrumentCapacity&) { return instrument_capacity_options; }

@@ -13,19 +13,26 @@ namespace keepout {
 
 /// A body that maintains less than its certified clearance from a mesh in a cycle.
 struct DegradedClearance {
-  int body = -1;             // the number of the body
-  int mesh = -1;             // the number of the mesh
-  double level = 0.0;        // the fraction of the certified clearance that it maintains, below 1
-  bool is_certified = true;  // false: no clearance is certified, and level is 0
+  int body = -1;  // the number of the body
+  int mesh = -1;  // the number of the mesh
+  /// The fraction of the certified clearance that the body maintains, below 1.
+  union {
+    double fraction = 0.0;
+    [[deprecated("use fraction")]] double level;
+  };
+  bool is_certified = true;  // false: no clearance is certified, and the fraction is 0
 };
 
 /// The result of a cycle. Views stay valid until the next step.
 struct InstrumentStep {
   Status status = Status::invalid_input;   // the outcome of the cycle
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
-  /// The fraction of the motion found that `increment` is. With status fallback that motion may be
+  /// The fraction of the motion found that `increment` is. With status truncated that motion may be
   /// for a part of the command only, and 1 means all of that part.
-  double share = 0.0;
+  union {
+    double fraction = 0.0;
+    [[deprecated("use fraction")]] double share;
+  };
   int rounds = 0;             // how many solved trial motions were judged
   std::size_t rows = 0;       // constraints that limit the motion, joint limits apart
   std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
@@ -35,12 +42,16 @@ struct InstrumentStep {
   std::optional<double> distance = std::nullopt;
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // the number of the mesh
-  /// The least level of all pairs of a body and a mesh: 1 if each maintains its certified clearance
-  /// (InstrumentConstraint: F), below 1 if a mesh approaches faster than a body can retreat, and 0
-  /// if no clearance could be certified for a body, or if a mesh moves and there is no motion.
-  /// Without a motion beside still meshes it says nothing, and may be 1.
-  double level = 1.0;
-  /// The pairs of a body and a mesh whose level is below 1; empty if the cycle did not start.
+  /// The least clearance fraction of all pairs of a body and a mesh: 1 if each maintains its
+  /// certified clearance (InstrumentConstraint: F), below 1 if a mesh approaches faster than a body
+  /// can retreat, and 0 if no clearance could be certified for a body, or if a mesh moves and there
+  /// is no motion. Without a motion beside still meshes it says nothing, and may be 1.
+  union {
+    double clearance_fraction = 1.0;
+    [[deprecated("use clearance_fraction")]] double level;
+  };
+  /// The pairs of a body and a mesh whose clearance fraction is below 1; empty if the cycle did not
+  /// start.
   std::span<const DegradedClearance> degraded = {};
   std::span<const GuideState> guides = {};   // the state of each guide, in the order given
   Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
@@ -62,13 +73,17 @@ struct MotionProof {
   /// free: all of the motion is proved; limited: a part of it; recovering: a body is too close at
   /// the start, and no body comes closer by more than the band. Otherwise why the proof ended.
   Status status = Status::invalid_input;
-  double share = 0.0;  // q + s dq is proved for s in [0, share], whatever the status
+  /// The motion q + s dq is proved for s in [0, fraction], whatever the status.
+  union {
+    double fraction = 0.0;
+    [[deprecated("use fraction")]] double share;
+  };
   std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
   /// Returns one line on what happened and what to do about it.
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
   /// Returns true if each body stays at least margin - band away on all of the motion.
-  bool is_clear() const noexcept { return status == Status::free && share == 1.0; }
+  bool is_clear() const noexcept { return status == Status::free && fraction == 1.0; }
 };
 
 }  // namespace keepout

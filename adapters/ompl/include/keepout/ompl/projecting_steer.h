@@ -17,8 +17,8 @@ struct SteerOptions {
   /// The longest step on a way that is held back. Short ones follow the surface closely, long ones
   /// are few. 0: an eighth of the motion sphere's radius. [length]
   double sliding_step = 0.0;
-  /// A step that brings the tip nearer to the target by less than this share of its length ends the
-  /// way: it slides along, but leads nowhere. In [0, 1).
+  /// A step that brings the tip nearer to the target by less than this fraction of its length ends
+  /// the way: it slides along, but leads nowhere. In [0, 1).
   double least_gain = 0.05;
   std::size_t most_steps = 1000;  // of one way
 };
@@ -48,7 +48,7 @@ class ProjectingSteer {
   /// What a call of steer came to.
   struct Way {
     Ending ending = Ending::not_free;  // why there is no more of it
-    /// The start first. The straight pieces between neighbours are proven. Valid until the next
+    /// The start first. The straight pieces between neighbors are proven. Valid until the next
     /// call. [length]
     std::span<const Vec3> points;
     double length = 0.0;  // of all pieces [length]

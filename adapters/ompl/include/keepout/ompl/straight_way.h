@@ -13,12 +13,16 @@ bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept;
 
 /// The part of a straight way that is proven, from its start on.
 struct ProvenPrefix {
-  double share = 0.0;  // of the way; 1: the whole of it, its end included
-  Vec3 end;            // from + share (to - from); `from` itself when nothing is proven [length]
+  /// The fraction of the segment that is proved; 1: all of it, with its end.
+  union {
+    double fraction = 0.0;
+    [[deprecated("use fraction")]] double share;
+  };
+  Vec3 end;  // from + fraction (to - from); `from` itself when nothing is proven [length]
   bool may_start = false;  // `from` may be stood on
 
   /// Whether all of the way is proven, both ends included.
-  bool whole() const noexcept { return may_start && share == 1.0; }
+  bool whole() const noexcept { return may_start && fraction == 1.0; }
 };
 
 /// Whether the certified rule proves the whole straight way: from its start to its end, both

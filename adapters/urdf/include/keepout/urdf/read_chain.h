@@ -20,7 +20,7 @@ struct UrdfChain {
 };
 
 /// Reads the chain from link `base` to link `tip`. An empty `base` is the root; an empty `tip` the
-/// only leaf below the base. `scale`: a metre in the mesh's unit, 1000 for mm; multiplies lengths,
+/// only leaf below the base. `scale`: a meter in the mesh's unit, 1000 for mm; multiplies lengths,
 /// and limits of prismatic joints.
 ///
 /// Throws Error, naming file and joint, for what is unreadable or no URDF, links that are not there

@@ -59,7 +59,7 @@ HWY_INLINE std::size_t all_children(const NodeBlock& node, std::uint32_t* childr
 
 /// Shows a visitor the leaves that the ball reaches.
 template <class Visitor>
-HWY_INLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visitor& visitor) {
+HWY_INLINE void traversal(const NodeBlock* nodes, const BallScreen& ball, const Visitor& visitor) {
   std::uint32_t stack[(WideBvh::most_levels + 1) * NodeBlock::lanes];
   std::size_t waiting = 0;
   LeafList list;
@@ -86,18 +86,18 @@ HWY_INLINE void walk(const NodeBlock* nodes, const BallScreen& ball, const Visit
   list.show(visitor);
 }
 
-void walk_wide_bvh(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                   const BallScreen& ball, TriangleBuffer& out) {
-  walk(nodes, ball, TouchingTriangles<false>{leaves, mesh, ball, out, nullptr});
+void traverse_wide_bvh(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
+                       const BallScreen& ball, TriangleBuffer& out) {
+  traversal(nodes, ball, TouchingTriangles<false>{leaves, mesh, ball, out, nullptr});
 }
 
-void walk_and_count(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
-                    const BallScreen& ball, TriangleBuffer& out, QueryCounts& counts) {
-  walk(nodes, ball, TouchingTriangles<true>{leaves, mesh, ball, out, &counts});
+void traverse_and_count(const NodeBlock* nodes, const LeafBlock* leaves, const Mesh& mesh,
+                        const BallScreen& ball, TriangleBuffer& out, QueryCounts& counts) {
+  traversal(nodes, ball, TouchingTriangles<true>{leaves, mesh, ball, out, &counts});
 }
 
-void walk_to_leaves(const NodeBlock* nodes, const BallScreen& ball, LeafBuffer& found) {
-  walk(nodes, ball, TouchedLeaves{found});
+void traverse_to_leaves(const NodeBlock* nodes, const BallScreen& ball, LeafBuffer& found) {
+  traversal(nodes, ball, TouchedLeaves{found});
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -107,9 +107,9 @@ HWY_AFTER_NAMESPACE();
 
 namespace keepout {
 
-HWY_EXPORT(walk_wide_bvh);
-HWY_EXPORT(walk_and_count);
-HWY_EXPORT(walk_to_leaves);
+HWY_EXPORT(traverse_wide_bvh);
+HWY_EXPORT(traverse_and_count);
+HWY_EXPORT(traverse_to_leaves);
 
 void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
                       QueryCounts* counts) const noexcept {
@@ -119,10 +119,10 @@ void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
     return BruteForce(shared_mesh()).collect(ball, candidates);
   }
   if (counts != nullptr) {
-    HWY_DYNAMIC_DISPATCH(walk_and_count)
+    HWY_DYNAMIC_DISPATCH(traverse_and_count)
     (tree_->nodes().data(), tree_->leaves().data(), mesh(), screen, candidates, *counts);
   } else {
-    HWY_DYNAMIC_DISPATCH(walk_wide_bvh)
+    HWY_DYNAMIC_DISPATCH(traverse_wide_bvh)
     (tree_->nodes().data(), tree_->leaves().data(), mesh(), screen, candidates);
   }
 }
@@ -130,7 +130,7 @@ void WideBvh::collect(const Ball& ball, TriangleBuffer& candidates,
 void WideBvh::Tree::collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept {
   const BallScreen screen(ball, mesh().bounds(), frame_);
   if (!screen.fits) return collect_all_leaves(found);
-  HWY_DYNAMIC_DISPATCH(walk_to_leaves)(nodes_.data(), screen, found);
+  HWY_DYNAMIC_DISPATCH(traverse_to_leaves)(nodes_.data(), screen, found);
 }
 
 }  // namespace keepout

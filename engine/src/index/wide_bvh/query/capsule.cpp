@@ -135,8 +135,8 @@ HWY_INLINE void fetch(const LeafBlock& leaf) {
   }
 }
 
-void walk_near_capsule(const NodeBlock* nodes, const LeafBlock* leaves,
-                       const CapsuleScreen& capsule, TriangleBuffer& out) {
+void traverse_near_capsule(const NodeBlock* nodes, const LeafBlock* leaves,
+                           const CapsuleScreen& capsule, TriangleBuffer& out) {
   std::uint32_t stack[(WideBvh::most_levels + 1) * NodeBlock::lanes];
   std::size_t waiting = 0;
   stack[waiting++] = 0;
@@ -167,12 +167,12 @@ HWY_AFTER_NAMESPACE();
 
 namespace keepout {
 
-HWY_EXPORT(walk_near_capsule);
+HWY_EXPORT(traverse_near_capsule);
 
 void WideBvh::collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept {
   const CapsuleScreen screen(capsule, mesh().bounds(), tree_->frame());
   if (!screen.fits) return SpatialIndex::collect_near(capsule, candidates);
-  HWY_DYNAMIC_DISPATCH(walk_near_capsule)
+  HWY_DYNAMIC_DISPATCH(traverse_near_capsule)
   (tree_->nodes().data(), tree_->leaves().data(), screen, candidates);
 }
 

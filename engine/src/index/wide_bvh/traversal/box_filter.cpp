@@ -2,7 +2,7 @@
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/wide_bvh/walk/box_filter.cpp"
+#define HWY_TARGET_INCLUDE "index/wide_bvh/traversal/box_filter.cpp"
 #include <hwy/foreach_target.h>
 // After it: it sets the target.
 #include "filters.h"

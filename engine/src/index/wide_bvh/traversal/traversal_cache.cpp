@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "frontier.h"
+#include "traversal_cache.h"
 
 #include <algorithm>
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace keepout {
 
-void Frontier::add(const WideBvh::Tree& tree, std::uint32_t node, std::size_t lane) noexcept {
+void TraversalCache::add(const WideBvh::Tree& tree, std::uint32_t node, std::size_t lane) noexcept {
   const NodeBlock& from = tree.nodes()[node];
   NodeBlock& block = blocks_[size_ / NodeBlock::lanes];
   const std::size_t to = size_ % NodeBlock::lanes;
@@ -30,7 +30,8 @@ void Frontier::add(const WideBvh::Tree& tree, std::uint32_t node, std::size_t la
   ++size_;
 }
 
-const CylinderBlock& Frontier::cylinders(const WideBvh::Tree& tree, std::size_t block) noexcept {
+const CylinderBlock& TraversalCache::cylinders(const WideBvh::Tree& tree,
+                                               std::size_t block) noexcept {
   CylinderBlock& copy = cylinders_[block];
   if (has_cylinders_[block]) return copy;
   has_cylinders_[block] = true;
@@ -50,7 +51,7 @@ const CylinderBlock& Frontier::cylinders(const WideBvh::Tree& tree, std::size_t 
   return copy;
 }
 
-void Frontier::cover(const WideBvh::Tree& tree, const Ball& ball) noexcept {
+void TraversalCache::cover(const WideBvh::Tree& tree, const Ball& ball) noexcept {
   constexpr std::size_t most_opened = 32;
   std::array<Place, most_boxes + NodeBlock::lanes> waiting;  // inner nodes, the largest first
   std::size_t first = 0, last = 0;

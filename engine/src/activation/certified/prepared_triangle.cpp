@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/activation/facet.h"
+#include "keepout/activation/prepared_triangle.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,10 +11,11 @@
 
 namespace keepout {
 
-Facet::Facet(const Triangle& triangle, const Vec3& tip, TriangleId number) noexcept
-    : Facet(ordered_relative(triangle, tip), number) {}
+PreparedTriangle::PreparedTriangle(const Triangle& triangle, const Vec3& tip,
+                                   TriangleId number) noexcept
+    : PreparedTriangle(ordered_relative(triangle, tip), number) {}
 
-Facet::Facet(const Triangle& ordered, TriangleId number) noexcept
+PreparedTriangle::PreparedTriangle(const Triangle& ordered, TriangleId number) noexcept
     : corners_(ordered), triangle_(number) {
   const Vec3 edge_01 = corners_[1] - corners_[0];
   const Vec3 edge_02 = corners_[2] - corners_[0];
@@ -36,7 +37,7 @@ Facet::Facet(const Triangle& ordered, TriangleId number) noexcept
   at_tip_ = nearest_to(Vec3::Zero());
 }
 
-inline Facet::Shares Facet::shares(const Vec3& point) const noexcept {
+inline PreparedTriangle::Shares PreparedTriangle::shares(const Vec3& point) const noexcept {
   const Vec3 off = point - corners_[0];
   const double along_01 = off.dot(corners_[1] - corners_[0]);
   const double along_02 = off.dot(corners_[2] - corners_[0]);
@@ -45,14 +46,14 @@ inline Facet::Shares Facet::shares(const Vec3& point) const noexcept {
 }
 
 // A direction is known only to the root of a rounding if two features are about equally near, and
-// worse close to the facet and on a needle. A normal is accepted at once if it proves this fraction
-// of a distance; otherwise all candidates are tried (nearest_with_care).
+// worse close to the prepared triangle and on a needle. A normal is accepted at once if it proves
+// this fraction of a distance; otherwise all candidates are tried (nearest_with_care).
 constexpr double tight = 1.0 - 1e-12;
 
-/// Fills `nearest` for the vector `off`, `distance` long, from a point of the facet to `point`.
-/// Returns true if its normal proves that distance, so that no other point is closer.
-inline bool Facet::is_nearest(const Vec3& point, const Vec3& off, double distance, Feature feature,
-                              Nearest& nearest) const noexcept {
+/// Fills `nearest` for the vector `off`, `distance` long, from a point of the prepared triangle to
+/// `point`. Returns true if its normal proves that distance, so that no other point is closer.
+inline bool PreparedTriangle::is_nearest(const Vec3& point, const Vec3& off, double distance,
+                                         Feature feature, Nearest& nearest) const noexcept {
   nearest.normal = off / distance;
   nearest.distance = distance;
   nearest.support = support(nearest.normal);
@@ -60,7 +61,8 @@ inline bool Facet::is_nearest(const Vec3& point, const Vec3& off, double distanc
   return nearest.normal.dot(point) - nearest.support >= tight * distance;
 }
 
-inline bool Facet::edge_is_nearest(const Vec3& point, int edge, Nearest& nearest) const noexcept {
+inline bool PreparedTriangle::edge_is_nearest(const Vec3& point, int edge,
+                                              Nearest& nearest) const noexcept {
   const Vec3& from = corners_[edge == 2 ? 0 : edge];
   const Vec3 along = corners_[edge == 0 ? 1 : 2] - from;
   const Vec3 off = point - from;
@@ -72,24 +74,24 @@ inline bool Facet::edge_is_nearest(const Vec3& point, int edge, Nearest& nearest
                     static_cast<Feature>(static_cast<int>(Feature::edge_0) + edge), nearest);
 }
 
-inline bool Facet::corner_is_nearest(const Vec3& point, int corner,
-                                     Nearest& nearest) const noexcept {
+inline bool PreparedTriangle::corner_is_nearest(const Vec3& point, int corner,
+                                                Nearest& nearest) const noexcept {
   const Vec3 off = point - corners_[corner];
   return is_nearest(point, off, off.norm(),
                     static_cast<Feature>(static_cast<int>(Feature::vertex_0) + corner), nearest);
 }
 
-bool Facet::has_above(const Vec3& point) const noexcept {
+bool PreparedTriangle::has_above(const Vec3& point) const noexcept {
   return shares(point).are_inside(determinant_);
 }
 
-Facet::Nearest Facet::on_face_plane(const Vec3& point) const noexcept {
+PreparedTriangle::Nearest PreparedTriangle::on_face_plane(const Vec3& point) const noexcept {
   const double height = face_normal_.dot(point - corners_[0]);
   const Vec3 normal = height < 0.0 ? Vec3(-face_normal_) : face_normal_;
   return {normal, std::abs(height), support(normal), Feature::face};
 }
 
-Facet::Nearest Facet::nearest_to(const Vec3& point) const noexcept {
+PreparedTriangle::Nearest PreparedTriangle::nearest_to(const Vec3& point) const noexcept {
   Nearest nearest;
   const Shares at = shares(point);
   bool found = false;
@@ -119,7 +121,8 @@ Facet::Nearest Facet::nearest_to(const Vec3& point) const noexcept {
   return found ? nearest : nearest_with_care(point);
 }
 
-Facet::Nearest Facet::nearest_to(const Vec3& point, Feature likely) const noexcept {
+PreparedTriangle::Nearest PreparedTriangle::nearest_to(const Vec3& point,
+                                                       Feature likely) const noexcept {
   Nearest nearest;
   if (is_edge(likely) && edge_is_nearest(point, number_of(likely), nearest)) return nearest;
   if (is_vertex(likely) && corner_is_nearest(point, number_of(likely), nearest)) return nearest;
@@ -128,7 +131,7 @@ Facet::Nearest Facet::nearest_to(const Vec3& point, Feature likely) const noexce
 
 /// Like nearest_to(), for needles and where rounding hides the direction: tries all normals that
 /// may prove the distance.
-Facet::Nearest Facet::nearest_with_care(const Vec3& point) const noexcept {
+PreparedTriangle::Nearest PreparedTriangle::nearest_with_care(const Vec3& point) const noexcept {
   const ClosestPoint closest = closest_point_of_ordered(corners_, point);
   const Vec3 away = unit(-closest.offset);
   const auto proven = [&](const Vec3& n) { return n.dot(point) - support(n); };
@@ -149,21 +152,21 @@ Facet::Nearest Facet::nearest_with_care(const Vec3& point) const noexcept {
   return {best, closest.distance, support(best), closest.feature};
 }
 
-Vec3 Facet::normal_against(const Vec3& direction) const noexcept {
+Vec3 PreparedTriangle::normal_against(const Vec3& direction) const noexcept {
   const Vec3 normal = unit((corners_[1] - corners_[0]).cross(corners_[2] - corners_[0]));
   return normal.dot(direction) <= 0.0 ? normal : Vec3(-normal);
 }
 
 /// Returns a direction made perpendicular to an edge: rounding along the edge would count over its
 /// whole length.
-Vec3 Facet::across(const Vec3& n, int edge) const noexcept {
+Vec3 PreparedTriangle::across(const Vec3& n, int edge) const noexcept {
   const Vec3 along = this->edge(edge);
   const double length2 = along.squaredNorm();
   if (!(length2 > 0.0)) return n;
   return unit(n - along * (n.dot(along) / length2));
 }
 
-Vec3 Facet::normal_around(int edge, double level) const noexcept {
+Vec3 PreparedTriangle::normal_around(int edge, double level) const noexcept {
   const Vec3& from = corners_[edge];
   const Vec3 along = (corners_[(edge + 1) % 3] - from).normalized();
   if (!along.allFinite()) return Vec3::Zero();
@@ -182,7 +185,7 @@ Vec3 Facet::normal_around(int edge, double level) const noexcept {
   return Vec3::Zero();
 }
 
-bool Facet::before(const Facet& other) const noexcept {
+bool PreparedTriangle::before(const PreparedTriangle& other) const noexcept {
   return comes_before(corners_, other.corners_);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ Surface pinched() {
   return weld(together(tetrahedron(), flipped(mirrored)));
 }
 
-TEST(Doctor, ATetrahedronIsWatertightAndWithoutFault) {
+TEST(Diagnostics, ATetrahedronIsWatertightAndWithoutFault) {
   const MeshFindings findings = examine(tetrahedron());
   EXPECT_EQ(findings.vertices, 4u);
   EXPECT_EQ(findings.triangles, 4u);
@@ -42,25 +42,25 @@ TEST(Doctor, ATetrahedronIsWatertightAndWithoutFault) {
   EXPECT_EQ(findings.bounds.high, Vec3(1, 1, 1));
 }
 
-TEST(Doctor, AClosedMeshWithANegativeVolumeIsInsideOut) {
+TEST(Diagnostics, AClosedMeshWithANegativeVolumeIsInsideOut) {
   const MeshFindings findings = examine(flipped(tetrahedron()));
   EXPECT_DOUBLE_EQ(findings.signed_volume, -1.0 / 6.0);
   EXPECT_TRUE(findings.is_watertight());
   EXPECT_TRUE(findings.is_inside_out());
 }
 
-TEST(Doctor, AnOpenMeshIsNeverInsideOut) {
+TEST(Diagnostics, AnOpenMeshIsNeverInsideOut) {
   const MeshFindings findings = examine(opened(flipped(tetrahedron())));
   EXPECT_LT(findings.signed_volume, 0.0);
   EXPECT_FALSE(findings.is_inside_out());
 }
 
-TEST(Doctor, TheVolumeDoesNotSufferFromADistantOrigin) {
+TEST(Diagnostics, TheVolumeDoesNotSufferFromADistantOrigin) {
   const MeshFindings findings = examine(moved(tetrahedron(), {1e6, -1e6, 1e6}));
   EXPECT_NEAR(findings.signed_volume, 1.0 / 6.0, 1e-9);
 }
 
-TEST(Doctor, CountsHandles) {
+TEST(Diagnostics, CountsHandles) {
   EXPECT_EQ(examine(torus(10)).genus, 1);
   EXPECT_EQ(examine(torus(10)).euler_characteristic, 0);
   const Surface two = together(torus(10), moved(torus(8), {20, 0, 0}));
@@ -69,7 +69,7 @@ TEST(Doctor, CountsHandles) {
   EXPECT_EQ(examine(together(tetrahedron(), moved(torus(8), {20, 0, 0}))).genus, 1);
 }
 
-TEST(Doctor, CountsEachBoundaryEdgeOnce) {
+TEST(Diagnostics, CountsEachBoundaryEdgeOnce) {
   EXPECT_EQ(examine(single_triangle()).boundary_edges, 3u);
   const MeshFindings findings = examine(opened(tetrahedron()));
   EXPECT_EQ(findings.boundary_edges, 3u);
@@ -79,7 +79,7 @@ TEST(Doctor, CountsEachBoundaryEdgeOnce) {
   EXPECT_EQ(findings.genus, std::nullopt);
 }
 
-TEST(Doctor, CountsEachNonManifoldEdgeOnce) {
+TEST(Diagnostics, CountsEachNonManifoldEdgeOnce) {
   Surface fin = tetrahedron();
   fin.vertices.emplace_back(2, 2, 0);
   fin.triangles.push_back({1, 2, 4});
@@ -90,7 +90,7 @@ TEST(Doctor, CountsEachNonManifoldEdgeOnce) {
   EXPECT_FALSE(findings.is_watertight());
 }
 
-TEST(Doctor, ClosedWithANonManifoldEdgeIsClosedButNotWatertight) {
+TEST(Diagnostics, ClosedWithANonManifoldEdgeIsClosedButNotWatertight) {
   // Two tetrahedra with one edge in common: four triangles on it.
   Surface other = tetrahedron();
   for (Vec3& v : other.vertices) v = Vec3(-v.x(), -v.y(), v.z());
@@ -102,7 +102,7 @@ TEST(Doctor, ClosedWithANonManifoldEdgeIsClosedButNotWatertight) {
   EXPECT_EQ(findings.genus, std::nullopt);
 }
 
-TEST(Doctor, CountsInconsistentlyWoundEdges) {
+TEST(Diagnostics, CountsInconsistentlyWoundEdges) {
   Surface surface = tetrahedron();
   std::swap(surface.triangles[0][0], surface.triangles[0][1]);
   const MeshFindings findings = examine(surface);
@@ -112,7 +112,7 @@ TEST(Doctor, CountsInconsistentlyWoundEdges) {
   EXPECT_EQ(findings.genus, std::nullopt);
 }
 
-TEST(Doctor, APinchedVertexJoinsComponentsButNotPatches) {
+TEST(Diagnostics, APinchedVertexJoinsComponentsButNotPatches) {
   const MeshFindings findings = examine(pinched());
   EXPECT_EQ(findings.vertices, 7u);
   EXPECT_EQ(findings.pinched_vertices, 1u);
@@ -122,7 +122,7 @@ TEST(Doctor, APinchedVertexJoinsComponentsButNotPatches) {
   EXPECT_EQ(findings.genus, std::nullopt);
 }
 
-TEST(Doctor, TellsTrianglesThatNameAVertexTwiceFromCollinearOnes) {
+TEST(Diagnostics, TellsTrianglesThatNameAVertexTwiceFromCollinearOnes) {
   Surface surface = single_triangle();
   surface.vertices.emplace_back(3, 0, 0);
   surface.triangles.push_back({0, 1, 1});
@@ -134,7 +134,7 @@ TEST(Doctor, TellsTrianglesThatNameAVertexTwiceFromCollinearOnes) {
   EXPECT_EQ(findings.degenerate_triangles(), 3u);
 }
 
-TEST(Doctor, ATriangleThatNamesAVertexTwiceDoesNotOpenOrJoinAnything) {
+TEST(Diagnostics, ATriangleThatNamesAVertexTwiceDoesNotOpenOrJoinAnything) {
   Surface surface = together(tetrahedron(), moved(tetrahedron(), {5, 0, 0}));
   surface.triangles.push_back({1, 2, 1});
   surface.triangles.push_back({3, 4, 4});  // spans both
@@ -146,7 +146,7 @@ TEST(Doctor, ATriangleThatNamesAVertexTwiceDoesNotOpenOrJoinAnything) {
   EXPECT_EQ(findings.genus, 0);
 }
 
-TEST(Doctor, CollinearMeansExactlySo) {
+TEST(Diagnostics, CollinearMeansExactlySo) {
   // No double lies between these; the middle point is a last bit off the line in the second.
   const double third = 1.0 / 3.0;
   const Surface on_line{{{0, 0, 0}, {third, third, third}, {1, 1, 1}}, {{0, 1, 2}}};
@@ -156,7 +156,7 @@ TEST(Doctor, CollinearMeansExactlySo) {
   EXPECT_EQ(examine(off_line).collinear_triangles, 0u);
 }
 
-TEST(Doctor, CountsDuplicatesWhateverTheirWindingAndFirstCorner) {
+TEST(Diagnostics, CountsDuplicatesWhateverTheirWindingAndFirstCorner) {
   Surface surface = tetrahedron();
   surface.triangles.push_back({2, 1, 0});  // as the first, begun elsewhere
   surface.triangles.push_back({1, 2, 0});  // and turned over
@@ -164,7 +164,7 @@ TEST(Doctor, CountsDuplicatesWhateverTheirWindingAndFirstCorner) {
   EXPECT_EQ(examine(surface).duplicate_triangles, 3u);
 }
 
-TEST(Doctor, CountsVerticesThatNoTriangleUses) {
+TEST(Diagnostics, CountsVerticesThatNoTriangleUses) {
   Surface surface = tetrahedron();
   surface.vertices.emplace_back(7, 7, 7);
   const MeshFindings findings = examine(surface);
@@ -174,14 +174,14 @@ TEST(Doctor, CountsVerticesThatNoTriangleUses) {
   EXPECT_EQ(findings.genus, 0);
 }
 
-TEST(Doctor, WhatIsSmallInEveryDirectionLooksLikeMetres) {
-  EXPECT_TRUE(examine(tetrahedron()).looks_like_metres());
+TEST(Diagnostics, WhatIsSmallInEveryDirectionLooksLikeMetres) {
+  EXPECT_TRUE(examine(tetrahedron()).looks_like_meters());
   Surface long_one = tetrahedron();
   long_one.vertices[3].z() = 180.0;
-  EXPECT_FALSE(examine(long_one).looks_like_metres());
+  EXPECT_FALSE(examine(long_one).looks_like_meters());
 }
 
-TEST(Doctor, FindsTheSameInAnyOrderOfTriangles) {
+TEST(Diagnostics, FindsTheSameInAnyOrderOfTriangles) {
   Surface surface = together(torus(9), moved(pinched(), {0, 0, 9}));
   surface.triangles.erase(surface.triangles.begin() + 20, surface.triangles.begin() + 24);
   std::swap(surface.triangles[60][0], surface.triangles[60][1]);
@@ -210,7 +210,7 @@ std::vector<Vec3> middles(const FaultPlaces& faults) {
   return all;
 }
 
-TEST(Doctor, FaultsAreWhereTheyWereMade) {
+TEST(Diagnostics, FaultsAreWhereTheyWereMade) {
   Surface surface = tetrahedron();
   std::swap(surface.triangles[3][0], surface.triangles[3][1]);
   const FaultPlaces seams = examine(surface).places.inconsistent_edges;
@@ -231,7 +231,7 @@ TEST(Doctor, FaultsAreWhereTheyWereMade) {
   EXPECT_EQ(middles(examine(pinched()).places.pinched_vertices), std::vector<Vec3>{Vec3::Zero()});
 }
 
-TEST(Doctor, OnePlaceOfEachHoleComesFirst) {
+TEST(Diagnostics, OnePlaceOfEachHoleComesFirst) {
   const Surface open = opened(tetrahedron());
   const Surface two = together(open, moved(open, {10, 0, 0}));
   const FaultPlaces holes = keepout::examine(Mesh(two), 2).places.boundary_edges;

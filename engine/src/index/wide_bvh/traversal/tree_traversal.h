@@ -9,40 +9,39 @@
 
 #include "../tree.h"
 #include "filters.h"
-#include "frontier.h"
-#include "keepout/index/motion_walk.h"
+#include "keepout/index/motion_traversal.h"
+#include "traversal_cache.h"
 
 namespace keepout {
 
-/// The walk of a WideBvh: through the boxes along a motion, to the triangles that it is not proved
-/// to stay clear of, the earliest first, until the visitor has met one. Filters in single precision
-/// leave out triangles that are surely clear. The walk remembers boxes and proofs from motion to
-/// motion and from cycle to cycle, which saves time; steps are the same without them, unless the
-/// work budget ends first.
+/// The traversal of a WideBvh: through the boxes along a motion, to the triangles that it is not
+/// proved to stay clear of, the earliest first, until the visitor has met one. Filters in single
+/// precision leave out triangles that are surely clear. The traversal remembers boxes and proofs
+/// from motion to motion and from cycle to cycle, which saves time; steps are the same without
+/// them, unless the work budget ends first.
 ///
 /// Its words, in the order in which a motion meets them:
 ///
-///     frontier    the boxes at which the motions of some cycles begin, within a padded region
-///     entries     when the motion enters the boxes of a node
-///     begun       boxes in which the motion starts, opened at once
-///     waiting     boxes and deferred suspects that it may meet later, the earliest first
-///     suspects    triangles of a leaf that it is not proved to stay clear of
-///     deferred    suspects that are still to be visited
-///     sharpen     find better proofs, which make suspects clear or later; delay: only later
-///     visit       show a triangle to the visitor, whose number for it is the note
-class TreeWalk final : public MotionWalk {
+///     traversal cache    the boxes at which the motions of some cycles begin, within a padded
+///     region entries     when the motion enters the boxes of a node begun       boxes in which the
+///     motion starts, opened at once waiting     boxes and deferred suspects that it may meet
+///     later, the earliest first suspects    triangles of a leaf that it is not proved to stay
+///     clear of deferred    suspects that are still to be visited sharpen     find better proofs,
+///     which make suspects clear or later; delay: only later visit       show a triangle to the
+///     visitor, whose number for it is the note
+class TreeTraversal final : public MotionTraversal {
  public:
   /// Both must outlive this. Precondition: the tree is not refit.
-  TreeWalk(const WideBvh::Tree& tree, Budget& budget);
+  TreeTraversal(const WideBvh::Tree& tree, Budget& budget);
 
   bool begin(const Start& start) noexcept override;
   void begin_again(double level) noexcept override;
   bool region_is_empty() const noexcept override { return region_is_empty_; }
-  bool walk(const Vec3& motion, TriangleVisitor& visitor) noexcept override;
+  bool traversal(const Vec3& motion, TriangleVisitor& visitor) noexcept override;
   std::size_t room() const noexcept override { return most_leaves * LeafBlock::lanes; }
 
-  /// Returns the boxes at which the walks of the last cycle began.
-  const Frontier& frontier() const noexcept { return frontier_; }
+  /// Returns the boxes at which the traversals of the last cycle began.
+  const TraversalCache& cache() const noexcept { return cache_; }
 
  private:
   // The capacity for leaves with filters and notes, a power of 2; a cycle in contact needs a dozen.
@@ -100,7 +99,7 @@ class TreeWalk final : public MotionWalk {
 
   const WideBvh::Tree& tree_;
   Budget& budget_;
-  Frontier frontier_;
+  TraversalCache cache_;
   double padding_ = 0.0;  // covered beyond the region, for cycles to come [length]
 
   // Of this cycle.
@@ -117,11 +116,11 @@ class TreeWalk final : public MotionWalk {
   TriangleVisitor* visitor_ = nullptr;
   double latest_ = 0.0;  // contacts after this fraction of the motion do not matter
   std::array<float, 3> motion_{};
-  // Boxes that it begins in, to be opened now, the last one first: those of the frontier, and
-  // fifteen more a level.
+  // Boxes that it begins in, to be opened now, the last one first: those of the traversal cache,
+  // and fifteen more a level.
   std::array<std::uint32_t, 16 * NodeBlock::lanes> begun_{};
   static_assert(std::tuple_size_v<decltype(begun_)> >=
-                Frontier::most_boxes + (NodeBlock::lanes - 1) * WideBvh::most_levels);
+                TraversalCache::most_boxes + (NodeBlock::lanes - 1) * WideBvh::most_levels);
   std::size_t begun_size_ = 0;
   std::vector<Waiting> waiting_;  // a heap, the earliest first
   std::size_t waiting_size_ = 0;

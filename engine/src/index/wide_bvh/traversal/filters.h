@@ -6,7 +6,7 @@
 
 #include "../tree.h"
 #include "keepout/geometry/shapes.h"
-#include "keepout/index/motion_walk.h"
+#include "keepout/index/motion_traversal.h"
 
 namespace keepout {
 
@@ -27,23 +27,23 @@ inline FloatTip float_tip(const Vec3& tip) noexcept {
   return split;
 }
 
-/// The level of a walk in single precision, and what rounding adds to it. All are rounded up.
+/// The level of a traversal in single precision, and what rounding adds to it. All are rounded up.
 struct FloatLevels {
-  float level;      // distance within which a motion comes near: MotionWalk::Start::level [length]
+  float level;  // distance within which a motion comes near: MotionTraversal::Start::level [length]
   float relative;   // rounding adds so much of |v - tip| of the farthest corner v ...
   float slack;      // ... and this [length]
   float box_level;  // level and rounding, for boxes [length]
 };
 
-// What single precision adds to the level of a walk, as a fraction of the level and of the longest
-// motion. Both are larger than the rounding of the lanes, below 1e-6 of these lengths, and others
-// rely on the rest: known_distance() of the certified rule needs more than 5e-7 of the level, and
-// MotionWalk::walk() more than `alike` of the motion.
+// What single precision adds to the level of a traversal, as a fraction of the level and of the
+// longest motion. Both are larger than the rounding of the lanes, below 1e-6 of these lengths, and
+// others rely on the rest: known_distance() of the certified rule needs more than 5e-7 of the
+// level, and MotionTraversal::traversal() more than `alike` of the motion.
 constexpr double slack_of_level = 2e-6;
 constexpr double slack_of_motion = 3e-6;
-static_assert(slack_of_level >= 1e-6 + 5e-7 && slack_of_motion >= 1e-6 + MotionWalk::alike);
+static_assert(slack_of_level >= 1e-6 + 5e-7 && slack_of_motion >= 1e-6 + MotionTraversal::alike);
 
-/// Returns the levels of a walk. `longest`: no motion is longer. `tip`: from the origin of the
+/// Returns the levels of a traversal. `longest`: no motion is longer. `tip`: from the origin of the
 /// tree's frame. `error`: of the coordinates in leaves. [length]
 inline FloatLevels float_levels(double level, double longest, const Vec3& tip,
                                 double error) noexcept {

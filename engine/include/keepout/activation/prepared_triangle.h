@@ -19,22 +19,23 @@ inline double support(const Triangle& corners, const Vec3& n) noexcept {
 /// Proofs rest on Lemma 2 of docs/certified-step.md: the distance of the point t z of a motion z to
 /// a triangle is convex in t, and each unit vector n bounds it from below by n . (t z) -
 /// support(n), with equality at the t where n points from the triangle's closest point to t z.
-class Facet {
+class PreparedTriangle {
  public:
-  /// The facet's closest point to a point, as a proof of the distance.
+  /// The prepared triangle's closest point to a point, as a proof of the distance.
   struct Nearest {
-    Vec3 normal;      // a unit vector from the closest point to the point; zero on the facet
+    Vec3
+        normal;  // a unit vector from the closest point to the point; zero on the prepared triangle
     double distance;  // of the point [length]
-    double support;   // of the facet along the normal [length]
+    double support;   // of the prepared triangle along the normal [length]
     Feature feature;  // on which the closest point lies
   };
 
-  Facet() = default;
+  PreparedTriangle() = default;
   /// Prepares a triangle given in the frame of the mesh, relative to a tip.
-  Facet(const Triangle& triangle, const Vec3& tip, TriangleId number) noexcept;
+  PreparedTriangle(const Triangle& triangle, const Vec3& tip, TriangleId number) noexcept;
 
   /// Prepares a triangle whose corners are relative to the tip and in lexicographic order already.
-  Facet(const Triangle& ordered, TriangleId number) noexcept;
+  PreparedTriangle(const Triangle& ordered, TriangleId number) noexcept;
 
   /// Returns the triangle's number; no_triangle until one is given.
   TriangleId triangle() const noexcept { return triangle_; }
@@ -53,16 +54,16 @@ class Facet {
   const Nearest& at_tip() const noexcept { return at_tip_; }
   /// Returns the distance of the tip. [length]
   double distance() const noexcept { return at_tip_.distance; }
-  /// Returns the unit vector towards the tip; zero when the tip is on the facet.
+  /// Returns the unit vector towards the tip; zero when the tip is on the prepared triangle.
   const Vec3& towards_tip() const noexcept { return at_tip_.normal; }
 
   /// Returns an edge (0, 1, 2) as a vector from its first corner. [length]
   Vec3 edge(int number) const noexcept { return corners_[(number + 1) % 3] - corners_[number]; }
 
-  /// Returns max n . p over the points p of the facet. [length]
+  /// Returns max n . p over the points p of the prepared triangle. [length]
   double support(const Vec3& n) const noexcept { return keepout::support(corners_, n); }
 
-  /// Returns true unless the facet is a needle, which counts as its edges.
+  /// Returns true unless the prepared triangle is a needle, which counts as its edges.
   bool has_face() const noexcept { return determinant_ > 0.0; }
 
   /// Returns the closest point of the plane of the face to a point, whether it is on the face or
@@ -72,19 +73,19 @@ class Facet {
   /// Returns true if a point is right over the face, on either side; false for a needle.
   bool has_above(const Vec3& point) const noexcept;
 
-  /// Returns the facet's own unit normal, on the side to which `direction` does not point; zero
-  /// without an area.
+  /// Returns the prepared triangle's own unit normal, on the side to which `direction` does not
+  /// point; zero without an area.
   Vec3 normal_against(const Vec3& direction) const noexcept;
 
-  /// Returns the unit normal of the plane through the tip that has the facet on its far side, at
-  /// least `level` away, and one of its edges (0, 1, 2) exactly so: the alternative around that
-  /// edge. Zero if the edge's line comes closer than that, or if the facet is on both sides of the
-  /// plane.
+  /// Returns the unit normal of the plane through the tip that has the prepared triangle on its far
+  /// side, at least `level` away, and one of its edges (0, 1, 2) exactly so: the alternative around
+  /// that edge. Zero if the edge's line comes closer than that, or if the prepared triangle is on
+  /// both sides of the plane.
   Vec3 normal_around(int edge, double level) const noexcept;
 
-  /// Returns true if the facet comes before another by its corners; a total order except for
-  /// duplicates.
-  bool before(const Facet& other) const noexcept;
+  /// Returns true if the prepared triangle comes before another by its corners; a total order
+  /// except for duplicates.
+  bool before(const PreparedTriangle& other) const noexcept;
 
  private:
   /// A point's coordinates along the edges from corner 0 to corners 1 and 2.

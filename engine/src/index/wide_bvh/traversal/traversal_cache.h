@@ -14,8 +14,9 @@ namespace keepout {
 /// A traversal cache: the parts of a tree that come near a place, as blocks of boxes like its
 /// nodes, a root of its own for searches there. A tip moves little from cycle to cycle, so it
 /// serves many of them. The ball up to the nearest box is known to hold no triangle. The cache
-/// changes the work units that a walk spends, so it changes an answer only where the budget ends.
-class Frontier {
+/// changes the work units that a traversal spends, so it changes an answer only where the budget
+/// ends.
+class TraversalCache {
  public:
   static constexpr std::size_t most_blocks = 4;
   static constexpr std::size_t most_boxes = most_blocks * NodeBlock::lanes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/index/motion_walk.h"
+#include "keepout/index/motion_traversal.h"
 
 #include <algorithm>
 #include <span>
@@ -10,10 +10,11 @@
 namespace keepout {
 namespace {
 
-/// Visits all hits in the region, whatever the motion: for indices without a walk of their own.
-class WalkOfHits final : public MotionWalk {
+/// Visits all hits in the region, whatever the motion: for indices without a traversal of their
+/// own.
+class TraversalOfHits final : public MotionTraversal {
  public:
-  explicit WalkOfHits(Neighborhood& neighborhood)
+  explicit TraversalOfHits(Neighborhood& neighborhood)
       : neighborhood_(neighborhood), notes_(neighborhood.room()) {}
 
   bool begin(const Start& start) noexcept override {
@@ -29,7 +30,7 @@ class WalkOfHits final : public MotionWalk {
 
   bool region_is_empty() const noexcept override { return neighborhood_.hits().empty(); }
 
-  bool walk(const Vec3&, TriangleVisitor& visitor) noexcept override {
+  bool traversal(const Vec3&, TriangleVisitor& visitor) noexcept override {
     const std::span<const Hit> hits = neighborhood_.hits();
     for (std::size_t i = 0; i < hits.size() && !neighborhood_.budget().is_spent(); ++i) {
       const TriangleId t = hits[i].triangle;
@@ -53,9 +54,9 @@ class WalkOfHits final : public MotionWalk {
 
 }  // namespace
 
-std::unique_ptr<MotionWalk> make_motion_walk(Neighborhood& neighborhood) {
-  if (auto own = neighborhood.index().walk_along_motions(neighborhood.budget())) return own;
-  return std::make_unique<WalkOfHits>(neighborhood);
+std::unique_ptr<MotionTraversal> make_motion_traversal(Neighborhood& neighborhood) {
+  if (auto own = neighborhood.index().traverse_along_motions(neighborhood.budget())) return own;
+  return std::make_unique<TraversalOfHits>(neighborhood);
 }
 
 }  // namespace keepout

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tree_walk.h"
+#include "tree_traversal.h"
 
 #include <algorithm>
 #include <bit>
@@ -33,16 +33,16 @@ std::uint32_t lanes_used(const LeafBlock& leaf) noexcept {
 
 }  // namespace
 
-TreeWalk::TreeWalk(const WideBvh::Tree& tree, Budget& budget)
+TreeTraversal::TreeTraversal(const WideBvh::Tree& tree, Budget& budget)
     : tree_(tree),
       budget_(budget),
       leaves_(most_leaves),
       waiting_(most_waiting),
       deferred_(most_deferred) {}
 
-bool TreeWalk::begin(const Start& start) noexcept {
+bool TreeTraversal::begin(const Start& start) noexcept {
   locate(start);
-  region_is_empty_ = frontier_.holds_nothing(start.region);
+  region_is_empty_ = cache_.holds_nothing(start.region);
   if (region_is_empty_) return true;
   tip_ = start.tip;
   longest_ = start.longest;
@@ -51,7 +51,7 @@ bool TreeWalk::begin(const Start& start) noexcept {
   return true;
 }
 
-void TreeWalk::begin_again(double level) noexcept {
+void TreeTraversal::begin_again(double level) noexcept {
   const LeafFrame& frame = tree_.frame();
   levels_ = float_levels(level, longest_, tip_ - frame.origin, frame.error);
   is_long_ = longest_ > level;
@@ -61,9 +61,10 @@ void TreeWalk::begin_again(double level) noexcept {
   }
 }
 
-/// Makes the frontier cover the region of the cycle, grown by a padding if that is likely to serve
-/// the cycles to come: while the padding is longer than the motions, and the tip moves on without a
-/// jump. The padding adapts to the number of boxes of a cover; its factors are tuned by experience:
+/// Makes the traversal cache cover the region of the cycle, grown by a padding if that is likely to
+/// serve the cycles to come: while the padding is longer than the motions, and the tip moves on
+/// without a jump. The padding adapts to the number of boxes of a cover; its factors are tuned by
+/// experience:
 ///
 ///     boxes left unopened   a quarter, and a new cover
 ///     no boxes              double, and a motion more
@@ -72,17 +73,17 @@ void TreeWalk::begin_again(double level) noexcept {
 ///     more than 24          0.7 of it
 ///
 /// Steps are the same whatever the padding is, unless the work budget ends first.
-void TreeWalk::locate(const Start& start) noexcept {
-  if (frontier_.covers(start.region)) return;
+void TreeTraversal::locate(const Start& start) noexcept {
+  if (cache_.covers(start.region)) return;
   const double longest = start.longest;
   // After a jump, as between the states of a planner, a larger cover would not serve the next
   // cycle.
-  const bool serves_more = padding_ > longest && frontier_.is_near(start.region);
+  const bool serves_more = padding_ > longest && cache_.is_near(start.region);
   const auto cover = [&](double padding) {
-    frontier_.cover(tree_, {start.region.center, start.region.radius + padding});
+    cache_.cover(tree_, {start.region.center, start.region.radius + padding});
   };
   cover(serves_more ? padding_ : 0.0);
-  if (serves_more && !frontier_.is_opened()) {
+  if (serves_more && !cache_.is_opened()) {
     // Large boxes are left unopened, which every cycle to come would have to open.
     padding_ *= 0.25;
     cover(padding_ > longest ? padding_ : 0.0);
@@ -91,16 +92,16 @@ void TreeWalk::locate(const Start& start) noexcept {
   if (padding_ > longest && !serves_more) return;  // no experience with this padding
   constexpr std::size_t few = 12;
   constexpr std::size_t many = 24;
-  if (frontier_.size() == 0) {
+  if (cache_.size() == 0) {
     padding_ = 2.0 * padding_ + longest;
-  } else if (frontier_.size() < few) {
+  } else if (cache_.size() < few) {
     padding_ = 1.5 * padding_ + 0.1 * longest;
-  } else if (frontier_.size() > many) {
+  } else if (cache_.size() > many) {
     padding_ *= 0.7;
   }
 }
 
-bool TreeWalk::walk(const Vec3& motion, TriangleVisitor& visitor) noexcept {
+bool TreeTraversal::traversal(const Vec3& motion, TriangleVisitor& visitor) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     motion_[axis] = static_cast<float>(motion[static_cast<Eigen::Index>(axis)]);
   }
@@ -110,9 +111,8 @@ bool TreeWalk::walk(const Vec3& motion, TriangleVisitor& visitor) noexcept {
   waiting_size_ = 0;
   deferred_size_ = 0;
   meets_nothing_ = true;
-  for (std::size_t i = 0; i < frontier_.blocks().size(); ++i) {
-    enter(frontier_.blocks()[i],
-          [&]() -> const CylinderBlock& { return frontier_.cylinders(tree_, i); });
+  for (std::size_t i = 0; i < cache_.blocks().size(); ++i) {
+    enter(cache_.blocks()[i], [&]() -> const CylinderBlock& { return cache_.cylinders(tree_, i); });
   }
   while (!budget_.is_spent()) {
     if (begun_size_ > 0) {
@@ -133,7 +133,7 @@ bool TreeWalk::walk(const Vec3& motion, TriangleVisitor& visitor) noexcept {
 }
 
 /// Opens a box: inspects a leaf or enters a node.
-void TreeWalk::descend(std::uint32_t box) noexcept {
+void TreeTraversal::descend(std::uint32_t box) noexcept {
   if ((box & NodeBlock::leaf_bit) != 0) {
     inspect(box & ~NodeBlock::leaf_bit);
   } else {
@@ -144,7 +144,7 @@ void TreeWalk::descend(std::uint32_t box) noexcept {
 /// Finds the boxes of a node that the motion reaches, and when: each is opened now or waits.
 /// `cylinders()` returns those of the boxes; called only if needed.
 template <class Cylinders>
-void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
+void TreeTraversal::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   BoxEntries entries;
   budget_.spend(work_of_boxes);
   enter_boxes(node, float_tip_, motion_.data(), levels_, entries);
@@ -156,7 +156,8 @@ void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
     const std::uint32_t child = node.child[lane];
-    if (!node.is_used(lane)) break;  // child 0 would be the root again, and the walk without end
+    if (!node.is_used(lane))
+      break;  // child 0 would be the root again, and the traversal without end
     if ((child & NodeBlock::leaf_bit) != 0) prefetch_leaf(child & ~NodeBlock::leaf_bit);
     const float time = entries.time[lane];
     // If the motion begins in a box, the tip may be too close already: it is opened now, however
@@ -173,7 +174,7 @@ void TreeWalk::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
 }
 
 /// Finds the suspects of a leaf; visits or defers them.
-void TreeWalk::inspect(std::uint32_t number) noexcept {
+void TreeTraversal::inspect(std::uint32_t number) noexcept {
   SeenLeaf& seen = filled_leaf(number);
   Deferred& found = deferred_[deferred_size_];
   found.leaf_number = number;
@@ -208,7 +209,7 @@ void TreeWalk::inspect(std::uint32_t number) noexcept {
 }
 
 /// Visits suspects of a leaf, the earliest first, until one that waits is earlier.
-void TreeWalk::resume(std::uint32_t number) noexcept {
+void TreeTraversal::resume(std::uint32_t number) noexcept {
   Deferred& deferred = deferred_[number];
   while (deferred.suspects.mask != 0) {
     if (deferred.sharpenings_left > 0) sharpen(deferred);
@@ -225,7 +226,7 @@ void TreeWalk::resume(std::uint32_t number) noexcept {
 
 /// Sharpens the suspects that may be met before it is too late: the first time of a long motion by
 /// better proofs, else by a Newton step.
-void TreeWalk::sharpen(Deferred& deferred) noexcept {
+void TreeTraversal::sharpen(Deferred& deferred) noexcept {
   const LeafBlock& block = tree_.leaves()[deferred.leaf_number];
   const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // not before it, when rounded
   budget_.spend(work_of_sharpening);
@@ -242,7 +243,7 @@ void TreeWalk::sharpen(Deferred& deferred) noexcept {
 }
 
 /// Shows a triangle to the visitor.
-void TreeWalk::visit(SeenLeaf& seen, std::uint32_t lane) noexcept {
+void TreeTraversal::visit(SeenLeaf& seen, std::uint32_t lane) noexcept {
   std::uint32_t& note = seen.note[lane];
   const TriangleId triangle = tree_.leaves()[seen.number].triangle(lane);
   if (note != no_note) {
@@ -254,7 +255,7 @@ void TreeWalk::visit(SeenLeaf& seen, std::uint32_t lane) noexcept {
 }
 
 /// Returns the corners of a triangle relative to the tip, in lexicographic order.
-Triangle TreeWalk::corners(std::uint32_t number, std::size_t lane) const noexcept {
+Triangle TreeTraversal::corners(std::uint32_t number, std::size_t lane) const noexcept {
   const LeafBlock& block = tree_.leaves()[number];
   if (!tree_.frame().is_exact()) {
     return ordered_relative(tree_.mesh().triangle(block.triangle(lane)), tip_);
@@ -269,7 +270,7 @@ Triangle TreeWalk::corners(std::uint32_t number, std::size_t lane) const noexcep
 
 /// Returns a leaf with its filter and notes. At its first call in a generation, fills them in the
 /// place of another leaf, whose notes are forgotten, and spends the work.
-TreeWalk::SeenLeaf& TreeWalk::filled_leaf(std::uint32_t number) noexcept {
+TreeTraversal::SeenLeaf& TreeTraversal::filled_leaf(std::uint32_t number) noexcept {
   SeenLeaf& seen = leaves_[number % most_leaves];
   if (seen.number == number && seen.filled_in == generation_) return seen;
   budget_.spend(work_of_leaf);
@@ -283,13 +284,13 @@ TreeWalk::SeenLeaf& TreeWalk::filled_leaf(std::uint32_t number) noexcept {
 }
 
 /// Prefetches a leaf that is likely to be needed soon, unless it is filled already.
-void TreeWalk::prefetch_leaf(std::uint32_t number) const noexcept {
+void TreeTraversal::prefetch_leaf(std::uint32_t number) const noexcept {
   const SeenLeaf& seen = leaves_[number % most_leaves];
   if (seen.number != number || seen.filled_in != generation_) prefetch(tree_.leaves()[number]);
 }
 
 /// Adds a box or suspects to the heap. Returns false if there is no room.
-bool TreeWalk::wait(float time, std::uint32_t what) noexcept {
+bool TreeTraversal::wait(float time, std::uint32_t what) noexcept {
   if (waiting_size_ == waiting_.size()) return false;
   waiting_[waiting_size_++] = {time, what};
   std::push_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
@@ -298,13 +299,13 @@ bool TreeWalk::wait(float time, std::uint32_t what) noexcept {
 }
 
 /// Takes the earliest from the heap. Precondition: the heap is not empty.
-TreeWalk::Waiting TreeWalk::pop_earliest() noexcept {
+TreeTraversal::Waiting TreeTraversal::pop_earliest() noexcept {
   std::pop_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
                 is_later);
   return waiting_[--waiting_size_];
 }
 
-std::uint32_t TreeWalk::Deferred::earliest() const noexcept {
+std::uint32_t TreeTraversal::Deferred::earliest() const noexcept {
   auto found = static_cast<std::uint32_t>(std::countr_zero(suspects.mask));
   for (std::uint32_t lanes = suspects.mask; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "index/wide_bvh/walk/leaf_filter.cpp"
+#define HWY_TARGET_INCLUDE "index/wide_bvh/traversal/leaf_filter.cpp"
 #include <hwy/foreach_target.h>
 // After it: it sets the target.
 #include "filters.h"

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Attributes under the names that they had before version 0.3; each access warns. To be removed in 0.4."""
+
+import warnings
+
+
+def alias(owner, former, name):
+    """Gives a class the attribute `former`, which warns and returns the attribute `name`."""
+
+    def get(self):
+        warnings.warn(f"{owner.__name__}.{former} is now {name}", DeprecationWarning, stacklevel=2)
+        return getattr(self, name)
+
+    setattr(owner, former, property(get, doc=f"Deprecated: use {name}."))
