@@ -31,7 +31,7 @@ struct Pieces {
 
 /// One piece after the other, as far as each is proven; of the first that is not, so many halvings
 /// are tried. `from` itself is not asked about.
-ProvenPrefix traversal(MotionConstraint& guard, const Vec3& from, const Vec3& to,
+ProvenPrefix proven_part(MotionConstraint& guard, const Vec3& from, const Vec3& to,
                        int halvings) noexcept {
   const double length = (to - from).norm();
   const Pieces pieces{from, to, std::max(1.0, std::ceil(length / guard.options().radius))};
@@ -64,12 +64,12 @@ bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept {
 }
 
 bool proves(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
-  return traversal(guard, from, to, 0).whole();
+  return proven_part(guard, from, to, 0).whole();
 }
 
 ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
   if (!keeps_margin(guard, from)) return {.end = from};
-  return traversal(guard, from, to, 8);
+  return proven_part(guard, from, to, 8);
 }
 
 }  // namespace keepout

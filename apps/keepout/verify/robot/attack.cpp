@@ -228,7 +228,7 @@ class RobotAttempt {
     ++tally_.samples;
     tally_.excess += found.saved;
     tally_.useful += found.saved > useful_above ? 1 : 0;
-    tally_.movable += found.fraction >= movable_above ? 1 : 0;
+    tally_.movable += found.share >= movable_above ? 1 : 0;
   }
 
   const Campaign& campaign_;

@@ -112,10 +112,8 @@ struct Capacity {
   /// Work units of one cycle: see Budget. A motion that cannot be proven with them is not made. 0:
   /// work_units_of_traversals on an index that traverses along motions, such as wide_bvh, and
   /// work_units_of_queries on others, which return all triangles in the region.
-  union {
-    std::size_t work_units = 0;
-    [[deprecated("use work_units")]] std::size_t looks;
-  };
+  std::size_t work_units = 0;
+  [[deprecated("use work_units")]] std::size_t looks = 0;
 
   static constexpr std::size_t work_units_of_traversals = std::size_t{1}
                                                           << 16;  // of an index that traverses

@@ -90,10 +90,8 @@ struct InstrumentCapacity {
   std::size_t triangles = std::size_t{1} << 14;  // near one body
   std::size_t planes = 128;                      // rows of a cycle
   /// Work units of a cycle, for all meshes; 0: the largest of the defaults of their indices.
-  union {
-    std::size_t work_units = 0;
-    [[deprecated("use work_units")]] std::size_t looks;
-  };
+  std::size_t work_units = 0;
+  [[deprecated("use work_units")]] std::size_t looks = 0;
 };
 
 /// The table of these options.

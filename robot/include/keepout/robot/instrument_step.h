@@ -16,10 +16,7 @@ struct DegradedClearance {
   int body = -1;  // the number of the body
   int mesh = -1;  // the number of the mesh
   /// The fraction of the certified clearance that the body maintains, below 1.
-  union {
-    double fraction = 0.0;
-    [[deprecated("use fraction")]] double level;
-  };
+  double fraction = 0.0;
   bool is_certified = true;  // false: no clearance is certified, and the fraction is 0
 };
 
@@ -29,10 +26,8 @@ struct InstrumentStep {
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
   /// The fraction of the motion found that `increment` is. With status truncated that motion may be
   /// for a part of the command only, and 1 means all of that part.
-  union {
-    double fraction = 0.0;
-    [[deprecated("use fraction")]] double share;
-  };
+  double fraction = 0.0;
+  [[deprecated("use fraction")]] double share = 0.0;
   int rounds = 0;             // how many solved trial motions were judged
   std::size_t rows = 0;       // constraints that limit the motion, joint limits apart
   std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
@@ -46,10 +41,8 @@ struct InstrumentStep {
   /// certified clearance (InstrumentConstraint: F), below 1 if a mesh approaches faster than a body
   /// can retreat, and 0 if no clearance could be certified for a body, or if a mesh moves and there
   /// is no motion. Without a motion beside still meshes it says nothing, and may be 1.
-  union {
-    double clearance_fraction = 1.0;
-    [[deprecated("use clearance_fraction")]] double level;
-  };
+  double clearance_fraction = 1.0;
+  [[deprecated("use clearance_fraction")]] double level = 1.0;
   /// The pairs of a body and a mesh whose clearance fraction is below 1; empty if the cycle did not
   /// start.
   std::span<const DegradedClearance> degraded = {};
@@ -74,10 +67,8 @@ struct MotionProof {
   /// the start, and no body comes closer by more than the band. Otherwise why the proof ended.
   Status status = Status::invalid_input;
   /// The motion q + s dq is proved for s in [0, fraction], whatever the status.
-  union {
-    double fraction = 0.0;
-    [[deprecated("use fraction")]] double share;
-  };
+  double fraction = 0.0;
+  [[deprecated("use fraction")]] double share = 0.0;
   std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
   /// Returns one line on what happened and what to do about it.

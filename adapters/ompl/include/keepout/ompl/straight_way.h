@@ -14,10 +14,7 @@ bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept;
 /// The part of a straight way that is proven, from its start on.
 struct ProvenPrefix {
   /// The fraction of the segment that is proved; 1: all of it, with its end.
-  union {
-    double fraction = 0.0;
-    [[deprecated("use fraction")]] double share;
-  };
+  double fraction = 0.0;
   Vec3 end;  // from + fraction (to - from); `from` itself when nothing is proven [length]
   bool may_start = false;  // `from` may be stood on
 
