@@ -167,8 +167,7 @@ class Trial {
   std::vector<Motion> motions_;
   std::shared_ptr<const SpatialIndex> reference_index_;
   std::map<std::pair<std::string, double>, Reference> references_;  // of each rule and radius
-  std::shared_ptr<const SpatialIndex> index_;                       // the current index; null: not
-                                                                    // built
+  std::shared_ptr<const SpatialIndex> index_;                       // null: not built
   BenchmarkRow row_ = new_row();  // the members that all combinations with this index share
 };
 
