@@ -161,10 +161,10 @@ class InstrumentPlanning final : public Planning {
   ///
   /// 1. The instrument starts 5 to 20 mm from a random place of the surface (find_start).
   /// 2. From there a simulated operator pushes, slides and turns it (Attacker), for 3000 certified
-  /// steps.
+  ///    steps.
   /// 3. The goal is the place visited that is farthest ahead, along the tool's direction at the
-  /// start, to within about 2 mm. Only places count to which the straight joint motion passes
-  /// through the mesh. If the goal is less than 30 mm ahead, another start is tried.
+  ///    start, to within about 2 mm. Only places count to which the straight joint motion passes
+  ///    through the mesh. If the goal is less than 30 mm ahead, another start is tried.
   std::vector<PlanningProblem> draw(const StopSignal& stop) override {
     Random random(options_->seed);
     const std::size_t count = options_->problems;

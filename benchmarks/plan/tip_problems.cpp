@@ -96,9 +96,7 @@ class FreeCells {
   }
 
   const std::vector<Cell>& reached() const noexcept { return reached_; }
-  double distance(Cell cell) const noexcept {
-    return distance_[cell];
-  }  // infinite: beyond the limit
+  double distance(Cell cell) const noexcept { return distance_[cell]; }  // infinite: far away
 
   Vec3 center(Cell cell) const noexcept {
     const Place at = place(cell);
