@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What was found as one Markdown page: to be read without a browser, and kept with the sources."""
+"""Writes the findings as one Markdown page, which needs no browser and is kept with the sources."""
 from __future__ import annotations
 
 from .experiment import Findings
@@ -11,7 +11,7 @@ _POOLED = (
 
 
 def text(findings: dict[str, tuple[str, Findings]], command: str, version: str) -> str:
-    """Claims first, all experiments together; then each with its tables and figures."""
+    """Returns the claims of all experiments; then each experiment with its tables and figures."""
     lines = ["# The paper's experiments, redone", "", f"By `{command}`, keepout {version}.", ""]
     claims = [claim for _, found in findings.values() for claim in found.claims]
     if claims:
