@@ -137,7 +137,7 @@ def _claim(measure: Measure, by_mode: ByMode, against: list[Against]) -> Claim:
         f"{paper.fixture.sd:g}{unit}, pooled p = {paper.p:.2g}",
         reproduction=pair("paper"),
         certified=pair("certified"),
-        best=f"{figures.label(best)}: {means[best]:.2f}{unit}, of those that finished with a setpoint never {SOUND:g} mm deep"
+        best=f"{figures.label(best)}: {means[best]:.2f}{unit}, of the modes that finished with a setpoint never {SOUND:g} mm deep"
         if best
         else f"none finished with a setpoint never {SOUND:g} mm deep",
         sure="certified against no fixture, trials: "
@@ -171,15 +171,15 @@ def _crossings(rows: list[Row]) -> str:
 
 def _safety(by_mode: ByMode) -> Table:
     return Table(
-        "What came into the anatomy",
+        "Penetration into the anatomy",
         ["mode", "setpoint passes through, registered frame", "deepest setpoint, registered frame [mm]",
          "deepest tip, true frame [mm]", "registration error [mm]", "tip deeper than that error [mm]",
          "tip short of the path's end"],
         [[figures.label(mode), _crossings(rows),
           *_greatest(rows, "deepest_registered_mm", "deepest_mm", "registration_error_mm", "beyond_registration_mm"),
           str(sum(not row["finished"] for row in rows))] for mode, rows in by_mode.items()],
-        "The fixture answers for its setpoint in the frame that it was told. What the tip does in the true "
-        "frame is the registration's too: greatest values of all trials.",
+        "The fixture guards its setpoint in the registered frame. The tip in the true frame also has the "
+        "error of registration. Greatest values of all trials.",
     )
 
 
@@ -192,7 +192,7 @@ def _tests_table(by_mode: ByMode, against: list[Against]) -> Table:
           *(a.measure.text(a.measure.values(by_mode[mode])) for mode in (modes.NO_FIXTURE, a.mode)),
           *(f"{p:.2g}" for p in (a.student, a.welch, a.holm)),
           hypothesis_tests.in_words(a.holm, a.effect).split(", ", 1)[1]] for a in against],
-        f"Holm over these {len(against)} comparisons. g is positive where no fixture has more.",
+        f"Holm over these {len(against)} comparisons. g is positive if the value is greater without a fixture.",
     )
 
 
@@ -218,8 +218,8 @@ def _headline(by_mode: ByMode, against: list[Against]) -> str:
 
     sure = [told(a) for a in against if a.mode == "certified" and a.holm < 0.05]
     return (
-        f"certified: {len(certified)} trials, {entered} of which entered in the frame of the fixture. Beside "
-        f"no fixture, what differs after Holm: {'; '.join(sure) or 'nothing for certain'}."
+        f"certified: {len(certified)} trials, {entered} of which entered in the frame of the fixture. Measures "
+        f"that differ from no fixture after Holm: {'; '.join(sure) or 'none for certain'}."
     )
 
 

@@ -171,28 +171,28 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     best = min(safe, key=lambda m: _excess(counted[m]), default=None)
     claims = [
         Claim(
-            about="shapes that the tip is kept out of, and loops in which it got in (IV-A)",
+            about="shapes that the tip never entered, and loops in which it entered (IV-A)",
             paper="11 of 11 shapes",
             reproduction=told(AS_PUBLISHED),
             certified=told("certified"),
             best=figures.label(best) if best else "none",
             sure=_mcnemar(counted[AS_PUBLISHED], counted["certified"]),
-            note="best: of those that kept out of all, the one nearest to the best safe steps",
+            note="best: of the modes that never entered, the one nearest to the best safe steps",
         ),
         Claim(
-            about="free motion that is not allowed (IV-A)",
+            about="free motion that is lost (IV-A)",
             paper="-",
             reproduction=_number(100 * _lost(counted[AS_PUBLISHED]), 1, " %"),
             certified=_number(100 * _lost(counted["certified"]), 1, " %"),
             best=figures.label(min(safe, key=lambda m: _lost(counted[m]))) if safe else "none",
             sure=_sign_test(closed, loops),
-            note="planes of triangles that the tip does not run into, as far as the sphere reaches",
+            note="planes of all triangles in the sphere, even if the motion does not reach them",
         ),
     ]
-    headline = (f"Closed shapes kept out of, and loops in which the tip got in: "
-                f"{told(AS_PUBLISHED)} by the paper's rule as printed, which gives away "
-                f"{claims[1].reproduction} of the free motion; {told('certified')} and "
-                f"{claims[1].certified} by the certified one.")
+    headline = (f"Closed shapes never entered, and loops in which the tip entered. "
+                f"The paper's rule as printed: {told(AS_PUBLISHED)}, and it loses "
+                f"{claims[1].reproduction} of the free motion. Certified: {told('certified')}, and "
+                f"it loses {claims[1].certified}.")
     tables = [_overview(modes, counted, told), _by_shape(shapes, closed, modes, loops)]
     return Findings(headline, claims, tables, [_picture(shapes, modes, loops)])
 
@@ -256,10 +256,10 @@ def _overview(
             _number(100 * _lost(loops), 2, " %"),
             _number(100 * _excess(loops), 1, " %") if mode in (*FIXTURES, AS_PUBLISHED) else "-",
         ])
-    note = (f"Closed shapes that it never got into, and loops of {CYCLES} cycles in which it did. "
-            "Lost is motion that was free and was not allowed; excess is what safe steps that "
-            "something limits fall short of the best one, in lengths of the motion asked for.")
-    columns = ["mode", "kept out of, got in", "deepest [mm]", "least clearance [mm]", "lost",
+    note = (f"Closed shapes that the tip never entered, and loops of {CYCLES} cycles in which it entered. "
+            "Lost: free motion that the rule did not allow. Excess: by how much limited safe steps fall "
+            "short of the best safe step, relative to the desired motion.")
+    columns = ["mode", "never entered, entered", "deepest [mm]", "least clearance [mm]", "lost",
                "excess"]
     return Table("Modes over all closed shapes", columns, rows, note)
 
@@ -275,7 +275,7 @@ def _by_shape(shapes: list[str], closed: list[str], modes: list[str], loops: Loo
         [shape if shape in closed else f"{shape} (open)", *(cell(loops[shape, m]) for m in modes)]
         for shape in shapes
     ]
-    note = "Crossed of all loops, and how deep the tip got at the worst. Open shapes do not count."
+    note = "Loops with a crossing of all loops, and the greatest depth of the tip. Open shapes do not count."
     columns = ["shape", *map(_label, modes)]
     return Table("Loops in which the tip crossed the surface", columns, rows, note)
 
@@ -291,9 +291,9 @@ def _picture(shapes: list[str], modes: list[str], loops: Loops) -> Figure:
     ax.set_yticks(range(len(shapes)), shapes)
     ax.set_xlim(-0.6, len(modes) - 0.4)
     ax.set_ylim(len(shapes) - 0.4, -0.6)
-    caption = ("The area of a dot is the share of loops in which the tip crossed the surface; "
-               "no dot is none.")
-    return Figure("e1_crossings", "Where the tip got in", caption, figures.svg(fig))
+    caption = ("The area of a dot is the fraction of loops in which the tip crossed the surface. "
+               "No dot means that it never did.")
+    return Figure("e1_crossings", "Loops in which the tip entered", caption, figures.svg(fig))
 
 
 def _of_look(mode: str) -> str:

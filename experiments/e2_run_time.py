@@ -123,13 +123,13 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
             for (rule, index, radius), curve in sorted(
                 curves.items(), key=lambda entry: (entry[0][0], -(entry[0][2] or 0), entry[0][1]))
         ],
-        f"{where}; one thread; other processes kept up to {busy:.1f} cores busy. '-': not built or "
-        f"not timed; {' and '.join(SLOW_INDICES)} are for comparison only, up to "
-        f"{LARGEST_OF_SLOW:,} triangles, and those of other libraries up to {LARGEST_OF_OTHERS:,}.",
+        f"{where}; one thread; other processes kept up to {busy:.1f} cores busy. '-' means not built or "
+        f"not timed. Indices only for comparison: {' and '.join(SLOW_INDICES)}, up to "
+        f"{LARGEST_OF_SLOW:,} triangles. Indices of other libraries: up to {LARGEST_OF_OTHERS:,}.",
     )
     headline = (
         f"On {sizes[-1]:,} triangles the certified rule makes steps at {rate} kHz, {ratio:.0f} "
-        f"times as fast as the paper's rule on its tree; it falls below 1 kHz at {_fall(ours)} "
+        f"times as fast as the paper's rule on its tree. It falls below 1 kHz at {_fall(ours)} "
         f"triangles, the paper's at {_fall(theirs)}.")
     return Findings(headline, _claims(rows, curves), [table], [_figure(curves)])
 
@@ -175,7 +175,7 @@ def _fall(curve: list[tuple[int, float]]) -> str:
 
 def _claims(rows: list[Row], curves: Curves) -> list[Claim]:
     steps = min(row["steps"] for row in rows)
-    sure = f"medians of {steps:,} steps, each the reference's bit for bit"
+    sure = f"medians of {steps:,} steps, each bitwise identical to the reference"
     authors = [rate for rate in published.AUTHORS_CODE if rate.radius == 5.0]
     claims = []
     for printed, timed in zip(published.RATES, (authors[0], authors[-1])):
@@ -219,8 +219,8 @@ def _figure(curves: Curves) -> Figure:
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return Figure(
         "rate", "Rate against triangles",
-        "Bunnies of 150 mm; motion sphere of 5 mm, certified as far as the motion leads. Below the "
-        "line a loop of 1 kHz is not kept. The paper ran on an Intel Core i7-8700.",
+        "Bunnies of 150 mm; motion sphere of 5 mm, certified as far as the motion goes. Below the "
+        "line a loop is slower than 1 kHz. Li et al. used an Intel Core i7-8700.",
         figures.svg(fig))
 
 

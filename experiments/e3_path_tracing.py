@@ -56,9 +56,9 @@ def run(unit: Unit) -> list[Row]:
 MEASURES = (
     Measure(
         "spectral_arc_length", "spectral arc length, 20 Hz", "", published.SAL, higher_is_better=True,
-        why="the simulated free hand is smoother than the paper's, whose corrections in depth it has too few of; "
-        "and a tip that leans on a skull of CT voxels feels their steps, where the paper's is a smooth print. "
-        "How long a trace took the paper does not say, and the length grows with it",
+        why="the simulated free hand is smoother than the paper's, because it makes too few corrections in depth. "
+        "A tip that leans on a skull of CT voxels feels their steps; the paper's skull is a smooth print. "
+        "The paper does not give the duration of a trace, and the arc length grows with it",
     ),
     Measure("sparc", "SPARC, 10 Hz", "", higher_is_better=True),
     Measure("absolute_depth_mm", "distance from the planned depth", "mm"),

@@ -83,14 +83,14 @@ def cut(trace: Trace, course: Course) -> tuple[list[float | None], list[float]]:
 MEASURES = (
     Measure(
         "deviation_mm", "cutting path deviation", "mm", published.PATH_DEVIATION, samples="deviations_mm",
-        why="the free hand is fitted to the paper's. A corridor of 1 mm on each side seldom touches a hand that "
-        "errs by 0.6 mm: that the paper's surgeon deviates less with it must come from what is not simulated, "
-        "such as attention that depth no longer takes. Narrower corridors are in the table of sweeps",
+        why="the free hand is fitted to the paper's. A corridor of 1 mm on each side seldom limits a hand with an "
+        "error of 0.6 mm. The paper's surgeon deviates less with it, probably from effects that are not simulated, "
+        "such as attention that depth no longer needs. The table of sweeps has narrower corridors",
     ),
     Measure(
         "absolute_depth_mm", "absolute penetration depth", "mm", published.PENETRATION_DEPTH, samples="depths_mm",
-        why="the free hand is fitted to the paper's. With a fixture what is left is under-cut, by which robot and "
-        "tool bend, and the error of registration; the paper's rule keeps off ridges besides",
+        why="the free hand is fitted to the paper's. With a fixture the rest is under-cut, from the bending of robot "
+        "and tool, and the error of registration. The paper's rule also stays away from ridges",
     ),
     Measure(
         "duration_s", "duration", "s", published.DURATION,
@@ -100,7 +100,7 @@ MEASURES = (
     Measure("over_cut_mm", "greatest over-cut", "mm"),
     Measure("under_cut_mm", "greatest under-cut", "mm"),
     Measure("contact_n", "force on the bone", "N"),
-    Measure("millimetres_reached", "how much of the path was cut into", "mm"),
+    Measure("millimetres_reached", "length of the path cut", "mm"),
     Measure("force_n", "force of the fixture on the hand", "N", tested=False),
     Measure("energy_mj", "energy that the fixture gave to the hand", "mJ", tested=False),
     Measure("chatter_um", "chatter of the setpoint above 30 Hz", "µm"),

@@ -266,16 +266,16 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
             f"{row['thicker_entered']} of {row['thicker_loops']}",
         ] for row in rows],
         f"In a box of {2 * HALF_BOX:g} mm with the most thin walls. Errors within {NEAR:g} mm of "
-        "the surface. A wall is lost where the field is free half-way through it. Pushed at are "
-        f"walls thinner than {THIN:g} mm, and in the last column those of {THIN:g} to {THICKEST:g} "
-        "mm; passed: out again after it has entered. Grids are stepped in Python, the other rules "
+        "the surface. A wall is lost if the field is free half-way through it. The tip pushes at "
+        f"walls thinner than {THIN:g} mm; in the last column they are {THIN:g} to {THICKEST:g} mm thick. "
+        "Passed: the tip entered and came out again. Grids are stepped in Python, the other rules "
         "in C++, called from Python.",
     )
     fields = [row for row in rows if row["mode"] in CELLS]
     ours = [row for row in rows if row["mode"] == "certified"]
     entered, loops = sum(row["entered"] for row in fields), sum(row["loops"] for row in fields)
     headline = (
-        f"Pushed at walls thinner than {THIN:g} mm, the tip entered in {entered} of {loops} loops "
+        f"At walls thinner than {THIN:g} mm, a pushed tip entered in {entered} of {loops} loops "
         f"under distance fields, {max(row['deepest'] for row in fields):.2f} mm deep at "
         f"most, and under certified in {sum(row['entered'] for row in ours)} of {sum(row['loops'] for row in ours)}.")
     return Findings(headline, _claims(rows), [table], [_figure(rows)])
@@ -310,8 +310,8 @@ def _claims(rows: list[Row]) -> list[Claim]:
             f"loops at thin walls that enter: {figures.label(mode)} {said[mode]}", "-",
             said["paper"], said["certified"], best,
             f"p = {p:.2g}, field against certified (Fisher, Holm)",
-            "p takes loops as independent, but some are pushed at one wall, and all modes at the same: "
-            "it is no more than a rough guide")
+            "p assumes independent loops, but some push at the same wall, and all modes use the same walls: "
+            "only a rough guide")
         for mode, p in zip(CELLS, holm(p_values))
     ]
 
@@ -342,5 +342,5 @@ def _figure(rows: list[Row]) -> Figure:
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0))
     return Figure(
         "error_and_memory", "Error and memory of a distance field",
-        "How wrong the field is within 2 mm of the surface, and what it takes of memory. The "
-        "certified rule asks the mesh: its distances do not depend on a voxel.", figures.svg(fig))
+        "The error of the field within 2 mm of the surface, and its memory. The certified rule queries the mesh: "
+        "its distances do not depend on a voxel.", figures.svg(fig))

@@ -76,14 +76,14 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
         f"{said('certified')}.",
         claims=[
             Claim(
-                about="completeness: local cases in which the tip is let through (III-B)",
+                about="completeness: local cases in which the tip passes through (III-B)",
                 paper="none",
                 reproduction=said("paper"),
                 certified=said("certified"),
                 best=", ".join(figures.label(m) for m in FIXTURES if len(passed[m]) == fewest),
                 sure="each is a proof by example, judged in exact arithmetic",
-                note="a neighbour whose closest point is nearer takes a triangle's place, and its plane "
-                "need not cover that triangle",
+                note="a neighbor with a nearer closest point replaces a triangle, and its plane "
+                "may not cover that triangle",
             )
         ],
         tables=[
@@ -95,7 +95,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
                     + [cell(of[e, m]) for m in FIXTURES]
                     for e in examples
                 ],
-                "Grids coarser than a mesh of a few millimetres cannot hold it. On CE4 the tip starts on the "
+                "Grids coarser than a mesh of a few millimeters cannot represent it. On CE4 the tip starts on the "
                 "surface, which counts as held.",
             )
         ],

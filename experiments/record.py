@@ -40,8 +40,8 @@ def write_record(
         "command": command,
         "complete": complete,
         "subject": f"The experiments of Li et al., IROS 2020: {extent}",
-        "headline": f"{numbers} of the paper, beside what its rule does here, what the certified "
-        "rule does, and what is best",
+        "headline": f"{numbers} of the paper, beside the results of its rule, of the certified rule "
+        "and of the best mode here",
         "account": [],
         "machine": _machine(),
         "settings": {"scale": extent, "seed": str(scale.seed)},
