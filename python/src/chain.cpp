@@ -101,11 +101,14 @@ Chain chain_of_file(const std::filesystem::path&, const std::string&, const std:
 constexpr const char* joint_doc =
     R"(A joint of a chain, and its fixed transform from the link before it.
 
-name: for messages. kind: 'revolute' turns the links beyond it about the axis [rad]; 'prismatic'
-moves them along the axis [length]. origin: (4, 4), the joint's frame in the frame of the link
-before it; None is the identity. axis: (3,), a unit vector in the joint's frame; None is z. lower,
-upper: limits of its position. velocity: limit per second, above 0. increment: limit per cycle,
-above 0. None: no limit.)";
+name: for messages.
+kind: 'revolute' turns the links beyond it about the axis [rad]; 'prismatic' moves them along the
+axis [length].
+origin: (4, 4), the joint's frame in the frame of the link before it; None is the identity.
+axis: (3,), a unit vector in the joint's frame; None is z.
+lower, upper: limits of its position; None: no limit.
+velocity: limit per second, above 0; None: no limit.
+increment: limit per cycle, above 0; None: no limit.)";
 
 constexpr const char* row_doc =
     R"(A row of a Denavit-Hartenberg table: a along x [length], alpha about x [rad], d along z
@@ -116,9 +119,9 @@ constexpr const char* chain_doc =
     R"(A serial chain of revolute and prismatic joints that carries an instrument. Link 0 is the
 base; joint k moves link k, counted from 1. Frames are those of URDF.
 
-joints: 1 to 8 of Joint, from the base on. base: (4, 4), the pose of link 0 in the frame of the
-mesh. flange: (4, 4), the frame that a step moves, in the frame of the last link. None is the
-identity.)";
+joints: 1 to 8 of Joint, from the base on.
+base: (4, 4), the pose of link 0 in the frame of the mesh; None is the identity.
+flange: (4, 4), the frame that a step moves, in the frame of the last link; None is the identity.)";
 
 void bind_joints(py::module_& module) {
   py::class_<Joint>(module, "Joint", joint_doc)
@@ -207,16 +210,22 @@ void bind_chain(py::module_& module) {
       "chain_of_table", &chain_of_table, py::arg("rows"), py::kw_only(),
       py::arg("convention") = "modified", py::arg("base") = py::none(),
       py::arg("flange") = py::none(),
-      "Returns a Chain from a list of TableRow. convention: 'modified' (Craig: about x, along\n"
-      "x, about z, along z) or 'standard' (about z, along z, along x, about x). base: as in\n"
-      "Chain. flange: (4, 4), in the last frame of the table.");
-  module.def(
-      "read_chain", &chain_of_file, py::arg("path"), py::kw_only(), py::arg("base") = "",
-      py::arg("tip") = "", py::arg("scale") = 1000.0,
-      "Reads a Chain from a URDF file. base: the first link; empty for the root. tip: the link\n"
-      "of the flange; empty for the only leaf below `base`. scale: a meter in the unit of the\n"
-      "mesh. Link 0 is at the origin of the mesh; Chain(chain.joints, base=...,\n"
-      "flange=chain.flange) moves it. Raises Error if this build cannot read URDF.");
+      "Returns a Chain from a list of TableRow.\n"
+      "\n"
+      "convention: 'modified' (Craig: about x, along x, about z, along z) or 'standard' (about\n"
+      "z, along z, along x, about x).\n"
+      "base: as in Chain.\n"
+      "flange: (4, 4), in the last frame of the table; None is the identity.");
+  module.def("read_chain", &chain_of_file, py::arg("path"), py::kw_only(), py::arg("base") = "",
+             py::arg("tip") = "", py::arg("scale") = 1000.0,
+             "Reads a Chain from a URDF file. Raises Error if this build cannot read URDF.\n"
+             "\n"
+             "base: the first link; empty for the root.\n"
+             "tip: the link of the flange; empty for the only leaf below `base`.\n"
+             "scale: a meter in the unit of the mesh.\n"
+             "\n"
+             "Link 0 is at the origin of the mesh. To move it, make Chain(chain.joints, base=...,\n"
+             "flange=chain.flange).");
 }
 
 }  // namespace keepout::python

@@ -127,9 +127,11 @@ void bind_guard(py::class_<Guard>& type, const std::string& name, const char* si
            "Forgets the last step; the next position is classified again. For motions that do\n"
            "not continue each other.")
       .def("set_guides", &Guard::set_guides, py::arg("guides"),
-           "Replaces the guides of all later steps and batches. guides: a list of at most 16;\n"
-           "each is a Guide or the text of one, such as 'corridor=slab:0,0,50:1,0,0:1': see\n"
-           "Guide.of_text. Changes nothing if it raises Error.")
+           "Replaces the guides of all later steps and batches. Changes nothing if it raises\n"
+           "Error.\n"
+           "\n"
+           "guides: a list of at most 16; each is a Guide or the text of one, such as\n"
+           "'corridor=slab:0,0,50:1,0,0:1': see Guide.of_text.")
       .def_property_readonly(
           "mesh", [](const Guard& self) { return self.index()->mesh_object; },
           "The mesh; if there are several, the first.")

@@ -25,8 +25,9 @@ a convex region. Guides compose; each holds on the whole executed motion.
 Made by point, axis, remote_center, orientation or of_text, for InstrumentGuard.set_guides.
 MotionConstraint.set_guides accepts only point(name, region), a guide for the tip.
 
-name: for messages. link: the number of a link, from 1; 0 is the base. Points and axes of a link are
-in its frame [length]; other points, directions and rotations are in the frame of the mesh.)";
+name: for messages.
+link: the number of a link, from 1; 0 is the base. Points and axes of a link are in its frame
+[length]; other points, directions and rotations are in the frame of the mesh.)";
 
 constexpr const char* guide_text_doc =
     R"(Returns a guide from a text [NAME=]FORM, as in 'keepout replay --guide' and 'keepout serve'.
@@ -122,7 +123,7 @@ void bind_link_guides(py::class_<Guide>& type) {
                                         point(center, "center"), tolerance);
           },
           py::arg("name"), py::arg("from_"), py::arg("to"), py::arg("center"), py::arg("tolerance"),
-          "Returns a guide for a remote center of motion: the straight shaft between two\n"
+          "Returns a guide for a remote center of motion. The straight shaft between two\n"
           "points, each a pair (link, (x, y, z)), passes within `tolerance` of `center` (3,),\n"
           "such as a trocar [length].")
       .def_static(

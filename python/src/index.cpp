@@ -166,8 +166,8 @@ void bind_index(py::module_& module) {
       "Finds the triangles near a place. Any number of motion constraints, in any threads, may\n"
       "share one.\n"
       "\n"
-      "name: one of indices(). cache: a directory that keeps built indices for the next start;\n"
-      "only wide_bvh uses it.")
+      "name: one of indices().\n"
+      "cache: a directory that keeps built indices for the next start; only wide_bvh uses it.")
       .def(py::init<py::object, std::string, const std::optional<std::filesystem::path>&>(),
            py::arg("mesh"), py::arg("name") = "wide_bvh", py::kw_only(),
            py::arg("cache") = py::none())

@@ -28,8 +28,10 @@ constexpr const char* body_doc =
 convex hull. One point makes a ball, two make a capsule, more make a blade. The points of a capsule
 may be on different links, as for a shaft from its port to its wrist.
 
-name: for messages. points: 1 to 8 pairs (link, (x, y, z)) of the number of a link (0 is the base)
-and a point in its frame [length]. radius: [length], not below 0.)";
+name: for messages.
+points: 1 to 8 pairs (link, (x, y, z)) of the number of a link (0 is the base) and a point in its
+frame [length].
+radius: [length], not below 0.)";
 
 constexpr const char* instrument_doc =
     R"(A chain and the bodies that it carries: 1 to 16 bodies, with at most 48 different points.)";
@@ -81,7 +83,9 @@ void bind_instrument(py::module_& module) {
   module.def(
       "free_ball", &free_ball, py::arg("radius"),
       "Returns an Instrument for a ball-shaped tool tip: a ball on three prismatic joints along\n"
-      "the axes, without limits. q is the position of its center. radius: [length].");
+      "the axes, without limits. q is the position of its center.\n"
+      "\n"
+      "radius: [length].");
 }
 
 }  // namespace keepout::python

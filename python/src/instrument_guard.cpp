@@ -207,24 +207,30 @@ constexpr const char* joint_step_doc =
 desired motion of the flange (linear, angular) or a desired increment of the joints. A number that
 is not finite gives Status.invalid_input.
 
-q: (n,), joint positions [rad or length]. linear: (3,), displacement of the flange's origin
-[length]. angular: (3,), rotation of the flange, axis times angle, in the axes of the mesh [rad]. If
-one of them is None, it is zero. increment: (n,), of the joints. weights: (n,), above 0, the cost of
-each joint's deviation from it; None: all 1.)";
+q: (n,), joint positions [rad or length].
+linear: (3,), displacement of the flange's origin [length].
+angular: (3,), rotation of the flange, axis times angle, in the axes of the mesh [rad]. If only
+linear or only angular is given, the other is zero.
+increment: (n,), of the joints.
+weights: (n,), above 0, the cost of each joint's deviation from it; None: all 1.)";
 
 constexpr const char* prove_doc =
     R"(Returns the certified part of a motion, for planners: a MotionProof. Searches for no better
 motion and ignores joint limits. Does not affect the steps. A number that is not finite gives
 Status.invalid_input.
 
-q: (n,), the start. increment: (n,), of any size; zeros test a configuration.)";
+q: (n,), the start.
+increment: (n,), of any size; zeros test a configuration.)";
 
 constexpr const char* proofs_doc =
     R"(Like prove(), for m independent motions: returns a Proofs. The result does not depend on the
 order or on the number of threads. Runs without Python's lock.
 
-q: (m, n). increments: (m, n); None for zeros. A single row (n,) of either serves all rows of the
-other. threads: 1 to 1024; None: one for each processor.)";
+q: (m, n).
+increments: (m, n); None for zeros.
+threads: 1 to 1024; None: one for each processor.
+
+A single row (n,) of either array serves all rows of the other.)";
 
 std::unique_ptr<InstrumentGuard> make_instrument_guard(
     const py::object& mesh, const Instrument& instrument, const py::object& index,
@@ -239,19 +245,24 @@ void bind_meshes(py::class_<InstrumentGuard>& type) {
   type.def("follow", &InstrumentGuard::follow, py::arg("index"), py::kw_only(), py::arg("mesh") = 0,
            "Replaces a mesh by its deformed successor: an Index of it, such as\n"
            "index.refitted(mesh). All bodies are classified again; a body that the surface came\n"
-           "too close to recovers. mesh: the number of the mesh, which keeps its pose.")
+           "too close to recovers.\n"
+           "\n"
+           "mesh: the number of the mesh, which keeps its pose.")
       .def("add_mesh", &InstrumentGuard::add_mesh, py::arg("index"), py::kw_only(),
            py::arg("margin") = 0.0,
-           "Adds a mesh to keep out of, that of an Index, and returns its number; the first mesh\n"
-           "has number 0. margin: for this mesh [length]; 0 for that of the guard. At most 8\n"
-           "meshes.")
+           "Adds a mesh to keep out of, that of an Index. Returns its number; the first mesh\n"
+           "has number 0. At most 8 meshes.\n"
+           "\n"
+           "margin: for this mesh [length]; 0 for that of the guard.")
       .def("place", &InstrumentGuard::place, py::arg("mesh"), py::arg("pose"),
            py::arg("linear") = py::none(), py::arg("angular") = py::none(),
            "Sets the pose of a mesh at the start of the next cycle, and its velocity: of its\n"
            "frame's origin [length/s], and of the rotation about that origin [rad/s]. Rebuilds\n"
            "nothing. The mesh moves with that velocity until it is placed again. Raises Error\n"
            "for an invalid pose or velocity; steps then return Status.invalid_input until a\n"
-           "valid one is set. pose: (4, 4), the mesh's frame in the world; None is the identity.\n"
+           "valid one is set.\n"
+           "\n"
+           "pose: (4, 4), the mesh's frame in the world; None is the identity.\n"
            "linear, angular: (3,), in the axes of the world; None is zero.")
       .def("place_of", &InstrumentGuard::place_of, py::arg("mesh"),
            "Returns (4, 4) float64: the pose of a mesh at the start of the next cycle.")

@@ -253,11 +253,11 @@ void bind_inspection(py::module_& module) {
                     "Number of pairs of triangles that intersect; None unless requested.")
       .def_property_readonly(
           "places", &places_of,
-          "Where the faults are: for each kind, by the name of its count, an array (n, k, 3) of\n"
-          "the corners of n faults. k: 2 for an edge, 1 for a vertex, 3 for a triangle, 6 for a\n"
-          "pair of triangles. 'degenerate_triangles' has repeated-vertex and collinear\n"
-          "triangles. The first places are from different groups of connected faults, such as\n"
-          "one edge of each hole.")
+          "The places of the faults: a dict by the name of the count. A value is an array (n,\n"
+          "k, 3) with the corners of n faults. k is 2 for an edge, 1 for a vertex, 3 for a\n"
+          "triangle and 6 for a pair of triangles. 'degenerate_triangles' has repeated-vertex\n"
+          "and collinear triangles. The first places are from different groups of connected\n"
+          "faults, such as one edge of each hole.")
       .def("__str__", &summary)
       .def("__repr__",
            [](const Inspection& i) { return "<keepout.Inspection: " + summary(i) + ">"; });

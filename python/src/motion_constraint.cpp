@@ -27,11 +27,11 @@ constexpr const char* class_doc =
     R"(Keeps a tool tip out of a mesh, step by step. Several threads may use a constraint; they wait
 for each other. Parallel loops should have a constraint each and share the Index.
 
-index: a name of indices(), or an Index of this mesh. index_cache: a directory that keeps built
-indices for the next start. tool: a ConvexTool, or the text of one, that must not touch the mesh,
-instead of a ball. With a tool, leave tool_radius and activation unset; inside, refinements and
-nodes have no effect. A max_... is a capacity: a step that needs more ends with
-Status.over_capacity.)";
+index: a name of indices(), or an Index of this mesh.
+index_cache: a directory that keeps built indices for the next start.
+tool: a ConvexTool, or the text of one, that must not touch the mesh, instead of a ball. With a
+tool, leave tool_radius and activation unset; inside, refinements and nodes have no effect.
+max_...: a capacity; a step that needs more ends with Status.over_capacity.)";
 
 constexpr const char* constraint_signature =
     "__init__(self: keepout.MotionConstraint, mesh: keepout.Mesh, *, "
@@ -60,39 +60,45 @@ constexpr const char* step_doc =
 the last step ended; it classifies a tip from elsewhere again. A number that is not finite gives
 Status.invalid_input.
 
-tip: (3,), in the frame of the mesh [length]. desired: (3,), the desired increment [length].
+tip: (3,), in the frame of the mesh [length].
+desired: (3,), the desired increment [length].
 jacobian: (3, n), of the tip with respect to the joints [length / unit of the joint]. With n above 3
 the constraint needs a damping above 0; without it the step is Status.ill_posed.
-rows: a pair, matrix (m, n) and bounds (m,), for the increment u of the joints, or of the tip
-(n is 3): matrix @ u >= bounds.)";
+rows: a pair, matrix (m, n) and bounds (m,), for the increment u of the joints, or of the tip with
+n = 3: matrix @ u >= bounds.)";
 
 constexpr const char* steps_doc =
     R"(Returns one step for each pose: a Steps. Every tip is classified again, so the result does
 not depend on the order or on the number of threads. Runs without Python's lock. The classification
 may take longer than the step; inside='taken_as_is' skips it.
 
-tips: (n, 3) [length]. desired: (n, 3) [length]. A single one of either, (3,), serves all of the
-other. Float64 and C-contiguous arrays are not copied. threads: 1 to 1024; None: one for each
-processor. out: a Steps to write to; None for a new one. A pose that is not finite has
-Status.invalid_input and zero motion.)";
+tips: (n, 3) [length].
+desired: (n, 3) [length].
+threads: 1 to 1024; None: one for each processor.
+out: a Steps to write to; None for a new one.
+
+A single tip or desired increment, (3,), serves all of the other. Float64 and C-contiguous arrays
+are not copied. A pose that is not finite has Status.invalid_input and zero motion.)";
 
 constexpr const char* replay_doc =
     R"(Returns the steps of 'keepout replay', one after another: a Steps. Runs without Python's
 lock, on one processor, because each step may depend on the last.
 
 poses: (n, 6) [length]. Each row is a tip and a desired increment. With closed_loop, it is a goal
-and a reset position; the tip starts at the first reset position. max_step: longest desired
-increment in a closed loop [length]. out: a Steps to write to; None for a new one.)";
+and a reset position; the tip starts at the first reset position.
+max_step: longest desired increment in a closed loop [length].
+out: a Steps to write to; None for a new one.)";
 
 constexpr const char* simulate_doc =
     R"(Runs closed loops: in each cycle the tip moves towards the commanded position, as far as the
 step allows. Returns a Simulation. Loops are independent; one thread runs each. Runs without
 Python's lock.
 
-starts: (m, 3), the tips at the start [length]. hands: (m, cycles, 3), the commanded position in
-each cycle [length]. max_step: longest desired increment of a cycle, at most the radius [length].
-threads: 1 to 1024; None: one for each processor. out: a Simulation to write to; None for a new
-one.)";
+starts: (m, 3), the tips at the start [length].
+hands: (m, cycles, 3), the commanded position in each cycle [length].
+max_step: longest desired increment of a cycle, at most the radius [length].
+threads: 1 to 1024; None: one for each processor.
+out: a Simulation to write to; None for a new one.)";
 
 constexpr const char* polytope_doc =
     R"(Returns the free space around a tip as one convex polytope, for a QP, an MPC or a sampler of

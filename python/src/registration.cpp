@@ -44,18 +44,24 @@ constexpr const char* fit_doc =
 same points of the model, in the frame of the mesh. Returns a RigidFit.
 
 measured, model: (n, 3), n >= 3 pairs in the same order, both in the unit of the mesh. For a mesh in
-mm, multiply points measured in meters by 1000. weights: (n,), above 0, ideally proportional to the
-inverse square of the pair's localization error; None: all equal. Raises Error for points that
-coincide or lie on a line. Large residuals are no error: see RigidFit.doubt.)";
+mm, multiply points measured in meters by 1000.
+weights: (n,), above 0, ideally proportional to the inverse square of the pair's localization error;
+None: all equal.
+
+Raises Error for points that coincide or lie on a line. Large residuals are no error: see
+RigidFit.doubt.)";
 
 constexpr const char* margin_doc =
     R"(Returns the length to add to a guard's margin for the error of the registration. With
-probability `confidence`, the error is smaller [length]: at the target, or at all points of the
-convex hull of several targets, such as the corners of the box in which the tool works.
+probability `confidence`, the error is smaller [length]. This holds at the target, or at all
+points of the convex hull of several targets, such as the corners of the box in which the tool
+works.
 
-targets: (3,) or (n, 3), in the frame of the mesh. fle: root mean square localization error of a
-pair [length]; None: estimated from the residuals, which gives a larger margin if they are few. The
-margin does not cover errors that all pairs share, or later motion.)";
+targets: (3,) or (n, 3), in the frame of the mesh.
+fle: root mean square localization error of a pair [length]; None: estimated from the residuals,
+which gives a larger margin if they are few.
+
+The margin does not cover errors that all pairs share, or later motion.)";
 
 }  // namespace
 
