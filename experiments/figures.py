@@ -168,12 +168,12 @@ def svg(fig: Figure) -> str:
     fig.clear()
     text = file.getvalue()
     if "<image" in text:
-        raise ValueError("a figure is of lines and faces; pixels do not follow into the dark")
+        raise ValueError("a figure must consist of lines and faces, because pixels have no dark colors")
     names: set[str] = {"ink"}
 
     def property_of(found: re.Match[str]) -> str:
         if found[2] not in _DRAWN:
-            raise ValueError(f"{found[2]} is no colour of figures.py: dark pages need another")
+            raise ValueError(f"{found[2]} is not a color of figures.py, so it has no dark color")
         names.add(_DRAWN[found[2]])
         return f"{found[1]}: var(--{_DRAWN[found[2]]})"
 
