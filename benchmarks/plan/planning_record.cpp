@@ -51,7 +51,7 @@ Json median(std::vector<double> values) {
 Json least(std::vector<double> values) {
   return values.empty() ? Json() : Json(std::ranges::min(values));
 }
-/// Returns the greatest depth, of clearances.
+/// Returns the greatest depth from clearances.
 Json deepest(std::vector<double> values) {
   return values.empty() ? 0.0 : std::max(0.0, -std::ranges::min(values));
 }
@@ -60,7 +60,7 @@ Json valid(const Group& runs) {
       runs, [](const Json* run) { return run->at("solved") && is_valid(*run); }));
 }
 
-/// A duration in the unit that suits it; "-" for null.
+/// Returns a duration in a suitable unit; "-" for null.
 std::string duration_text(const Json& seconds) {
   return seconds.is_null() ? "-" : in_ascii(time_text(1e6 * seconds.get<double>()));
 }

@@ -14,7 +14,8 @@ namespace keepout::app {
 namespace {
 
 constexpr double cells_of_diagonal = 200.0;
-constexpr double most_cells_of_side = 300.0;  // of the bounds, which are wide around a small mesh
+constexpr double most_cells_of_side = 300.0;  // of the bounds, which may be much wider than a small
+                                              // mesh
 constexpr double nearest_clearances = 5.0;
 constexpr double least_way = 0.25;  // of the diagonal
 constexpr double least_detour = 1.3;
@@ -28,7 +29,7 @@ Vec3 draw(const Box& box, Random& random) {
   return {x, y, z};
 }
 
-/// The widest of some places in the bounds and within the mesh.
+/// Returns the widest of some places in the bounds and within the mesh.
 Vec3 widest_within(Scene& scene, const Box& bounds, Random& random) {
   Vec3 widest = bounds.center();
   double distance = -1.0;
@@ -38,7 +39,7 @@ Vec3 widest_within(Scene& scene, const Box& bounds, Random& random) {
     const std::optional<bool> inside = scene.oracle().inside(point);
     if (!inside) {
       throw Error(scene.name() +
-                  ": the mesh is open, so nothing is within it; 'keepout inspect' tells more");
+                  ": the mesh is open, so it has no inside; 'keepout inspect' shows where");
     }
     if (!*inside) continue;
     ++found;
@@ -51,15 +52,15 @@ Vec3 widest_within(Scene& scene, const Box& bounds, Random& random) {
   return widest;
 }
 
-/// The places of a grid that a tip can reach from one of them. A cell is free when it is at least
-/// the clearance and half a spacing from the mesh: then the straight way between neighbors keeps
-/// the clearance, so what is reached can be reached indeed. No planner has a part in it.
+/// The cells of a grid that a tip can reach from one of them. A free cell is at least the clearance
+/// and half a spacing away from the mesh. Then the straight motion between neighbors maintains the
+/// clearance, so every reached cell is truly reachable. No planner is involved.
 class FreeCells {
  public:
   using Cell = std::uint32_t;
 
-  /// Floods from the cell nearest to `from`. Nothing is reached when it is not free. `told`: up to
-  /// where distances from the mesh are of interest [length]. Ends early after a stop.
+  /// Floods from the cell nearest to `from`; reaches no cell if that one is not free. `told`:
+  /// distances from the mesh are computed up to this limit [length]. Ends early after a stop.
   FreeCells(Scene& scene, const Box& bounds, double spacing, double clearance, double told,
             const Vec3& from, const StopSignal& stop)
       : low_(bounds.low),
@@ -73,7 +74,7 @@ class FreeCells {
     TriangleBuffer candidates(scene.mesh()->triangle_count());
     const auto distance_of = [&](const Vec3& point, double guess) {
       candidates.clear();
-      scene.index().collect({point, reach}, candidates);  // far off, as most are: soon told
+      scene.index().collect({point, reach}, candidates);  // fast for most cells, which are far away
       if (candidates.view().empty()) return std::numeric_limits<double>::infinity();
       return scene.nearest(point, std::min(guess, reach)).closest.distance;
     };
@@ -95,14 +96,14 @@ class FreeCells {
   }
 
   const std::vector<Cell>& reached() const noexcept { return reached_; }
-  double distance(Cell cell) const noexcept { return distance_[cell]; }  // infinite: not told
+  double distance(Cell cell) const noexcept { return distance_[cell]; }  // infinite: far away
 
   Vec3 center(Cell cell) const noexcept {
     const Place at = place(cell);
     return low_ + spacing_ * Vec3(at[0], at[1], at[2]);
   }
 
-  /// The length of the shortest way along the grid to each cell, in steps; max(): none.
+  /// Returns the shortest path along the grid to each cell, in steps; max() if there is no path.
   std::vector<std::uint32_t> steps_from(Cell cell) const {
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> steps(distance_.size(), none);
@@ -118,7 +119,7 @@ class FreeCells {
     return steps;
   }
 
-  /// The steps between two cells if all were free.
+  /// Returns the steps between two cells if all were free.
   std::uint32_t steps_in_the_open(Cell a, Cell b) const noexcept {
     std::uint32_t steps = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -154,7 +155,7 @@ class FreeCells {
   Vec3 low_;
   double spacing_;
   std::uint32_t nx_, ny_, nz_;
-  std::vector<float> distance_;  // of the reached; < 0: not looked at, or not free
+  std::vector<float> distance_;  // of reached cells; < 0: not visited, or not free
   std::vector<Cell> reached_;
 };
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Says which argument of a call does not fit, instead of pybind11's list of signatures."""
+"""Replaces pybind11's list of signatures by one sentence: which argument of a call does not fit."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class _Call:
         return None
 
     def misfit_of_values(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str:
-        """Returns which value is of the wrong type. Precondition: misfit_of_names() is None."""
+        """Returns which value is of the wrong type. Precondition: misfit_of_names() found nothing."""
         values = dict(zip(self.positional, args)) | {k: v for k, v in kwargs.items() if k in self.types}
         for name, value in values.items():
             if misfit := _misfit(self.types[name], value, name):

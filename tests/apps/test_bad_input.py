@@ -144,7 +144,7 @@ wrong_lines = [
     ("compare cube --pairs 0", "--pairs: expected a whole number from 10 to 1000000, not '0'"),
     ("plan --seconds soon", "--seconds: expected seconds above 0 and not above 86400, not 'soon'"),
     ("plan --problems 0", "--problems: expected a whole number from 1 to 10000, not '0'"),
-    ("plan --resolution 2", "--resolution: expected a share of the extent from 0.000001 to 1, not '2'"),
+    ("plan --resolution 2", "--resolution: expected a fraction of the extent from 0.000001 to 1, not '2'"),
 ]
 
 # Files that are missing, no files, or of another kind; outputs that cannot be. The message has all of the texts.

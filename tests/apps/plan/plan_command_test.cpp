@@ -101,7 +101,7 @@ TEST_F(PlanCommandTest, NoPathOfAWholeInstrumentUnderCertifiedCheckingComesTooCl
 
 TEST_F(PlanCommandTest, SaysWhatIsWrong) {
   folder_.expect_refused("plan cortex.stl --planner XYZ", "RRTConnect");
-  folder_.expect_refused("plan cortex.stl --resolution nan", "share of the extent");
+  folder_.expect_refused("plan cortex.stl --resolution nan", "fraction of the extent");
   folder_.expect_refused("plan cortex.stl --seconds 0", "seconds above 0");
   folder_.expect_refused("plan cortex.stl --tool-radius 80", "problems were found");
   folder_.expect_refused("plan cortex.stl --json cortex.stl", "same file");
