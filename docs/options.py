@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the tables of options.md from the options of the built module, with PYTHONPATH at it:
+"""Writes the tables of options.md from the options of the built Python module, which must be on PYTHONPATH:
 
     python3 docs/options.py            writes the page
-    python3 docs/options.py --check    exits 1 if the page differs from the module
+    python3 docs/options.py --check    exits with 1 if the page differs from the module
 """
 
 import sys
@@ -11,12 +11,12 @@ from pathlib import Path
 
 import keepout
 
-bar = r"\|"  # that ends no cell
+bar = r"\|"  # a bar that does not end a cell
 PAGE = Path(__file__).with_name("options.md")
 
 
 def table(options):
-    """Returns a table in Markdown, a row for each option."""
+    """Returns a Markdown table with a row for each option."""
     rows = ["| option | command | default | range | unit | meaning | can change |", "|---|---|--:|---|---|---|---|"]
     for option in options:
         default = f"`{option.default}`" if option.type == "str" or option.choices else option.default
@@ -26,7 +26,7 @@ def table(options):
 
 
 def written(text):
-    """Returns the page with the tables of the module."""
+    """Returns the text of the page with the tables of the module."""
     for name, options in keepout.options().items():
         begin = f"<!--options {name}-->\n"
         before, rest = text.split(begin)

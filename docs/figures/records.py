@@ -101,9 +101,14 @@ def keep(name, paths, commit, output_of=None):
 
 
 def read_all():
-    """Returns the kept records by name."""
-    return {path.name.removesuffix(".json.gz"): json.loads(gzip.decompress(path.read_bytes()))
-            for path in sorted(RECORDS.glob("*.json.gz"))}
+    """Returns the kept records by name, with the names that version 0.3 has for what they name."""
+    records = {}
+    for path in sorted(RECORDS.glob("*.json.gz")):
+        text = gzip.decompress(path.read_bytes()).decode()
+        for former, name in (("fallback", "truncated"), ("yielding", "degraded"), ("linearised", "linearized")):
+            text = re.sub(rf"\b{former}\b", name, text)
+        records[path.name.removesuffix(".json.gz")] = json.loads(text)
+    return records
 
 
 def steps():

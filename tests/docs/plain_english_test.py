@@ -35,7 +35,7 @@ MATCH = {name: re.compile(pattern, re.I if name != "clause as a subject" and nam
          for name, pattern in PATTERNS.items()}
 COMMENT = re.compile(r"<!--.*?-->", re.S)
 BLOCK_COMMENT = re.compile(r"/\*\*?(.*?)\*/", re.S)
-FORMULA = re.compile(r"\$[^$\n]+\$")
+FORMULA = re.compile(r"\$\$.+?\$\$|\$[^$\n]+\$", re.S)
 INLINE_CODE = re.compile(r"(`+)(?!`).+?(?<!`)\1(?!`)", re.S)
 LINK = re.compile(r"!?\[((?:[^\[\]]|\[[^\]]*\])*)\]\([^)]*\)")
 END = re.compile(r"(?<=[.!?])[\"')*_]*\s+(?=[\"'(*_`]*(?:[A-Z0-9`]|formula|keepout))")
@@ -44,7 +44,7 @@ END = re.compile(r"(?<=[.!?])[\"')*_]*\s+(?=[\"'(*_`]*(?:[A-Z0-9`]|formula|keepo
 def sentences(line, text):
     """Yields the line number and the text of each sentence of a paragraph that begins at `line`."""
     text = LINK.sub(r"\1", text)
-    text = FORMULA.sub("formula", text)
+    text = FORMULA.sub(lambda formula: "formula" + "\n" * formula[0].count("\n"), text)
     text = INLINE_CODE.sub(lambda code: "`code`" + "\n" * code[0].count("\n"), text)
     start = 0
     for end in [*(m.end() for m in END.finditer(text)), len(text)]:
@@ -60,6 +60,8 @@ def paragraphs_of_page(text):
         text = rule.sub(blank, text)
     first, lines = 1, []
     for number, line in enumerate([*text.split("\n"), ""], 1):
+        if line.startswith("    ") and not lines:
+            continue  # an indented listing
         starts = re.match(r"\s*([-*+]|\d+\.)\s+|#+\s|\s*\||\s*>", line)
         if lines and (starts or not line.strip()):
             yield first, "\n".join(lines)
