@@ -197,7 +197,7 @@ void run(const Load& load) {
               machine.compiler.c_str(), machine.simd.c_str());
   const app::Timing waited = app::timing_of(steps);
   std::printf(
-      "| over | requests | of them cut off | held back by the surface | p50, µs | p99 | p99.9 "
+      "| over | requests | of them cut off | limited by the surface | p50, µs | p99 | p99.9 "
       "| max | resident after 10,000 | at the end |\n"
       "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   std::printf("| a %s | %zu | %zu | %.0f %% | %.1f | %.1f | %.0f | %.0f | %s | %s |\n",

@@ -105,8 +105,11 @@ def read_all():
     records = {}
     for path in sorted(RECORDS.glob("*.json.gz")):
         text = gzip.decompress(path.read_bytes()).decode()
-        for former, name in (("fallback", "truncated"), ("yielding", "degraded"), ("linearised", "linearized")):
+        for former, name in (("fallback", "truncated"), ("yielding", "degraded"), ("linearised", "linearized"),
+                             ("held back by the surface", "limited by the surface"),
+                             ("that are held back", "that the surface limits")):
             text = re.sub(rf"\b{former}\b", name, text)
+        text = re.sub(r"(\d) us\b", r"\1 µs", text)
         records[path.name.removesuffix(".json.gz")] = json.loads(text)
     return records
 

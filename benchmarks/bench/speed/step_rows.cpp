@@ -103,7 +103,7 @@ void measure_unrelated_states(SpeedRun& run) {
   if (index_backends().has(their_index)) {  // FCL has no wide instructions on any target
     theirs = time_plain(std::string(their_index), {on.mesh, make_index(their_index, on.mesh)});
   }
-  SpeedRow row = ratio("certified, unrelated states that are held back, margin .2 mm",
+  SpeedRow row = ratio("certified, unrelated states that the surface limits, margin .2 mm",
                        "scalar / ours", at_least(8.0), theirs, ours);
   row.sides.push_back(time_plain("wide_bvh", queried(on)));
   run.add(std::move(row));

@@ -70,7 +70,8 @@ inline constexpr std::array step_options{
     option<&StepOptions::deepest>("deepest", "length", zero_or_length,
                                   "A tip deeper inside than this does not escape."),
     option<&StepOptions::refinements>("refinements", "", {0, 1000},
-                                      "How often the certified rule improves a motion.", "refine"),
+                                      "Most re-linearizations of the planes for a better motion.",
+                                      "refine"),
     option<&StepOptions::nodes>("nodes", "", {0, 1 << 16},
                                 "Nodes of a branch-and-bound search for a better motion; 0: no "
                                 "search, 16 find nearly the best.",

@@ -70,7 +70,7 @@ inline constexpr std::array instrument_options{
         "steered."),
     option<&InstrumentOptions::refinements>(
         "refinements", "", {0, 2147483647.0},
-        "How often the planes of rows are rotated to allow a better motion."),
+        "Most re-linearizations of the planes of rows for a better motion."),
     option<&InstrumentOptions::check_sides>(
         "check_sides",
         "True if bodies that no step has moved to their position must be on the free side of a "
