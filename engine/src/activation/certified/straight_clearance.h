@@ -26,15 +26,15 @@ inline Line line_of(const PreparedTriangle::Nearest& nearest, const Vec3& z,
   return {-nearest.support - level, nearest.normal.dot(z)};
 }
 
-/// Returns the normal of a plane that proves the level on the whole motion from 0 to z: dist(t z,
-/// T) >= level - slack for all t in [0, 1]. Returns nothing if the motion comes closer, or if
-/// rounding hides the answer. Precondition: level <= prepared.distance() + slack, and far above the
-/// rounding of lengths. [length]
+/// Returns the normal of a plane that proves the level on the motion from 0 to z: dist(t z, T) >=
+/// level - slack for t in [0, 1]. Returns nothing if the motion comes closer, or if rounding hides
+/// the answer. Precondition: level <= prepared.distance() + slack, and far above the rounding of
+/// lengths. [length]
 std::optional<Vec3> proof_of_clearance(const PreparedTriangle& prepared, const Vec3& z,
                                        double level, double slack) noexcept;
 
-/// Returns true if a plane with normal n is such a proof: it has the triangle, grown by `level`, on
-/// one side, and both ends of the motion on the other. `corners`: relative to the tip.
+/// Returns true if a plane with normal n is such a proof: the triangle, grown by `level`, is on one
+/// side, and both ends of the motion on the other. `corners`: relative to the tip.
 inline bool separates(const Vec3& n, const Triangle& corners, const Vec3& z, double level,
                       double slack) noexcept {
   return Line{-support(corners, n) - level, n.dot(z)}.proves_clear(slack);
