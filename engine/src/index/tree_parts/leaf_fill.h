@@ -23,8 +23,8 @@ class LeafFill {
   /// Returns the frame of the leaves.
   const LeafFrame& frame() const noexcept { return frame_; }
 
-  /// Fills leaves first .. last - 1, whose `tagged_triangle` has the numbers of their triangles.
-  /// Prefetches the data of the leaves after them. Computes the bits `odd` again.
+  /// Fills leaves first .. last - 1, whose `tagged_triangle` already has the numbers of their
+  /// triangles. Prefetches the data of the leaves after them.
   void fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last) const noexcept;
 
   /// A vertex that never crosses a cache line. [length]
