@@ -53,7 +53,7 @@ class PlyText {
     }
   }
 
-  /// Return the next value: a coordinate, or a length or an index.
+  /// Returns the next value: a coordinate, or a length or an index.
   double take_real(const PlyScalar& type) {
     const bool is_single = !type.whole && type.size == sizeof(float);
     return is_single ? lines_.number<float>(take_word()) : lines_.coordinate(take_word());

@@ -19,9 +19,9 @@ namespace {
 
 // If all edges have two triangles of consistent winding, the sides run along each edge once in both
 // directions. So the edges are distributed over cells by a hash. Each cell sums up the hashes of
-// its edges, with the sign of the direction. A cell with a fault has the sum 0 only by chance. Then
-// only the edges of cells with another sum are gathered and examined. That reads the triangles
-// twice, and needs only the memory of the cells.
+// its edges, with the sign of the direction. The sum is 0 in a cell without a fault, and only by
+// chance in a cell with one. Only the edges of cells with another sum are gathered and examined.
+// That reads the triangles twice, and needs only the memory of the cells.
 
 /// An edge: the lower vertex in the upper 32 bits, and the higher vertex in the lower 32 bits.
 using Edge = std::uint64_t;
@@ -43,10 +43,10 @@ std::size_t cell_count(std::size_t triangles) noexcept {
   return std::bit_ceil(std::clamp<std::size_t>(triangles / 20, 64, 65536));
 }
 
-/// Calls visit(own, edge, upwards) for each side of the triangles on all threads. Each thread has
-/// its own copy of `empty`, and finally calls gather(own), one after another. The direction of a
-/// side is as good as random, so no branch depends on it: mispredictions would take most of the
-/// time.
+/// Calls visit(own, edge, upwards) for each side of the triangles, on up to `threads` threads. Each
+/// thread has its own copy of `empty`, and finally calls gather(own), one after another. The
+/// direction of a side is as good as random, so no branch depends on it: mispredictions would take
+/// most of the time.
 template <class Own, class Visit, class Gather>
 void share_sides(const Mesh& mesh, unsigned threads, const Own& empty, const Visit& visit,
                  const Gather& gather) {

@@ -3,9 +3,9 @@
 // Finds the triangles near a capsule. A box grown by the radius and a segment are apart if one of
 // six planes is between them. The planes are across the box's axes, or along one of these and the
 // segment. Source: Ericson, "Real-Time Collision Detection", 2005, 5.3.3. They are also apart if
-// the segment is outside the ball around the box. This test excludes the corners of the grown box,
-// which are too large. Rounding is proportional to the coordinates, and the box is also grown by
-// it.
+// the segment is farther than the radius from the ball around the box. This test excludes the
+// corners of the grown box, which reach too far. Rounding is proportional to the coordinates, and
+// the box is also grown by it.
 #include <algorithm>
 #include <bit>
 #include <cmath>
