@@ -86,9 +86,7 @@ const void* table_in_module(const char* module, const char* table) {
   const std::scoped_lock lock(mutex);
   const auto found = loaded.find(std::string_view(module));
   void* const handle = found == loaded.end() ? load(module) : found->second;
-  if (handle == nullptr)
-    return nullptr;  // the module may be installed later, so the next call
-                     // searches again
+  if (handle == nullptr) return nullptr;  // searched again next time, as it may be installed
   loaded.emplace(module, handle);
   return dlsym(handle, table);
 }

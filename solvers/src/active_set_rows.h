@@ -20,9 +20,9 @@ using Vector = Eigen::Matrix<double, N, 1>;
 template <int N>
 using Matrix = Eigen::Matrix<double, N, N>;
 
-/// Returns the status of a row, a (n) with a . a = square: optimal, invalid_input for a number out
-/// of range, or infeasible for a row of zeros that no u satisfies. A row of zeros has no length to
-/// compare b with, so any b > 0 is infeasible.
+/// Returns the status of a row a (n): invalid_input for a number out of range, infeasible for a row
+/// of zeros with b > 0, else optimal. A row of zeros has no length to compare b with, so any b > 0
+/// is infeasible. `square`: a . a.
 inline SolveStatus row_status(const double* a, Eigen::Index n, double square, double b) noexcept {
   if (square >= smallest * smallest && square <= largest * largest && std::abs(b) <= largest)
       [[likely]] {

@@ -39,8 +39,8 @@ class Polygons {
   /// Cuts each polygon with n corners into n - 2 triangles of the same winding, and appends them to
   /// the surface. Convex polygons are cut as fans, others by ear clipping (Meisters 1975), seen
   /// along their mean normal. A corner that equals the next one gets a degenerate triangle.
-  /// Polygons that cross themselves or have no area are cut in an unspecified way. Warns of polygons
-  /// that were left out.
+  /// Polygons that cross themselves or have no area are cut in an unspecified way. Warns of
+  /// polygons that were left out.
   ///
   /// Throws Error if the surface then has no triangles, or too many. Throws Error for a polygon
   /// that is not convex and has more than 1000 corners, because the time of ear clipping grows with

@@ -192,9 +192,7 @@ std::optional<HalfSpace> FreePolytope::plane_for(const Query& query, const Hit& 
   const Vec3 facing = is_behind_it ? -seen.normal : seen.normal;
   std::optional<HalfSpace> face;
   if (!facing.isZero(0.0)) face = query.plane(seen, facing, hit.triangle);
-  if (face && is_face(hit.closest.feature))
-    return face;  // the other plane is the same, but less
-                  // exact
+  if (face && is_face(hit.closest.feature)) return face;  // the other is the same, but less exact
 
   const Vec3 away = away_from(hit.closest, mesh_->triangle(hit.triangle));
   const std::optional<HalfSpace> across = query.plane(seen, away, hit.triangle);
