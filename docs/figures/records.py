@@ -109,7 +109,7 @@ def read_all():
                              ("held back by the surface", "limited by the surface"),
                              ("that are held back", "that the surface limits")):
             text = re.sub(rf"\b{former}\b", name, text)
-        text = re.sub(r"(\d) us\b", r"\1 µs", text)
+        text = re.sub(r'(\d |"unit": ")us\b', r"\1µs", text)
         records[path.name.removesuffix(".json.gz")] = json.loads(text)
     return records
 

@@ -180,7 +180,7 @@ files = [
     ("verify --merge poses.txt", "poses.txt: is not a whole result"),
     *((line, "margin 0 and tool_radius 0 together must be well above") for line in (
         f"{to_s} --margin 0", "replay cube --poses poses.txt --out s.csv --margin 0", "serve cube --margin 0")),
-    (f"{to_s} --margin 1e14 --radius 1e-3", "radius: expected more than 1e-9 of tool_radius and margin together", "got 0.001"),
+    (f"{to_s} --margin 1e14 --radius 1e-3", "radius: expected more than 1e-9 of tool_radius plus margin", "got 0.001"),
     (f"{to_s} --closed-loop --max-step 9", "--max-step"),
     # Outputs.
     ("replay cube.off --poses poses.txt --out no/s.csv", "no/s.csv: cannot write here (No such file or directory)"),

@@ -139,7 +139,7 @@ def test_a_guard_follows_anatomy_that_moves():
     assert before.mesh is not guard.mesh  # and stays as it is
     grid = keepout.Index(guard.mesh, "pd_tree").refitted(keepout.Mesh(2 * vertices, triangles))
     assert grid.name == "pd_tree" and grid.distances([(0, 0, 0)])[0] > 15
-    with pytest.raises(keepout.Error, match="triangles are to be the same"):
+    with pytest.raises(keepout.Error, match="triangles must be the same"):
         before.refitted(keepout.Mesh(vertices, triangles[1:]))
 
 
@@ -204,7 +204,7 @@ def test_an_index_is_kept_on_the_disk_and_shared(mesh, tmp_path):
 def test_an_index_that_cannot_be_kept_is_told_of(mesh, tmp_path):
     in_the_way = tmp_path / "cache"
     in_the_way.write_text("no folder")
-    with pytest.warns(UserWarning, match="not kept for the next time"):
+    with pytest.warns(UserWarning, match="not stored for the next start"):
         keepout.Index(mesh, cache=in_the_way)
 
 
