@@ -6,6 +6,7 @@ also has its commit, its sources (the directories whose change makes it stale), 
 that time (docs/records/steps.txt).
 """
 
+import collections
 import datetime
 import gzip
 import json
@@ -129,15 +130,19 @@ def is_in_history(commit):
 
 
 def changed_code(diff):
-    """Returns the number of lines of C++ code that a diff adds and removes, without comments and includes."""
-    lines, is_code = 0, False
+    """Returns the number of lines of C++ code that a diff adds and removes.
+
+    Comments, includes and lines that only moved, or whose comment alone changed, do not count.
+    """
+    changed, is_code = {"+": collections.Counter(), "-": collections.Counter()}, False
     for line in diff.splitlines():
         if line.startswith(("--- ", "+++ ")):
-            is_code = line.endswith((".cpp", ".h"))
+            is_code = line.endswith((".cpp", ".h")) or (line[0] == "+" and is_code)
         elif is_code and line.startswith(("+", "-")):
-            text = line[1:].strip()
-            lines += bool(text) and not text.startswith(("//", "#include"))
-    return lines
+            code = line[1:].split("//")[0].strip()
+            if code and not code.startswith("#include"):
+                changed[line[0]][code] += 1
+    return sum(((changed["+"] - changed["-"]) + (changed["-"] - changed["+"])).values())
 
 
 def staleness(name, kept):
