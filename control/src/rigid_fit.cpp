@@ -123,6 +123,9 @@ double RigidFit::estimated_fle() const noexcept {
 }
 
 std::string RigidFit::doubt_of(double fle) const {
+  if (!(fle > 0.0 && std::isfinite(fle))) {
+    throw Error("doubt_of: fle must be above 0 and finite, not " + text_of(fle));
+  }
   const auto count = static_cast<double>(residuals.size());
   const double freedom = 3.0 * count - 6.0;
   // The quantile of 99.9 % (Wilson, Hilferty 1931).

@@ -71,7 +71,7 @@ constexpr std::array outcomes{
              "InstrumentCapacity::triangles or planes (max_triangles, max_planes in Python), or "
              "simplify the mesh",
              "more triangles or planes than the capacity holds: lower the radius of the polytope, "
-             "or raise Capacity::triangles or planes"}},
+             "or raise Capacity::triangles or planes (max_triangles, max_planes in Python)"}},
     Outcome{"unsolved",
             {"the search ended without a motion that could be proved: ask for a shorter motion, or "
              "one in another direction",
@@ -108,7 +108,7 @@ constexpr std::array outcomes{
              "the work budget of the cycle ended before a motion was proved: ask for a shorter "
              "motion, simplify the mesh, or raise InstrumentCapacity::looks (max_looks in Python)",
              "the work budget ended before the polytope was complete: lower the radius of the "
-             "polytope, or raise Capacity::looks"}},
+             "polytope, or raise Capacity::looks (max_looks in Python)"}},
     Outcome{"unsupported",
             {never, never,
              "the rule guards a whole tool, and planes around its tip would not guard the rest: "

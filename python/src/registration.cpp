@@ -33,10 +33,25 @@ RigidFit fit(const py::object& measured, const py::object& model, const py::obje
                    points(model, {"model", {any, 3}, "(n, 3)"}), each);
 }
 
+/// Warns, as 'keepout register' does, if the residuals speak of a mistake or contradict the FLE.
+void warn_of_doubt(const RigidFit& fit, std::optional<double> fle) {
+  const std::string doubt = fit.doubt.empty() && fle ? fit.doubt_of(*fle) : fit.doubt;
+  if (!doubt.empty()) warn("do not trust the registration: " + doubt);
+}
+
 double margin(const RigidFit& fit, const py::object& targets, double confidence,
               std::optional<double> fle) {
   const Expected expected{"targets", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed};
-  return registration_margin(fit, points(targets, expected), confidence, fle);
+  const double margin = registration_margin(fit, points(targets, expected), confidence, fle);
+  warn_of_doubt(fit, fle);
+  return margin;
+}
+
+py::array_t<double> covariance(const RigidFit& fit, const py::object& target,
+                               std::optional<double> fle) {
+  const TargetError error = target_error(fit, point(target, "target"), fle);
+  warn_of_doubt(fit, fle);
+  return array_of(error.covariance);
 }
 
 constexpr const char* fit_doc =
@@ -54,6 +69,7 @@ of the corners of the box in which the tool works.
 
 targets: (3,) or (n, 3), in the frame of the mesh. fle: root mean square localisation error of a
 pair [length]; None: estimated from the residuals, which takes a larger margin where they are few.
+A UserWarning says if the residuals contradict it: see RigidFit.doubt_of; and of RigidFit.doubt.
 It does not cover what all pairs have in common, nor what moves later.)";
 
 }  // namespace
@@ -77,6 +93,11 @@ void bind_registration(py::module_& module) {
                     "How much wider the model's points are spread than the measured ones.")
       .def_readonly("doubt", &RigidFit::doubt,
                     "Which mistake the residuals speak of: a unit, an order, a reflection; or ''.")
+      .def(
+          "doubt_of", &RigidFit::doubt_of, py::arg("fle"),
+          "Returns why a localisation error of a pair contradicts the residuals, or ''. It does if "
+          "fewer than\none in a thousand registrations with that error have so large an FRE. fle: "
+          "root mean square, above 0\n[length].")
       .def("__repr__", [](const RigidFit& self) {
         return py::str("<keepout.RigidFit of {} pairs, fre={:.4g}>")
             .format(self.residuals.size(), self.fre);
@@ -84,11 +105,7 @@ void bind_registration(py::module_& module) {
   module.def("fit_rigid", &fit, py::arg("measured"), py::arg("model"),
              py::arg("weights") = py::none(), fit_doc);
   module.def(
-      "target_error",
-      [](const RigidFit& fit, const py::object& target, std::optional<double> fle) {
-        return array_of(target_error(fit, point(target, "target"), fle).covariance);
-      },
-      py::arg("fit"), py::arg("target"), py::arg("fle") = py::none(),
+      "target_error", &covariance, py::arg("fit"), py::arg("target"), py::arg("fle") = py::none(),
       "(3, 3) float64: covariance of the error of a registration at a target (3,), in the mesh's\n"
       "frame [length^2]. The square root of its trace is the target registration error, TRE, root\n"
       "mean square; that of its largest eigenvalue the deviation in the worst direction. fle: as "

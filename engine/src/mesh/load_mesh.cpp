@@ -135,10 +135,11 @@ void settle_space(const MeshSource& source, const CoordinateNotes& notes,
                 "; export it in one of them");
   }
   if (loaded.space == unstated) {
-    source.fail("does not state its space, so it cannot be told whether it is in " + wanted +
-                "; say what a file without SPACE=RAS or SPACE=LPS is in (LoadOptions::untagged, "
-                "--untagged). 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
-                "programs for DICOM images use LPS");
+    source.fail(
+        "does not state its space, so it cannot be told whether it is in " + wanted +
+        "; say what a file without SPACE=RAS or SPACE=LPS is in, for example --untagged LPS or "
+        "untagged=\"LPS\". 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
+        "programs for DICOM images use LPS");
   }
   if (loaded.space != options.space) {
     swap_ras_and_lps(surface);

@@ -122,8 +122,8 @@ std::string doubt_of_unit(const Mesh& mesh, double scale) {
     text += short_number(extent * guess.millimetres) + " mm across";
     joint = ", and in ";
   }
-  return text + ": give the unit of the file, for example --unit " + example + " or unit=\"" +
-         example + "\", unless all your lengths are in its unit";
+  return text + ": scale it to mm, or give the unit of the file, for example --unit " + example +
+         " or unit=\"" + example + "\", unless all your lengths are in its unit";
 }
 
 /// Returns true if the triangles of a closed surface face inward: its signed volume is below 0.

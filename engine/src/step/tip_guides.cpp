@@ -25,8 +25,8 @@ TipGuides::TipGuides(std::vector<Guide> guides)
                            guide.first().position.isZero(0.0);
     if (is_of_tip) continue;
     throw Error("guide '" + guide.name() +
-                "' is of a link of an instrument, which a tip has not: use Guide::point(name, "
-                "region), or an InstrumentConstraint");
+                "' is for a link of an instrument, which a tip has not: give the tip a guide of a "
+                "point without a link, or guard the whole instrument");
   }
 }
 

@@ -35,7 +35,7 @@ struct RigidFit {
   /// Returns why a fiducial localization error contradicts the residuals; empty if it does not.
   /// It does if fewer than one in a thousand registrations with that error, alike in all
   /// directions, has so large an FRE: N FRE^2 / (FLE^2 / 3) is chi-squared with 3 N - 6 degrees of
-  /// freedom. fle: root mean square, as estimated_fle() [length].
+  /// freedom. fle: root mean square, above 0, as estimated_fle() [length]. Throws Error otherwise.
   std::string doubt_of(double fle) const;
 };
 

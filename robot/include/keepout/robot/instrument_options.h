@@ -107,7 +107,7 @@ constexpr const auto& table_of(const InstrumentCapacity&) { return instrument_ca
 
 /// Returns a band that absorbs the curvature of every motion that the joint limits admit in a cycle
 /// of `period` > 0 seconds: an eighth of the largest second-derivative bound of any body's point,
-/// at least `least`. Infinite without limits. [length]
+/// at least `least`. Infinite without limits. Throws Error for numbers out of range. [length]
 double recommended_band(const Instrument& instrument, double period, double least = 0.002);
 
 }  // namespace keepout
