@@ -36,7 +36,7 @@ std::uint64_t hash_of(std::span<const Hit> hits) {
 }
 
 /// Of each query and step. [us]
-struct Times {
+struct TimesOfStages {
   std::vector<double> collect, query, step, step_query, activate, solve;
 };
 
@@ -66,7 +66,7 @@ bool is_worse(const Answer& got, const Answer& expected, const Motion& motion) {
 
 /// As many as there is time for.
 std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const Motion> motions,
-                                  double seconds, const StopSignal& stop, Times& times) {
+                                  double seconds, const StopSignal& stop, TimesOfStages& times) {
   std::vector<Answer> answers;
   double spent = 0.0;  // [us]
   for (const Motion& motion : motions) {
@@ -84,7 +84,7 @@ std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const 
 
 /// All of them, as a control loop would ask.
 std::vector<Answer> ask(MotionConstraint& constraint, std::span<const Motion> motions,
-                        const StopSignal& stop, Times& times, double& planes_mean) {
+                        const StopSignal& stop, TimesOfStages& times, double& planes_mean) {
   std::vector<Answer> answers;
   std::size_t planes = 0;
   for (const Motion& motion : motions) {
@@ -126,7 +126,7 @@ std::size_t judge(std::span<const Answer> answers, std::span<const Motion> motio
 /// How many queries found something else than the reference. Whatever the index has decided or
 /// computed already, all do the same work: candidates, exact test, closest points, sorted.
 std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Reference& reference,
-                              const StopSignal& stop, Times& times, BenchmarkRow& row) {
+                              const StopSignal& stop, TimesOfStages& times, BenchmarkRow& row) {
   // Before any is timed, so that caches are the same for the first index as for the last.
   std::vector<std::uint64_t> expected;
   for (std::size_t i = 0; i < count; ++i) expected.push_back(reference.hits_hash(i));
@@ -215,7 +215,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
     row["wrong"] = true;
     return;
   }
-  Times times;
+  TimesOfStages times;
   const std::vector<Answer> staged = ask_by_stages(constraint, motions, seconds, stop, times);
   const std::span<const Motion> asked = motions.first(staged.size());
   double planes_mean = 0.0;

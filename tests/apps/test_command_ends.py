@@ -68,7 +68,7 @@ def test_simulate_keeps_the_strokes_that_are_finished(tmp_path, number):
     strokes = record["runs"][0]["summary"]["strokes"]
     assert status == 130 and not record["complete"]
     assert all(run["summary"]["cycles"] == 100 * strokes > 0 for run in record["runs"]), "whole strokes only"
-    assert f"keepout: stopped; {strokes:,} of 100,000 strokes were finished, and are kept in keepout-report.html" in err
+    assert f"keepout: stopped; {strokes:,} of 100,000 strokes were finished, and are kept in keepout-report.html and r.json" in err
     assert "Report, with tables and settings, no pictures: keepout-report.html" in out
     assert "It was stopped" in (tmp_path / "keepout-report.html").read_text()
 
@@ -103,14 +103,15 @@ def test_simulate_writes_nothing_before_a_stroke_is_finished(tmp_path, number):
 def test_replay_keeps_the_steps_that_are_finished(tmp_path):
     count = 1_000_000
     (tmp_path / "poses").write_text("0 0 51 0.1 0 -0.4\n" * count)
-    process = start(tmp_path, "replay", "cube", "--poses", "poses", "--out", "s.csv", "--activation", "all_faces")
+    process = start(tmp_path, "replay", "cube", "--poses", "poses", "--out", "s.csv", "--planes", "p.csv",
+                    "--activation", "all_faces")
     while not (parts := list(tmp_path.glob("s.csv.partial-*"))) or parts[0].stat().st_size < 1000:
         time.sleep(0.01)
     status, out, err = stopped(process, signal.SIGTERM)
     lines = (tmp_path / "s.csv").read_text().splitlines()
     assert status == 130 and 1 < len(lines) < count
     assert lines[-1].count(",") == lines[0].count(","), "whole lines only"
-    assert f"keepout: stopped; {len(lines) - 1:,} of 1,000,000 steps were finished, and are kept in s.csv" in err
+    assert f"keepout: stopped; {len(lines) - 1:,} of 1,000,000 steps were finished, and are kept in s.csv and p.csv" in err
     assert out.startswith(f"{len(lines) - 1:,} steps -> s.csv")
 
 

@@ -152,6 +152,7 @@ class GuardedInstrument final : public SimulatedTool {
     cycle.outcome = !step.ok()                    ? Outcome::stopped
                     : step.status != Status::free ? Outcome::limited
                                                   : Outcome::moved_freely;
+    cycle.guides_inside = guides_inside(step.guides);
     const oracle::RobotVerdict verdict = judge_->judge(q_);
     cycle.is_breach = verdict.limits_broken;
     cycle.is_guide_left = verdict.is_guide_left;
@@ -198,27 +199,29 @@ class GuardedInstrument final : public SimulatedTool {
     // A mesh without a stroke that is finished.
     if (meshes_.back()["strokes"].empty()) meshes_.erase(meshes_.size() - 1);
     const bool has_guides = !guides_.empty();
+    const std::vector<std::string> untested = untested_guides(runs, options_.guides);
     const std::string in_guides = has_guides ? ", and in its guides" : "";
-    Json record =
-        new_record({.kind = "simulate_robot",
-                    .command = options_.command,
-                    .subject = "A simulated operator drove the instrument of a robot, " +
-                               options_.robot + ", against anatomy: the same strokes in each mode",
-                    .headline = std::string("The certified step ") +
-                                (broken == 0 ? "kept shaft, wrist and jaw off the anatomy" +
-                                                   in_guides + " in all "
-                                             : "broke its promise in some of ") +
-                                counted(cycles, "cycle") + "." +
-                                (still.empty() ? ""
-                                               : " The instrument stood still in all cycles of " +
-                                                     listed(still) + ": nothing was tested there."),
-                    .machine = this_machine(),
-                    .settings = {{"robot", options_.robot},
-                                 {"strokes", grouped(options_.strokes.count)},
-                                 {"cycles per stroke", grouped(options_.strokes.cycles)},
-                                 {"margin", trimmed(margin_) + " mm"},
-                                 {"seed", std::to_string(options_.strokes.seed)},
-                                 {"index", options_.constraint.index}}});
+    Json record = new_record(
+        {.kind = "simulate_robot",
+         .command = options_.command,
+         .subject = "A simulated operator drove the instrument of a robot, " + options_.robot +
+                    ", against anatomy: the same strokes in each mode",
+         .headline =
+             std::string("The certified step ") +
+             (broken == 0 ? "kept shaft, wrist and jaw off the anatomy" + in_guides + " in all "
+                          : "broke its promise in some of ") +
+             counted(cycles, "cycle") + "." +
+             (still.empty() ? ""
+                            : " The instrument stood still in all cycles of " + listed(still) +
+                                  ": nothing was tested there.") +
+             sentence_on_untested(untested),
+         .machine = this_machine(),
+         .settings = {{"robot", options_.robot},
+                      {"strokes", grouped(options_.strokes.count)},
+                      {"cycles per stroke", grouped(options_.strokes.cycles)},
+                      {"margin", trimmed(margin_) + " mm"},
+                      {"seed", std::to_string(options_.strokes.seed)},
+                      {"index", options_.constraint.index}}});
     if (has_guides) record["settings"]["guides"] = listed(options_.guides);
     record["certified_mm"] = margin_ - joints_->options().band;
     for (std::size_t b = 0; b < body_names.size(); ++b) {
@@ -230,7 +233,7 @@ class GuardedInstrument final : public SimulatedTool {
     return {.record = std::move(record),
             .columns = mode_columns(has_guides),
             .legend = columns_meaning,
-            .is_broken = broken > 0};
+            .is_broken = broken > 0 || (has_guides && untested.size() == guides_.size())};
   }
 
  private:

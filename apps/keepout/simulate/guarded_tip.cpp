@@ -65,6 +65,7 @@ class GuardedTip final : public SimulatedTool {
       cycle.outcome = !step.ok() || is_still        ? Outcome::stopped
                       : step.status != Status::free ? Outcome::limited
                                                     : Outcome::moved_freely;
+      cycle.guides_inside = guides_inside(step.guides);
       cycle.step_us = static_cast<float>(1e-3 * static_cast<double>(times.total()));
       motion = step.motion;
     }

@@ -145,7 +145,7 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
     out.flush();
     std::cerr << "keepout: stopped; " << grouped(done.finished) << " of "
               << counted(done.planned, "stroke") << " were finished, and are kept in "
-              << options.files.page->string() << '\n';
+              << options.files.names() << '\n';
   }
   if (timings.is_wrong) {
     std::cerr << "keepout: parts give wrong answers: see the benchmark in the report\n";

@@ -25,7 +25,7 @@ struct SimulationResult {
   Json record;                // see docs/records.md
   Columns<RunTally> columns;  // of the table of all runs
   std::string_view legend = {};
-  bool is_broken = false;  // a promise was
+  bool is_broken = false;  // a promise was broken, or no guide was tested
 };
 
 /// The tool that an operator moves over meshes, under each of its guards, in the closed loop of

@@ -27,7 +27,7 @@ class Attack {
   virtual bool is_done() const = 0;
 
   Tally row;
-  std::vector<double> step_us = {}, point_us = {};  // the times of the steps, see Tally
+  Times step_times = {}, point_times = {};  // of the steps, see Tally
 };
 using Attacks = std::vector<std::unique_ptr<Attack>>;
 

@@ -22,8 +22,8 @@ Next run(Attack& attack, const Advanced& advanced) {
     next = advanced(row.cycles - before, name);
     most = next == Next::go_on ? attack.begin() : 0;
   }
-  row.step = timing_of(attack.step_us);
-  row.point = timing_of(attack.point_us);
+  row.step = attack.step_times.timing();
+  row.point = attack.point_times.timing();
   row.seconds = microseconds_since(start) * 1e-6;
   return next;
 }

@@ -164,11 +164,11 @@ class RobotAttempt {
     const Twist desired = wanted(state.flange().position);
     const BenchClock::time_point start = BenchClock::now();
     const InstrumentStep step = subject_->step(positions_, desired);
-    attack_.step_us.push_back(microseconds_since(start));
+    attack_.step_times.add(microseconds_since(start));
     if (point_) {
       const BenchClock::time_point after = BenchClock::now();
       point_->step({.tip = state.flange().position, .desired = desired.linear});
-      attack_.point_us.push_back(microseconds_since(after));
+      attack_.point_times.add(microseconds_since(after));
     }
     RobotTask::Increment made = RobotTask::Increment::Zero(chain_.size());
     std::vector<double> next = positions_;
