@@ -71,10 +71,15 @@ class FreeCells {
     const double needed = clearance + 0.5 * spacing;
     const double reach = std::max(needed, told);
     TriangleBuffer candidates(scene.mesh()->triangle_count());
+    const Box mesh = scene.mesh()->bounds();
     const auto distance_of = [&](const Vec3& point, double guess) {
+      // Most cells are beside the box of a small mesh, or far from its triangles.
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      const Vec3 beside = (mesh.low - point).cwiseMax(point - mesh.high);
+      if (beside.maxCoeff() > reach) return infinity;
       candidates.clear();
-      scene.index().collect({point, reach}, candidates);  // far off, as most are: soon told
-      if (candidates.view().empty()) return std::numeric_limits<double>::infinity();
+      scene.index().collect({point, reach}, candidates);
+      if (candidates.view().empty()) return infinity;
       return scene.nearest(point, std::min(guess, reach)).closest.distance;
     };
     const auto look = [&](Cell cell, double guess) {

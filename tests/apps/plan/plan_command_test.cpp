@@ -63,8 +63,8 @@ TEST_F(PlanCommandTest, TheSameSeedPlansTheSame) {
 }
 
 TEST_F(PlanCommandTest, OfASmallMeshEachPathAlongTheGridIsSearchedOnlyWhereItLeads) {
-  // A grid of 300 cells a side, of which the mesh takes 70, and few pairs need such a detour.
-  write_binary_stl(folder_.file("small.stl"), make_cube(0.5));
+  // On a grid of 300 cells a side, of which the mesh takes 40, few pairs need such a detour.
+  write_binary_stl(folder_.file("small.stl"), make_cube(3.0));
   const ProcessOutcome outcome =
       succeeded(folder_.run("plan small.stl --problems 12 --seconds 1 --resolution 0.01 --quiet "
                             "--json runs.json"));
