@@ -77,7 +77,7 @@ TEST_F(PlanCommandTest, OfASmallMeshEachPathAlongTheGridIsSearchedOnlyWhereItLea
 
 TEST_F(PlanCommandTest, CountsAResolutionOnce) {
   succeeded(folder_.run(
-      "plan cortex.stl --seconds 20 --resolution 0.01,0.01 --problems 1 --json runs.json"));
+      "plan cortex.stl --seconds 1 --resolution 0.01,0.01 --problems 1 --json runs.json"));
   const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
   EXPECT_EQ(record.at("checkers"), Json({"sampled 1 %", "widened 1 %", "certified", "sliding"}));
   EXPECT_EQ(record.at("runs").size(), 4u);
