@@ -56,8 +56,8 @@ TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
   ASSERT_EQ(metres.size(), 1u);
   EXPECT_CONTAINS(
       metres[0],
-      "the mesh is 0.1 mm across if its unit is mm; in m it would be 100 mm across: give "
-      "the unit of the file, for example --unit m or unit=\"m\"");
+      "the mesh is 0.1 mm across if its unit is mm; in m it would be 100 mm across: scale "
+      "it to mm, or give the unit of the file, for example --unit m or unit=\"m\"");
   const auto micrometres = quick_check(cube_times(1000.0));
   ASSERT_EQ(micrometres.size(), 1u);
   EXPECT_CONTAINS(micrometres[0], "the mesh is 100000 mm across");
