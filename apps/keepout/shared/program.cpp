@@ -158,9 +158,11 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
   CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
                called_as(argv[0]));
   set_up(app, commands);
-  if (print_for_files(app, {argv + 1, argv + argc})) return EXIT_SUCCESS;
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (print_for_files(app, words)) return EXIT_SUCCESS;
   try {
     app.parse(argc, argv);
+    refuse_empty_items(*app.get_subcommands().front(), words);
   } catch (const CLI::Success& call_for_help) {
     // CLI11 prints the help of the program although the command is mistyped.
     const std::vector<std::string> extra = app.remaining();
