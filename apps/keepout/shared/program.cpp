@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -192,10 +193,11 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
 int run_program(const std::vector<Command>& commands, int argc, char** argv) {
   prepare_process();
   outlive_readers();
+  int status = EXIT_FAILURE;
   try {
-    return flushed(run(commands, argc, argv));
+    status = flushed(run(commands, argc, argv));
   } catch (const PreparationInterrupted&) {
-    return exit_interrupted;  // fixture_path() has said so
+    status = exit_interrupted;  // fixture_path() has said so
   } catch (const Error& error) {
     std::cerr << "keepout: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {
@@ -203,7 +205,8 @@ int run_program(const std::vector<Command>& commands, int argc, char** argv) {
   } catch (const std::exception& error) {
     std::cerr << "keepout: unexpected: " << error.what() << '\n';
   }
-  return EXIT_FAILURE;
+  if (has_left_work_behind) std::_Exit(status);
+  return status;
 }
 
 }  // namespace keepout::app

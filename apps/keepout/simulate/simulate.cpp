@@ -57,7 +57,8 @@ Runs run_strokes(SimulatedTool& tool, const std::vector<std::filesystem::path>& 
   Progress progress("simulate", all.planned);
   for (const auto& mesh : meshes) {
     progress.show(mesh.stem().string());
-    all.mesh = tool.open(mesh);
+    all.mesh = tool.open(mesh, stop);
+    if (!all.mesh) return all;
     const std::vector<std::string> guards = tool.guards();
     for (const double speed : speeds) {
       std::vector<RunTally> runs;

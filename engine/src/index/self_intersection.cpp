@@ -230,12 +230,12 @@ Vec3 meeting_point(const Triangle& one, const Triangle& other) noexcept {
     count = add_corners_on(one, other, sum) + add_corners_on(other, one, sum) +
             add_crossings(one, other, sum);
   }
-  if (count > 0) return sum / count;
-  // Lengths near the end of a double's range: what they share is at least where their boxes
-  // overlap.
   const Box a = box_of(one);
   const Box b = box_of(other);
-  return Box{a.low.cwiseMax(b.low), a.high.cwiseMin(b.high)}.center();
+  // Rounding may lead astray, or leave no point, where they are nearly in one plane or lengths are
+  // near the end of a double's range.
+  const Vec3 middle = sum / std::max(1, count);
+  return middle.cwiseMax(a.low.cwiseMax(b.low)).cwiseMin(a.high.cwiseMin(b.high));
 }
 
 /// A ball that holds the triangle, with room for the rounding of its own making.

@@ -178,7 +178,7 @@ TEST(FindSelfIntersections, PlacesAreWhereTheBoxesOfBothTrianglesAre) {
   Random random(20261126);
   std::size_t found = 0;
   for (const double unit : {1.0, 1e30 / 8, 1e-100, 1e-105, 1e-110}) {
-    for (int trial = 0; trial < 20'000; ++trial) {
+    for (int trial = 0; trial < 4'000; ++trial) {
       Surface surface{{}, {{0, 1, 2}, {3, 4, 5}}};
       for (int v = 0; v < 6; ++v) {
         const auto whole = [&] { return 3.0 + static_cast<double>(random.below(4)); };
@@ -193,8 +193,8 @@ TEST(FindSelfIntersections, PlacesAreWhereTheBoxesOfBothTrianglesAre) {
           for (int axis = 0; axis < 3; ++axis) {
             const auto [low, high] =
                 std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
-            EXPECT_GE(place.at[axis], low * (1 - 1e-12)) << unit << ' ' << trial;
-            EXPECT_LE(place.at[axis], high * (1 + 1e-12)) << unit << ' ' << trial;
+            EXPECT_GE(place.at[axis], low) << unit << ' ' << trial;
+            EXPECT_LE(place.at[axis], high) << unit << ' ' << trial;
           }
         }
       }

@@ -383,15 +383,15 @@ std::size_t most_memory() {
 }
 
 TEST_F(LoadMesh, AFalseSizeOfAVtpBlockTakesNoMemory) {
-  const std::string points = "90000000";
+  constexpr std::uint64_t claimed = 90'000'000;
   std::string vtp =
       replaced(as_vtp(tetrahedron(), {.format = Mode::appended_raw, .is_compressed = true}),
-               "NumberOfPoints=\"4", "NumberOfPoints=\"" + points);
+               "NumberOfPoints=\"4", "NumberOfPoints=\"" + std::to_string(claimed));
   // The first array is one block of a few bytes in fact, which claims to be 2 MB and unpack to 1
   // GB.
   const std::size_t counts = vtp.find("  _") + 3;
   std::string size, packed;
-  append_bytes(size, std::uint64_t{12} * std::stoull(points), false);
+  append_bytes(size, 12 * claimed, false);
   append_bytes(packed, std::uint64_t{1} << 21, false);
   vtp.replace(counts + 16, 8, size).replace(counts + 24, 8, packed);
   vtp.insert(vtp.find("\n  </AppendedData>"), std::size_t{1} << 21, '\0');
