@@ -387,9 +387,9 @@ TEST_F(LoadMesh, AFalseSizeOfAVtpBlockTakesNoMemory) {
   std::string vtp =
       replaced(as_vtp(tetrahedron(), {.format = Mode::appended_raw, .is_compressed = true}),
                "NumberOfPoints=\"4", "NumberOfPoints=\"" + std::to_string(claimed));
-  // The first array is one block of a few bytes in fact, which claims to be 2 MB and unpack to 1
-  // GB.
-  const std::size_t counts = vtp.find("  _") + 3;
+  // The points are one block of a few bytes, which claims to be of 2 MB and to unpack to 1 GB.
+  const std::string offset = vtp.substr(vtp.find("offset=\"", vtp.find("\"Points\"")) + 8);
+  const std::size_t counts = vtp.find("  _") + 3 + std::stoull(offset);
   std::string size, packed;
   append_bytes(size, 12 * claimed, false);
   append_bytes(packed, std::uint64_t{1} << 21, false);
