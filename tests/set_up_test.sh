@@ -68,7 +68,7 @@ compile() {
 }
 STUB
 chmod +x "$work/apps/web/build" "$work/fixtures/prepare"
-said=$("$work/run" | sed "s,$work/,,")
+said=$("$work/run" | sed "s,$work/,,; /^==> waiting for /d")
 [[ $said == "==> configuring (first_page)
 ==> configures first_page
 ==> builds keepout_first_page
