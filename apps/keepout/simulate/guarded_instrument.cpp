@@ -89,11 +89,18 @@ class GuardedInstrument final : public SimulatedTool {
         margin_(options.constraint.options.margin),
         guides_(guides_of(options.guides, Guided::instrument)) {}
 
-  std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
+  std::shared_ptr<const Mesh> open(const std::filesystem::path& path,
+                                   const StopSignal& stop) override {
     const std::string name = path.stem().string();
-    const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, options_.load).mesh;
-    require_area(path.string(), *mesh);
-    on_.emplace(RobotScene{{name, mesh, options_.constraint.index}, margin_});
+    auto opened = unless_stopped(
+        stop, [=, load = options_.load, index = options_.constraint.index, margin = margin_] {
+          const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, load).mesh;
+          require_area(path.string(), *mesh);
+          return std::make_unique<RobotScene>(RobotScene{{name, mesh, index}, margin});
+        });
+    if (!opened) return nullptr;
+    on_ = *std::move(opened);
+    const std::shared_ptr<const Mesh> mesh = on_->scene.mesh();
     Json& drawn = meshes_.emplace_back(drawn_mesh(name, *mesh));
     drawn["surface"] = on_->scene.has_sides() ? "closed" : "open";
     drawn["strokes"] = Json::array();
@@ -240,7 +247,7 @@ class GuardedInstrument final : public SimulatedTool {
   const SimulateOptions& options_;
   double margin_;  // [mm]
   std::vector<Guide> guides_;
-  std::optional<RobotScene> on_;
+  std::unique_ptr<RobotScene> on_;
   Json meshes_ = Json::array();
   std::array<double, manners.size()> told_ = {};  // of the strokes kept on the last mesh [mm]
   std::optional<InstrumentConstraint> joints_;

@@ -34,8 +34,9 @@ class SimulatedTool {
  public:
   virtual ~SimulatedTool() = default;
 
-  /// Loads the next mesh. Throws Error.
-  virtual std::shared_ptr<const Mesh> open(const std::filesystem::path& mesh) = 0;
+  /// Loads the next mesh. Returns null if a signal comes meanwhile. Throws Error.
+  virtual std::shared_ptr<const Mesh> open(const std::filesystem::path& mesh,
+                                           const StopSignal& stop) = 0;
   /// Returns the names of the guards; "none" lets the tool go anywhere.
   virtual std::vector<std::string> guards() const = 0;
   /// Draws the next stroke. Throws Error if there is no place for it.

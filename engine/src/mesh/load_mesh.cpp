@@ -183,9 +183,9 @@ void scale_to_mm(const MeshSource& source, const LoadOptions& options, double sc
   if (scale == 1.0) return;
   for (Vec3& vertex : surface.vertices) {
     vertex *= scale;
-    if (!vertex.allFinite()) {
+    if (!(vertex.cwiseAbs().maxCoeff() <= largest_coordinate)) {
       source.fail("scaled by " + number_text(scale) +
-                  " it has a coordinate that is not finite; check the scale");
+                  " it has a coordinate beyond 1e30; check the unit or the scale that was given");
     }
   }
   surface = weld(std::move(surface));

@@ -13,6 +13,9 @@
 
 namespace keepout {
 
+/// Fourth powers of lengths must stay finite and in range; no anatomy comes near.
+inline constexpr double largest_coordinate = 1e30;
+
 /// A file that a mesh is read from, and how errors name it.
 class MeshSource {
  public:

@@ -104,10 +104,15 @@ std::string short_number(double value) {
   return text.data();
 }
 
-/// What its size says of the unit; empty for one that organs have.
+/// What is odd about its size, which mostly tells of the unit; empty for one that organs have.
 std::string doubt_of_unit(const Mesh& mesh, double scale) {
   const double extent = mesh.bounds().size().maxCoeff();
   if (extent >= MeshFindings::metres_below && extent <= MeshFindings::micrometres_above) return {};
+  if (extent == 0.0) {
+    return "all vertices coincide" +
+           (scale == 1.0 ? std::string() : " after they were scaled by " + short_number(scale)) +
+           ", so there is no surface: export the mesh again";
+  }
   const std::string size = "the mesh is " + short_number(extent) + " mm across";
   if (scale != 1.0) {
     return size + " after it was scaled by " + short_number(scale) +

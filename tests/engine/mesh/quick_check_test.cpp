@@ -68,6 +68,14 @@ TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
   EXPECT_CONTAINS(scaled[0], "100000 mm across after it was scaled by 1000");
 }
 
+TEST(QuickCheck, OfVerticesThatCoincideNoUnitIsAskedFor) {
+  const Mesh point(Surface{.vertices = {{1, 2, 3}}, .triangles = {{0, 0, 0}}});
+  const auto found = quick_check(point);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_CONTAINS(found[0], "all vertices coincide");
+  EXPECT_FALSE(examine(point).looks_like_metres());
+}
+
 TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {
   Surface surface = opened(make_cube(10.0));
   const auto open = quick_check(Mesh(surface));

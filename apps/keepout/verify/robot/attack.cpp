@@ -263,7 +263,11 @@ class RobotAttack final : public Attack {
 
   std::uint64_t begin() override {
     attempt_.reset();
-    if (arena_.load && !*loaded_) *loaded_ = std::make_shared<Scene>(arena_.load().front());
+    if (arena_.load && !*loaded_) {
+      std::vector<Scene> scenes = arena_.load();
+      if (scenes.empty()) return 0;
+      *loaded_ = std::make_shared<Scene>(std::move(scenes.front()));
+    }
     if (*loaded_) row.triangles = (*loaded_)->mesh()->triangle_count();
     const auto number = static_cast<std::uint64_t>(&scenario_ - scenarios().data());
     const int most_misses = is_drawn_ ? 20 : 1;  // the next draw may have a start

@@ -73,8 +73,11 @@ struct MeshFindings {
   /// swapped.
   bool is_inside_out() const noexcept { return is_watertight() && signed_volume < 0.0; }
 
-  /// Smaller than `metres_below` in every direction, where files are in millimetres.
-  bool looks_like_metres() const noexcept { return bounds.size().maxCoeff() < metres_below; }
+  /// Smaller than `metres_below` in every direction, where files are in millimetres; but no point.
+  bool looks_like_metres() const noexcept {
+    const double extent = bounds.size().maxCoeff();
+    return extent > 0.0 && extent < metres_below;
+  }
 
   /// Larger than `micrometres_above` in some direction, where files are in millimetres.
   bool looks_like_micrometres() const noexcept {
