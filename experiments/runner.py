@@ -16,6 +16,7 @@ import os
 import signal
 import sys
 import time
+import warnings
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from modulefinder import ModuleFinder
 from pathlib import Path
@@ -48,7 +49,8 @@ def source_digest(experiment: str) -> str:
 
 
 def _be_a_worker() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent process
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits for this one
+    warnings.filterwarnings("ignore", "Mesh: ")  # counterexamples are open, and cavities face inward
 
 
 def _run(module: str, unit: Unit) -> list[Row]:

@@ -254,11 +254,14 @@ int bench(const BenchOptions& options, std::ostream& out) {
   // end. An open file, such as stdout, cannot be replaced: it is written at the end only.
   Json record = record_of(benchmark, {});
   record["complete"] = false;  // until the answers are compared as well
-  if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);
+  const auto write_table = [&] {
+    if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);
+  };
   const bool is_replaced = std::ranges::none_of(
       std::array{files.json, files.csv, files.page},
       [](const auto& file) { return file && entry_of_open_file(*file).has_value(); });
   if (is_replaced) {
+    write_table();
     if (auto* const json = outputs->stream("--json")) print_json(*json, record);
     outputs->commit();
   }
@@ -269,8 +272,9 @@ int bench(const BenchOptions& options, std::ostream& out) {
   }
   if (is_replaced) {
     outputs.reset();
-    outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
+    outputs.emplace(files.open(meshes, "--mesh"));
   }
+  write_table();  // again, so that a failure to write names all files
   write_record(*outputs, record, files);
   print_headline(out, benchmark);
   out << "report: " << files.page->string() << '\n';
@@ -282,13 +286,9 @@ int bench(const BenchOptions& options, std::ostream& out) {
   if (!failure && !stop.has_come()) {
     return is_right(benchmark, comparison) ? EXIT_SUCCESS : EXIT_FAILURE;
   }
-  std::vector<std::string> kept{files.page->string()};
-  for (const auto& path : {files.kept_json(), files.csv}) {
-    if (path) kept.push_back(path->string());
-  }
   std::cerr << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
             << counted(benchmark.planned, "row") << " were finished, and are kept in "
-            << listed(kept) << '\n';
+            << files.names() << '\n';
   if (failure) std::rethrow_exception(failure);
   return exit_interrupted;
 }

@@ -35,8 +35,8 @@ std::uint64_t hash_of(std::span<const Hit> hits) {
   return hash.value();
 }
 
-/// The times of each query and step. [µs]
-struct Times {
+/// Of each query and step. [us]
+struct TimesOfStages {
   std::vector<double> collect, query, step, step_query, activate, solve;
 };
 
@@ -66,7 +66,7 @@ bool is_worse(const Answer& got, const Answer& expected, const Motion& motion) {
 
 /// Makes as many steps as there is time for.
 std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const Motion> motions,
-                                  double seconds, const StopSignal& stop, Times& times) {
+                                  double seconds, const StopSignal& stop, TimesOfStages& times) {
   std::vector<Answer> answers;
   double spent = 0.0;  // [us]
   for (const Motion& motion : motions) {
@@ -84,7 +84,7 @@ std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const 
 
 /// Makes all steps, as a control loop does.
 std::vector<Answer> ask(MotionConstraint& constraint, std::span<const Motion> motions,
-                        const StopSignal& stop, Times& times, double& planes_mean) {
+                        const StopSignal& stop, TimesOfStages& times, double& planes_mean) {
   std::vector<Answer> answers;
   std::size_t planes = 0;
   for (const Motion& motion : motions) {
@@ -126,8 +126,8 @@ std::size_t judge(std::span<const Answer> answers, std::span<const Motion> motio
 /// Returns the number of queries with another result than the reference. All indices do the same
 /// work, whatever they have computed already: candidates, exact test, closest points, sorting.
 std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Reference& reference,
-                              const StopSignal& stop, Times& times, BenchmarkRow& row) {
-  // Before any query is timed, so that caches are in the same state for each index.
+                              const StopSignal& stop, TimesOfStages& times, BenchmarkRow& row) {
+  // Before any is timed, so that caches are the same for the first index as for the last.
   std::vector<std::uint64_t> expected;
   for (std::size_t i = 0; i < count; ++i) expected.push_back(reference.hits_hash(i));
   std::size_t candidates = 0, hits = 0, reaching = 0, wrong = 0;
@@ -215,7 +215,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
     row["wrong"] = true;
     return;
   }
-  Times times;
+  TimesOfStages times;
   const std::vector<Answer> staged = ask_by_stages(constraint, motions, seconds, stop, times);
   const std::span<const Motion> asked = motions.first(staged.size());
   double planes_mean = 0.0;

@@ -79,9 +79,11 @@ class Trial {
         reference_index_(std::make_shared<const PdTree>(loaded_.mesh)) {
     Random random(plan.seed);
     const MotionKind kind{.clearance = margin};
-    motions_ = plan.poses == Poses::contact
-                   ? contact_motions(*loaded_.mesh, *reference_index_, plan.queries, kind, random)
-                   : unrelated_motions(*loaded_.mesh, plan.queries, kind, random);
+    motions_ = naming(subject, [&] {
+      return plan.poses == Poses::contact
+                 ? contact_motions(*loaded_.mesh, *reference_index_, plan.queries, kind, random)
+                 : unrelated_motions(*loaded_.mesh, plan.queries, kind, random);
+    });
   }
 
   /// Returns the mesh, and the time to read its file.
@@ -184,7 +186,7 @@ void run_trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& m
   print_table_head(out);
   for (const Combination& combination : plan.combinations) {
     progress.show(combination.index + " " + combination.activation + " " + combination.solver);
-    BenchmarkRow row = trial.measure(combination);
+    BenchmarkRow row = naming(subject, [&] { return trial.measure(combination); });
     progress.interrupt();
     if (stop.has_come()) return;
     print_table_row(out, row);

@@ -223,9 +223,11 @@ int compare(const CompareOptions& options, std::ostream& out) {
   // While the mesh is read and the poses are drawn, there are no results to keep yet.
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
-  const Comparison comparison = compare_parts(label_of(subject), mesh, options.extent, [&stop] {
-    stop.keep_from_now_on();
-    return stop.has_come();
+  const Comparison comparison = naming(subject, [&] {
+    return compare_parts(label_of(subject), mesh, options.extent, [&stop] {
+      stop.keep_from_now_on();
+      return stop.has_come();
+    });
   });
   print(out, comparison);
   const CompareExtent& extent = options.extent;

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "keepout/error.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/mesh.h"
 
@@ -28,6 +29,16 @@ std::string label_of(const Subject& subject);
 
 /// Returns text such as "bunny, 989,376 triangles".
 std::string title_of(const Subject& subject);
+
+/// Returns work(). Puts the name of the mesh before the text of an Error.
+template <class Work>
+auto naming(const Subject& subject, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(label_of(subject) + ": " + error.what());
+  }
+}
 
 /// Measures how many cores this process and others have kept busy since the object was made.
 class UsedCores {

@@ -243,9 +243,10 @@ int plan(const PlanOptions& options, std::ostream& out) {
   if (meshes.empty()) meshes = {"airway", "skull"};
   std::vector<std::unique_ptr<Planning>> plannings;
   for (const auto& mesh : meshes) {
-    Scene scene(mesh.filename().string(), load_named_mesh(mesh).mesh, "wide_bvh");
+    const std::shared_ptr<const Mesh> loaded = load_named_mesh(mesh).mesh;
+    require_area(mesh.string(), *loaded);
     const auto make = options.robot.empty() ? planning_of_a_tip : planning_of_an_instrument;
-    plannings.push_back(make(options, std::move(scene)));
+    plannings.push_back(make(options, Scene(mesh.filename().string(), loaded, "wide_bvh")));
   }
   const std::size_t total =
       plannings.size() * options.problems * checkers_of(options).size() * options.repetitions();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cstdlib>
 #include <limits>
 
 #include "keepout/error.h"
@@ -56,7 +57,16 @@ void add_plan(CLI::App& app, PlanOptions& options) {
       "Radius of the motion sphere: certified checking splits motions into pieces of this length")
       ->excludes(robot);
   add_length(command, "--range", options.range, Zero::allowed,
-             "Longest motion that a planner adds; 0: a fifth of the extent, OMPL's default");
+             "Longest motion that a planner adds, 0.01 at least; 0: a fifth of the extent, as OMPL "
+             "has it")
+      ->check(CLI::Validator(
+          [](const std::string& text) -> std::string {
+            // RRTConnect asks for the time only after one tree has grown all the way to the other.
+            const double range = std::strtod(text.c_str(), nullptr);
+            if (range == 0.0 || range >= 0.01) return {};
+            return "expected 0 or a number from 0.01 to 1e30, not '" + text + "'";
+          },
+          ""));
   command.add_flag("--simplify", options.simplify,
                    "Shorten each path with OMPL's simplifier, under the same checker");
   options.files.add_to(command);

@@ -102,8 +102,8 @@ struct TipScene {
 std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, std::size_t count,
                                            std::uint64_t seed, const StopSignal& stop);
 
-/// Returns the checkers to compare. For a tip: sampled at each resolution, widened at each,
-/// certified and sliding. For an instrument: sampled and certified.
+/// The checkers that are compared: for a tip sampled at each resolution, the same widened, then
+/// both of keepout's; for an instrument sampled and certified. No two have the same name.
 std::vector<Checker> checkers_of(const PlanOptions& options);
 
 // A run is an entry of the record's "runs": one planner on one problem under one checker.

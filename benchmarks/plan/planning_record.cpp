@@ -152,7 +152,12 @@ std::vector<Checker> checkers_of(const PlanOptions& options) {
   std::vector<Checker> all;
   for (const Kind kind : {Kind::sampled, Kind::widened}) {
     if (kind == Kind::widened && !is_tip) continue;
-    for (const double resolution : options.resolutions) all.push_back({kind, resolution});
+    for (const double resolution : options.resolutions) {
+      const Checker checker{kind, resolution};
+      // Runs are counted by the name of their checker.
+      if (std::ranges::find(all, checker.name(), &Checker::name) != all.end()) continue;
+      all.push_back(checker);
+    }
   }
   all.push_back({Kind::certified});
   if (is_tip) all.push_back({Kind::sliding});

@@ -72,10 +72,15 @@ class FreeCells {
     const double needed = clearance + 0.5 * spacing;
     const double reach = std::max(needed, told);
     TriangleBuffer candidates(scene.mesh()->triangle_count());
+    const Box mesh = scene.mesh()->bounds();
     const auto distance_of = [&](const Vec3& point, double guess) {
+      // Most cells are beside the box of a small mesh, or far from its triangles.
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      const Vec3 beside = (mesh.low - point).cwiseMax(point - mesh.high);
+      if (beside.maxCoeff() > reach) return infinity;
       candidates.clear();
-      scene.index().collect({point, reach}, candidates);  // fast for most cells, which are far away
-      if (candidates.view().empty()) return std::numeric_limits<double>::infinity();
+      scene.index().collect({point, reach}, candidates);
+      if (candidates.view().empty()) return infinity;
       return scene.nearest(point, std::min(guess, reach)).closest.distance;
     };
     const auto look = [&](Cell cell, double guess) {
@@ -103,19 +108,36 @@ class FreeCells {
     return low_ + spacing_ * Vec3(at[0], at[1], at[2]);
   }
 
-  /// Returns the shortest path along the grid to each cell, in steps; max() if there is no path.
-  std::vector<std::uint32_t> steps_from(Cell cell) const {
-    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> steps(distance_.size(), none);
-    std::vector<Cell> queue{cell};
-    steps[cell] = 0;
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      for_each_neighbor(queue[i], [&](Cell next) {
-        if (distance_[next] < 0.0F || steps[next] != none) return;
-        steps[next] = steps[queue[i]] + 1;
-        queue.push_back(next);
+  /// Returns the length of the shortest path along the grid between two reached cells, in steps. By
+  /// A* (Hart, Nilsson, Raphael 1968): where the way is open, it visits few cells more than the
+  /// path has.
+  std::uint32_t steps_between(Cell from, Cell to) {
+    // Cells whose path through them may be as short as any that is left, and 2 steps longer: no
+    // step changes that length by anything else.
+    std::vector<Cell> open{from}, later;
+    std::vector<Cell> seen{from};
+    std::uint32_t length = steps_in_the_open(from, to);
+    steps_.resize(distance_.size(), unknown);
+    steps_[from] = 0;
+    while (steps_[to] > length) {
+      if (open.empty()) {
+        length += 2;
+        open.swap(later);
+        continue;
+      }
+      const Cell cell = open.back();
+      open.pop_back();
+      const std::uint32_t here = steps_[cell];
+      if (here + steps_in_the_open(cell, to) < length) continue;  // it was visited meanwhile
+      for_each_neighbor(cell, [&](Cell next) {
+        if (distance_[next] < 0.0F || steps_[next] <= here + 1) return;
+        if (steps_[next] == unknown) seen.push_back(next);
+        steps_[next] = here + 1;
+        (here + 1 + steps_in_the_open(next, to) > length ? later : open).push_back(next);
       });
     }
+    const std::uint32_t steps = steps_[to];
+    for (const Cell cell : seen) steps_[cell] = unknown;
     return steps;
   }
 
@@ -134,6 +156,7 @@ class FreeCells {
 
   static constexpr float not_looked_at = -1.0F;
   static constexpr float not_free = -2.0F;
+  static constexpr std::uint32_t unknown = std::numeric_limits<std::uint32_t>::max();
 
   static std::uint32_t count(double length, double spacing) {
     return 1 + static_cast<std::uint32_t>(std::floor(length / spacing));
@@ -157,6 +180,7 @@ class FreeCells {
   std::uint32_t nx_, ny_, nz_;
   std::vector<float> distance_;  // of reached cells; < 0: not visited, or not free
   std::vector<Cell> reached_;
+  std::vector<std::uint32_t> steps_;  // to each cell, while a path is searched
 };
 
 }  // namespace
@@ -172,7 +196,7 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
   if (where.starts_below) start_box.high.z() = start_box.low.z() + 0.1 * start_box.size().z();
   const Vec3 from = where.is_within ? widest_within(scene, start_box, random) : where.bounds.low;
   const double near_enough = nearest_clearances * clearance;
-  const FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from, stop);
+  FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from, stop);
   std::vector<FreeCells::Cell> near, starts;
   for (const FreeCells::Cell cell : cells.reached()) {
     if (cells.distance(cell) > near_enough) continue;
@@ -190,7 +214,7 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
     const Vec3 a = cells.center(start);
     const Vec3 b = cells.center(goal);
     if (a == b || !oracle.check(a, b, 0.0).crosses) continue;
-    const std::uint32_t steps = cells.steps_from(start)[goal];
+    const std::uint32_t steps = cells.steps_between(start, goal);
     const double detour =
         static_cast<double>(steps) / static_cast<double>(cells.steps_in_the_open(start, goal));
     if (steps * spacing < least_way * diagonal || detour < least_detour) continue;

@@ -73,7 +73,7 @@ constexpr std::array outcomes{
              "InstrumentCapacity::triangles or planes (max_triangles, max_planes in Python), or "
              "simplify the mesh",
              "more triangles or planes than the capacity holds: lower the radius of the polytope, "
-             "or raise Capacity::triangles or planes"}},
+             "or raise Capacity::triangles or planes (max_triangles, max_planes in Python)"}},
     Outcome{"unsolved",
             {"the search ended without a motion that could be proved: ask for a shorter motion, or "
              "one in another direction",
@@ -111,7 +111,7 @@ constexpr std::array outcomes{
              "motion, simplify the mesh, or raise InstrumentCapacity::work_units (max_work_units "
              "in Python)",
              "the work budget ended before the polytope was complete: lower the radius of the "
-             "polytope, or raise Capacity::work_units"}},
+             "polytope, or raise Capacity::work_units (max_work_units in Python)"}},
     Outcome{"unsupported",
             {never, never,
              "the rule guards a whole tool, and planes around its tip would not guard the rest: "

@@ -149,6 +149,12 @@ def _is_list(value: Any) -> bool:
     return not isinstance(value, (str, bytes, dict)) and hasattr(value, "__len__") and hasattr(value, "__getitem__")
 
 
+def _may_be_number(value: Any) -> bool:
+    """Returns False for booleans, and for arrays of booleans or text: float() takes these, too."""
+    kind = getattr(getattr(value, "dtype", None), "kind", None)
+    return not isinstance(value, bool) and (not isinstance(kind, str) or kind in "fiu")
+
+
 def _fits(type_: ast.expr, value: Any) -> bool:
     """Returns False only for a value that pybind11 does not take for the type."""
     outer, inner = _parts(type_)
@@ -164,9 +170,10 @@ def _fits(type_: ast.expr, value: Any) -> bool:
         return _is_list(value) and all(_fits(inner[0], item) for item in value)
     text = ast.unparse(type_)
     if text == "float":
-        return not isinstance(value, (str, bytes)) and (hasattr(value, "__float__") or hasattr(value, "__index__"))
+        has_value = hasattr(value, "__float__") or hasattr(value, "__index__")
+        return has_value and not isinstance(value, (str, bytes)) and _may_be_number(value)
     if text == "int":
-        return hasattr(value, "__index__")
+        return hasattr(value, "__index__") and _may_be_number(value)
     if text == "str":
         return isinstance(value, (str, bytes))
     if text == "bool":

@@ -116,7 +116,7 @@ LinkPoint link_point(py::handle given, const std::string& name) {
   const auto pair = py::reinterpret_borrow<py::sequence>(given);
   if (py::len(pair) != 2) no_pair();
   const py::object link = pair[0];
-  if (!PyIndex_Check(link.ptr())) {
+  if (!PyIndex_Check(link.ptr()) || !may_be_number(link)) {
     refuse(name + "[0]", "the number of a link", type_name(link));
   }
   const py::ssize_t number = PyNumber_AsSsize_t(link.ptr(), nullptr);  // clipped; the receiver

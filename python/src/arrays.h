@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "numbers.h"
+
+// Behind it.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 

@@ -48,11 +48,18 @@ MeshHandle mesh_from(const py::object& vertices, const py::object& triangles, bo
   Surface surface;
   surface.vertices = points(vertices, {"vertices", {any, 3}, "(n, 3)"});
   surface.triangles = triangles_from(triangles, surface.vertices.size());
-  const py::gil_scoped_release release;
-  if (!welded) return {{.mesh = std::make_shared<const Mesh>(std::move(surface))}};
-  // Checks the surface as given: only finite vertices can be welded.
-  const Mesh checked(surface);
-  return {{.mesh = std::make_shared<const Mesh>(weld(std::move(surface)))}};
+  MeshHandle mesh;
+  {
+    const py::gil_scoped_release release;
+    // Before it is welded: what is not finite cannot be.
+    mesh.mesh = std::make_shared<const Mesh>(welded ? surface : std::move(surface));
+    if (welded) mesh.mesh = std::make_shared<const Mesh>(weld(std::move(surface)));
+    for (const std::string& warning : quick_check(*mesh.mesh)) {
+      mesh.warnings.push_back("Mesh: " + warning);
+    }
+  }
+  for (const std::string& warning : mesh.warnings) warn(warning);
+  return mesh;
 }
 
 AnatomicalSpace space_from(const char* argument, const std::optional<std::string>& given) {
@@ -272,8 +279,8 @@ void bind_mesh(py::module_& module) {
       "length everywhere, usually mm.\n"
       "\n"
       "vertices: (n, 3), finite [length]. triangles: (m, 3) integers from 0, m > 0.\n"
-      "weld: merge vertices with equal coordinates, which renumbers them. Without it, a surface\n"
-      "whose triangles do not share vertices looks open.")
+      "weld: merge vertices of equal coordinates, which renumbers them; a surface whose triangles\n"
+      "do not share their vertices looks open otherwise. Warns as load_mesh does.")
       .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
            py::arg("weld") = false)
       .def_property_readonly(
@@ -305,8 +312,8 @@ void bind_mesh(py::module_& module) {
           },
           "(2, 3) float64: the lowest and the highest corner of the bounding box [length].")
       .def_readonly("warnings", &MeshHandle::warnings,
-                    "Doubts about the file and the mesh: a list of sentences. load_mesh also\n"
-                    "issues them as Python warnings.")
+                    "What is odd about the mesh, or the file that it came from: a list of "
+                    "sentences, which Mesh and\nload_mesh show as Python's warnings, too.")
       .def_readonly("notices", &MeshHandle::notices,
                     "Requested changes that load_mesh made (scaled, turned, flipped): a list of\n"
                     "sentences, which also go to the logger 'keepout' at level INFO.")

@@ -33,10 +33,25 @@ RigidFit fit(const py::object& measured, const py::object& model, const py::obje
                    points(model, {"model", {any, 3}, "(n, 3)"}), each);
 }
 
+/// Warns, as 'keepout register' does, if the residuals speak of a mistake or contradict the FLE.
+void warn_of_doubt(const RigidFit& fit, std::optional<double> fle) {
+  const std::string doubt = fit.doubt.empty() && fle ? fit.doubt_of(*fle) : fit.doubt;
+  if (!doubt.empty()) warn("do not trust the registration: " + doubt);
+}
+
 double margin(const RigidFit& fit, const py::object& targets, double confidence,
               std::optional<double> fle) {
   const Expected expected{"targets", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed};
-  return registration_margin(fit, points(targets, expected), confidence, fle);
+  const double margin = registration_margin(fit, points(targets, expected), confidence, fle);
+  warn_of_doubt(fit, fle);
+  return margin;
+}
+
+py::array_t<double> covariance(const RigidFit& fit, const py::object& target,
+                               std::optional<double> fle) {
+  const TargetError error = target_error(fit, point(target, "target"), fle);
+  warn_of_doubt(fit, fle);
+  return array_of(error.covariance);
 }
 
 constexpr const char* fit_doc =
@@ -57,11 +72,10 @@ probability `confidence`, the error is smaller [length]. This holds at the targe
 points of the convex hull of several targets, such as the corners of the box in which the tool
 works.
 
-targets: (3,) or (n, 3), in the frame of the mesh.
-fle: root mean square localization error of a pair [length]; None: estimated from the residuals,
-which gives a larger margin if they are few.
-
-The margin does not cover errors that all pairs share, or later motion.)";
+targets: (3,) or (n, 3), in the frame of the mesh. fle: root mean square localisation error of a
+pair [length]; None: estimated from the residuals, which takes a larger margin where they are few.
+A UserWarning says if the residuals contradict it: see RigidFit.doubt_of; and of RigidFit.doubt.
+It does not cover what all pairs have in common, nor what moves later.)";
 
 }  // namespace
 
@@ -86,8 +100,12 @@ void bind_registration(py::module_& module) {
       .def_readonly("scale", &RigidFit::scale,
                     "Ratio of the spread of the model's points to that of the measured points.")
       .def_readonly("doubt", &RigidFit::doubt,
-                    "The mistake that the residuals suggest: a unit, an order or a reflection;\n"
-                    "'' if none.")
+                    "Which mistake the residuals speak of: a unit, an order, a reflection; or ''.")
+      .def(
+          "doubt_of", &RigidFit::doubt_of, py::arg("fle"),
+          "Returns why a localisation error of a pair contradicts the residuals, or ''. It does if "
+          "fewer than\none in a thousand registrations with that error have so large an FRE. fle: "
+          "root mean square, above 0\n[length].")
       .def("__repr__", [](const RigidFit& self) {
         return py::str("<keepout.RigidFit of {} pairs, fre={:.4g}>")
             .format(self.residuals.size(), self.fre);
@@ -95,15 +113,12 @@ void bind_registration(py::module_& module) {
   module.def("fit_rigid", &fit, py::arg("measured"), py::arg("model"),
              py::arg("weights") = py::none(), fit_doc);
   module.def(
-      "target_error",
-      [](const RigidFit& fit, const py::object& target, std::optional<double> fle) {
-        return array_of(target_error(fit, point(target, "target"), fle).covariance);
-      },
-      py::arg("fit"), py::arg("target"), py::arg("fle") = py::none(),
-      "Returns (3, 3) float64: the covariance of the registration error at a target (3,), in\n"
-      "the frame of the mesh [length^2]. The square root of its trace is the target\n"
-      "registration error (TRE), root mean square. The square root of its largest eigenvalue is\n"
-      "the standard deviation in the worst direction. fle: as in registration_margin.");
+      "target_error", &covariance, py::arg("fit"), py::arg("target"), py::arg("fle") = py::none(),
+      "(3, 3) float64: covariance of the error of a registration at a target (3,), in the mesh's\n"
+      "frame [length^2]. The square root of its trace is the target registration error, TRE, root\n"
+      "mean square; that of its largest eigenvalue the deviation in the worst direction. fle: as "
+      "in\n"
+      "registration_margin.");
   module.def("registration_margin", &margin, py::arg("fit"), py::arg("targets"),
              py::arg("confidence") = 0.99, py::arg("fle") = py::none(), margin_doc);
 }

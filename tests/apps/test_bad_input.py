@@ -139,6 +139,10 @@ wrong_lines = [
     ("verify cube --shard 3/2", "--shard: expected I/N, part I of N, "),
     ("bench --seconds soon", f"--seconds: {above_0}'soon'"),
     ("bench --radius 1,x", f"--radius: {above_0}'x'"),
+    *((line, f"{line.split()[-2]}: expected a value before and behind each comma, not '{line.split()[-1]}'") for line in (
+        "bench --radius 1,,2", "bench --index wide_bvh,", "simulate cube --activation ,paper", "verify --scenario guides,,moving",
+        "simulate cube --robot psm --speed 1,,5", "plan --resolution 0.1,,0.01")),
+    ("bench --radius=1,,2 --seed 3", "--radius: expected a value before and behind each comma, not '1,,2'"),
     ("bench --queries 0", "--queries: expected a whole number from 5 to 10000000, not '0'"),
     ("bench --triangles 0", "--triangles: expected a whole number from 1000 to 200000000, not '0'"),
     ("compare cube --pairs 0", "--pairs: expected a whole number from 10 to 1000000, not '0'"),

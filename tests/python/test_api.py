@@ -212,14 +212,21 @@ def test_welding_and_inspection():
     vertices, triangles = sphere()
     soup = vertices[triangles].reshape(-1, 3)
     apart = np.arange(len(soup)).reshape(-1, 3)
-    loose = keepout.Mesh(soup, apart).inspect()
+    with pytest.warns(UserWarning, match="^Mesh: the surface is open") as said:
+        loose = keepout.Mesh(soup, apart)
+    assert loose.warnings == [str(warning.message) for warning in said]
+    loose = loose.inspect()
     assert not loose.closed and loose.boundary_edges == 3 * len(triangles)
     assert loose.genus is None and loose.signed_volume is None and "open" in str(loose)
     welded = keepout.Mesh(soup, apart, weld=True)
     found = welded.inspect(self_intersections=True)
     assert len(welded.vertices) == len(vertices) and found.watertight and found.genus == 0
     assert found.self_intersections == 0 and "watertight" in repr(found)
-    flipped = keepout.Mesh(vertices, triangles[:, ::-1]).inspect()
+    assert welded.warnings == []
+    with pytest.warns(UserWarning, match="^Mesh: the surface is closed and faces inward"):
+        flipped = keepout.Mesh(vertices, triangles[:, ::-1]).inspect()
+    with pytest.warns(UserWarning, match='^Mesh: the mesh is 0.2 mm across .*unit="'):
+        keepout.Mesh(vertices / vertices.max() / 10, triangles)
     assert flipped.inside_out and flipped.signed_volume < 0
     normals = welded.normals
     assert np.all(np.einsum("ij,ij->i", normals, welded.vertices[welded.triangles[:, 0]]) > 0)

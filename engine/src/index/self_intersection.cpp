@@ -234,7 +234,12 @@ Vec3 meeting_point(const Triangle& one, const Triangle& other) noexcept {
     count = add_corners_on(one, other, sum) + add_corners_on(other, one, sum) +
             add_crossings(one, other, sum);
   }
-  return sum / std::max(1, count);
+  const Box a = box_of(one);
+  const Box b = box_of(other);
+  // Rounding may lead astray, or leave no point, where they are nearly in one plane or lengths are
+  // near the end of a double's range.
+  const Vec3 middle = sum / std::max(1, count);
+  return middle.cwiseMax(a.low.cwiseMax(b.low)).cwiseMin(a.high.cwiseMin(b.high));
 }
 
 /// Returns a ball that contains the triangle, enlarged by the rounding of this computation.

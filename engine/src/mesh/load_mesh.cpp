@@ -135,10 +135,11 @@ void settle_space(const MeshSource& source, const CoordinateNotes& notes,
                 "; export it in one of them");
   }
   if (loaded.space == unstated) {
-    source.fail("does not state its space, so it cannot be told whether it is in " + wanted +
-                "; say what a file without SPACE=RAS or SPACE=LPS is in (LoadOptions::untagged, "
-                "--untagged). 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
-                "programs for DICOM images use LPS");
+    source.fail(
+        "does not state its space, so it cannot be told whether it is in " + wanted +
+        "; say what a file without SPACE=RAS or SPACE=LPS is in, for example --untagged LPS or "
+        "untagged=\"LPS\". 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
+        "programs for DICOM images use LPS");
   }
   if (loaded.space != options.space) {
     swap_ras_and_lps(surface);
@@ -183,9 +184,9 @@ void scale_to_mm(const MeshSource& source, const LoadOptions& options, double sc
   if (scale == 1.0) return;
   for (Vec3& vertex : surface.vertices) {
     vertex *= scale;
-    if (!vertex.allFinite()) {
+    if (!(vertex.cwiseAbs().maxCoeff() <= largest_coordinate)) {
       source.fail("scaled by " + number_text(scale) +
-                  " it has a coordinate that is not finite; check the scale");
+                  " it has a coordinate beyond 1e30; check the unit or the scale that was given");
     }
   }
   surface = weld(std::move(surface));

@@ -11,13 +11,11 @@
 
 #include "../parallel.h"
 #include "keepout/error.h"
+#include "mesh_file.h"
 #include "weld_blocks.h"
 
 namespace keepout {
 namespace {
-
-// Fourth powers of lengths must stay finite and in range. No anatomy comes near this limit.
-constexpr double largest_coordinate = 1e30;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 

@@ -13,7 +13,10 @@
 
 namespace keepout {
 
-/// A mesh file, and its name for errors.
+/// Fourth powers of lengths must stay finite and in range; no anatomy comes near.
+inline constexpr double largest_coordinate = 1e30;
+
+/// A file that a mesh is read from, and how errors name it.
 class MeshSource {
  public:
   /// Throws Error unless the path is a readable regular file that is not empty.

@@ -106,10 +106,15 @@ std::string short_number(double value) {
   return text.data();
 }
 
-/// Returns a doubt about the unit, from the size of the mesh; empty for the sizes of organs.
+/// What is odd about its size, which mostly tells of the unit; empty for one that organs have.
 std::string doubt_of_unit(const Mesh& mesh, double scale) {
   const double extent = mesh.bounds().size().maxCoeff();
-  if (extent >= MeshFindings::meters_below && extent <= MeshFindings::micrometers_above) return {};
+  if (extent >= MeshFindings::metres_below && extent <= MeshFindings::micrometres_above) return {};
+  if (extent == 0.0) {
+    return "all vertices coincide" +
+           (scale == 1.0 ? std::string() : " after they were scaled by " + short_number(scale)) +
+           ", so there is no surface: export the mesh again";
+  }
   const std::string size = "the mesh is " + short_number(extent) + " mm across";
   if (scale != 1.0) {
     return size + " after it was scaled by " + short_number(scale) +
@@ -124,8 +129,8 @@ std::string doubt_of_unit(const Mesh& mesh, double scale) {
     text += short_number(extent * guess.millimetres) + " mm across";
     joint = ", and in ";
   }
-  return text + ": give the unit of the file, for example --unit " + example + " or unit=\"" +
-         example + "\", unless all your lengths are in its unit";
+  return text + ": scale it to mm, or give the unit of the file, for example --unit " + example +
+         " or unit=\"" + example + "\", unless all your lengths are in its unit";
 }
 
 /// Returns true if the triangles of a closed surface face inward: its signed volume is below 0.

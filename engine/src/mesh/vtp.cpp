@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -164,8 +165,31 @@ std::vector<char> read_plain(ByteStream& stream, const VtpDocument& document, st
   return bytes;
 }
 
-/// Reads blocks of data, each compressed by zlib. Unpacks none if they have more than `most` bytes
-/// together, because a small file could then take all memory.
+/// Appends what a block unpacks to. Returns false unless these are `size` bytes. Takes memory as
+/// the data come: a false size alone takes none.
+bool unpack(std::vector<char>& block, std::uint64_t size, std::vector<char>& bytes) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+  stream.next_in = reinterpret_cast<Bytef*>(block.data());
+  stream.avail_in = static_cast<uInt>(block.size());
+  int status = Z_OK;
+  std::uint64_t left = size;
+  while (status == Z_OK) {
+    std::array<char, std::size_t{1} << 14> part;
+    stream.next_out = reinterpret_cast<Bytef*>(part.data());
+    stream.avail_out = part.size();
+    status = inflate(&stream, Z_NO_FLUSH);
+    const std::size_t got = part.size() - stream.avail_out;
+    if (got > left) break;
+    left -= got;
+    bytes.insert(bytes.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(got));
+  }
+  inflateEnd(&stream);
+  return status == Z_STREAM_END && left == 0;
+}
+
+/// Reads blocks of data, each compressed by zlib. Unpacks none if all have more than `most` bytes:
+/// a small file would take any memory.
 std::vector<char> read_compressed(ByteStream& stream, const VtpDocument& document,
                                   std::uint64_t most) {
   std::vector<char> bytes;
@@ -192,18 +216,12 @@ std::vector<char> read_compressed(ByteStream& stream, const VtpDocument& documen
   }
   std::vector<char> block;
   for (std::size_t b = 0; b < packed.size(); ++b) {
-    const std::uint64_t unpacked = unpacked_size(b);
     if (packed[b] > stream.left()) {
       stream.fail("block " + std::to_string(b) + " has an impossible size" + cut_short);
     }
     block.resize(static_cast<std::size_t>(packed[b]));
     stream.read(block.data(), block.size());
-    const std::size_t before = bytes.size();
-    bytes.resize(before + static_cast<std::size_t>(unpacked));
-    uLongf got = unpacked;
-    const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &got,
-                                  reinterpret_cast<const Bytef*>(block.data()), block.size());
-    if (status != Z_OK || got != unpacked) {
+    if (!unpack(block, unpacked_size(b), bytes)) {
       stream.fail("block " + std::to_string(b) + " cannot be unpacked" + cut_short);
     }
   }

@@ -180,6 +180,10 @@ class VtpListener {
     const std::string_view type = attribute(attributes, "type");
     VtpArray* const added = add_array(name, type);
     if (added == nullptr) return;
+    const std::string_view components = attribute(attributes, "NumberOfComponents");
+    if (parents_.back() == "Points" && !components.empty() && components != "3") {
+      fail("points have 3 components, not " + in_quotes(components) + "; check the export");
+    }
     VtpArray& array = *added;
     array.name = parents_.back() + " " + std::string(name);
     array.type = type;

@@ -24,10 +24,9 @@ TipGuides::TipGuides(std::vector<Guide> guides)
     const bool is_of_tip = guide.kind() == Guide::Kind::point && guide.link() == 0 &&
                            guide.first().position.isZero(0.0);
     if (is_of_tip) continue;
-    throw Error(
-        "guide '" + guide.name() +
-        "' belongs to a link of an instrument, and a tip has no links: use Guide::point(name, "
-        "region), or an InstrumentConstraint");
+    throw Error("guide '" + guide.name() +
+                "' is for a link of an instrument, which a tip has not: give the tip a guide of a "
+                "point without a link, or guard the whole instrument");
   }
 }
 

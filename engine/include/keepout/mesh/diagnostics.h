@@ -73,8 +73,12 @@ struct MeshFindings {
   /// region and the free space are swapped.
   bool is_inside_out() const noexcept { return is_watertight() && signed_volume < 0.0; }
 
-  /// Returns true if the extents are all below `meters_below`: too small for millimeters.
-  bool looks_like_meters() const noexcept { return bounds.size().maxCoeff() < meters_below; }
+  /// Returns true if the extents are all below `meters_below`, too small for millimeters, but the
+  /// mesh is not a point.
+  bool looks_like_meters() const noexcept {
+    const double extent = bounds.size().maxCoeff();
+    return extent > 0.0 && extent < meters_below;
+  }
 
   /// Returns true if an extent is above `micrometers_above`: too large for millimeters.
   bool looks_like_micrometers() const noexcept {

@@ -91,7 +91,7 @@ struct InstrumentCapacity {
   std::size_t planes = 128;                      // rows of a cycle
   /// Work units of a cycle, for all meshes; 0: the largest of the defaults of their indices.
   std::size_t work_units = 0;
-  [[deprecated("use work_units")]] std::size_t looks = 0;
+  [[deprecated("use work_units")]] std::size_t looks = 0;  // its former name
 };
 
 /// The table of these options.
@@ -108,9 +108,9 @@ inline constexpr std::array instrument_capacity_options{
 /// See table_of(const StepOptions&).
 constexpr const auto& table_of(const InstrumentCapacity&) { return instrument_capacity_options; }
 
-/// Returns a band for the curvature of every motion that the joint limits allow in a cycle of
-/// `period` > 0 seconds. It is an eighth of the largest second-derivative bound of any body's
-/// point, and at least `least`. Infinite without limits. [length]
+/// Returns a band that absorbs the curvature of every motion that the joint limits admit in a cycle
+/// of `period` > 0 seconds: an eighth of the largest second-derivative bound of any body's point,
+/// at least `least`. Infinite without limits. Throws Error for numbers out of range. [length]
 double recommended_band(const Instrument& instrument, double period, double least = 0.002);
 
 }  // namespace keepout
