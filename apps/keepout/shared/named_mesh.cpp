@@ -11,7 +11,7 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
-#include "keepout/mesh/doctor.h"
+#include "keepout/mesh/diagnostics.h"
 #include "keepout/option_table.h"
 #include "shared/names.h"
 #include "shared/progress.h"

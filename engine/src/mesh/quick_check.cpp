@@ -109,7 +109,7 @@ std::string short_number(double value) {
 /// What is odd about its size, which mostly tells of the unit; empty for one that organs have.
 std::string doubt_of_unit(const Mesh& mesh, double scale) {
   const double extent = mesh.bounds().size().maxCoeff();
-  if (extent >= MeshFindings::metres_below && extent <= MeshFindings::micrometres_above) return {};
+  if (extent >= MeshFindings::meters_below && extent <= MeshFindings::micrometers_above) return {};
   if (extent == 0.0) {
     return "all vertices coincide" +
            (scale == 1.0 ? std::string() : " after they were scaled by " + short_number(scale)) +

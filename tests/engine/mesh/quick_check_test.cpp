@@ -73,7 +73,7 @@ TEST(QuickCheck, OfVerticesThatCoincideNoUnitIsAskedFor) {
   const auto found = quick_check(point);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_CONTAINS(found[0], "all vertices coincide");
-  EXPECT_FALSE(examine(point).looks_like_metres());
+  EXPECT_FALSE(examine(point).looks_like_meters());
 }
 
 TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {
