@@ -15,62 +15,62 @@
 
 namespace keepout::app {
 
-// The smaller commands and their options. Each larger one has a folder.
+// The smaller commands and their options. Each larger command has a folder.
 
 struct InspectOptions {
   std::filesystem::path mesh;
   LoadOptions load = {};
   bool json = false;
-  bool self_intersections = false;  // costs seconds where the rest costs a fraction of one
-  std::optional<std::filesystem::path> page = {};  // of the mesh with its faults, to be written
+  bool self_intersections = false;  // takes seconds; the other checks take a fraction of a second
+  std::optional<std::filesystem::path> page = {};  // to write: the mesh and its faults
   std::string command = {};                        // the whole command line, for the page
 };
 
-/// Reads a mesh file and prints what it is made of, what is wrong with it and where, in words or as
-/// JSON. Throws Error if the file cannot be read or the page cannot be written; faults of the mesh
-/// are no error.
+/// Reads a mesh file and prints its contents, its faults and their places, as text or as JSON.
+/// Throws Error if the file cannot be read or the page cannot be written. Faults of the mesh are
+/// not an error.
 void inspect(const InspectOptions& options, std::ostream& out);
 
 struct DocsOptions {
-  std::string page;  // "serve" for serve.md; empty: all of them
+  std::string page;  // "serve" for serve.md; empty for all pages
 };
 
-/// Returns the names of the pages of documentation, sorted; none where there is no documentation.
+/// Returns the names of the documentation pages, sorted; empty if there is no documentation.
 std::vector<std::string> pages_of_docs();
 
-/// Prints where a page of the documentation is, or where all are, with their titles. Throws Error
-/// if there is no documentation.
+/// Prints the path of a documentation page, or the paths and titles of all pages. Throws Error if
+/// there is no documentation.
 void docs(const DocsOptions& options, std::ostream& out);
 
 struct ConvertOptions {
   std::filesystem::path input;   // a mesh
-  std::filesystem::path output;  // .stl or .ply, to be written
+  std::filesystem::path output;  // the file to write: .stl or .ply
   LoadOptions load = {};
   bool orient = false;  // see Orientation
 };
 
-/// Returns why no mesh can be written to a file of this name; empty if one can.
+/// Returns why a file of this name cannot be a mesh to write; empty if it can.
 std::string fault_of_output(const std::filesystem::path& output);
 
-/// Reads a mesh and writes it again: welded, without faulty triangles and, if asked for, oriented.
-/// Prints all that it changed, and what it could not decide. Throws Error, also if the output would
-/// overwrite the input, or if no triangle is left.
+/// Reads a mesh and writes it again: welded, without faulty triangles and, on request, oriented.
+/// Prints all changes, and the parts whose orientation it could not decide. Throws Error, also if
+/// the output would overwrite the input, or if no triangle is left.
 void convert(const ConvertOptions& options, std::ostream& out);
 
 struct RegisterOptions {
   std::filesystem::path fiducials = {};
-  LengthUnit unit = LengthUnit::millimetre;        // of what was measured
+  LengthUnit unit = LengthUnit::millimetre;        // of the measured points
   std::vector<double> targets = {};                // x, y, z of each, in the mesh [mm]
-  std::optional<double> fle = {};                  // fiducial localisation error [mm]
+  std::optional<double> fle = {};                  // fiducial localization error [mm]
   double confidence = 0.99;                        // of the margin
-  std::optional<std::filesystem::path> json = {};  // to be written
-  bool trusted_anyway = false;                     // doubts do not change the exit status
+  std::optional<std::filesystem::path> json = {};  // the file to write
+  bool trusted_anyway = false;                     // exit with success even if the fit is doubtful
 };
 
-/// Fits the points of a file and prints the matrix, what is left between the pairs, and by how much
-/// the registration is expected to be off at the targets. Prints a doubt about the fit on stderr
-/// first. Returns the exit status: failure if there is a doubt, unless it is trusted anyway. Throws
-/// Error, also when the file for JSON would overwrite the other.
+/// Fits the points of a file. Prints the matrix, the residuals of the pairs, and the expected error
+/// of the registration at the targets. Prints a doubt about the fit on stderr first. Returns the
+/// exit status: failure if there is a doubt, unless `trusted_anyway` is set. Throws Error, also if
+/// the JSON file would overwrite the input.
 int register_fiducials(const RegisterOptions& options, std::ostream& out);
 
 enum class Loop : std::uint8_t {
@@ -82,17 +82,17 @@ struct ReplayOptions {
   std::filesystem::path mesh;
   LoadOptions load = {};
   std::filesystem::path poses;
-  std::filesystem::path steps;                  // STEPS.csv, to be written
-  std::optional<std::filesystem::path> planes;  // PLANES.csv, to be written: all that were posed
+  std::filesystem::path steps;                  // STEPS.csv, the file to write
+  std::optional<std::filesystem::path> planes;  // PLANES.csv: all planes of each step
   MotionConstraintSettings constraint{.options = {.distances = Distances::always}};
-  std::vector<std::string> guides = {};  // texts, of the tip
+  std::vector<std::string> guides = {};  // texts of guides of the tip
   Loop loop = Loop::open;
-  double max_step = 1.0;  // longest increment asked for in a closed loop [mm]
+  double max_step = 1.0;  // longest desired increment in a closed loop [mm]
 };
 
-/// Runs one step for each line of a pose file and writes what came out. A summary goes to `out`. A
-/// StopSignal ends it early, and the steps that are finished are written. Returns the exit status.
-/// Throws Error, also when one file would overwrite another; then neither is written.
+/// Runs one step for each line of a pose file and writes the results. Prints a summary to `out`. A
+/// StopSignal ends the run early; the finished steps are written. Returns the exit status. Throws
+/// Error, also if one file would overwrite another; then it writes neither.
 int replay(const ReplayOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -26,15 +26,15 @@
 namespace keepout::app {
 namespace {
 
-/// A converted mesh, and what the conversion changed.
+/// A converted mesh, and the changes of the conversion.
 struct Conversion {
-  Surface surface;                              // to be written
-  std::optional<double> rounding = {};          // the farthest that a coordinate moved [mm]
+  Surface surface;                              // the surface to write
+  std::optional<double> rounding = {};          // the largest change of a coordinate [mm]
   RemovedTriangles removed = {};                // from the mesh
-  std::optional<Orientation> orientation = {};  // if asked for
+  std::optional<Orientation> orientation = {};  // if requested
 };
 
-/// Rounds coordinates to single precision, as STL has them. Returns the farthest that one moved.
+/// Rounds coordinates to the single precision of STL. Returns the largest change of a coordinate.
 double round_to_floats(Surface& surface) {
   double farthest = 0.0;
   for (Vec3& v : surface.vertices) {
@@ -45,8 +45,7 @@ double round_to_floats(Surface& surface) {
   return farthest;
 }
 
-/// Throws Error for a mesh of which no triangle is left: they were degenerate, or rounding has made
-/// them so.
+/// Throws Error for a mesh whose triangles were all degenerate, or became so by rounding.
 [[noreturn]] void refuse_as_empty(const ConvertOptions& options, const Mesh& mesh,
                                   std::optional<double> rounding) {
   Surface exact{{mesh.vertices().begin(), mesh.vertices().end()},
@@ -67,7 +66,7 @@ Conversion converted(const ConvertOptions& options, const Mesh& mesh) {
   result.surface.vertices.assign(mesh.vertices().begin(), mesh.vertices().end());
   result.surface.triangles.assign(mesh.triangles().begin(), mesh.triangles().end());
   if (lower_extension(options.output) == ".stl") {
-    // Before anything is decided: two vertices may become one, and a thin triangle degenerate.
+    // Rounding comes first: it can merge two vertices, or make a thin triangle degenerate.
     const double rounding = round_to_floats(result.surface);
     if (rounding > 0.0) result.rounding = rounding;
     result.surface = weld(std::move(result.surface));
@@ -78,7 +77,7 @@ Conversion converted(const ConvertOptions& options, const Mesh& mesh) {
   return result;
 }
 
-/// Throws Error if the format cannot hold the surface.
+/// Writes the surface. Throws Error if the format cannot represent it.
 void write(const ConvertOptions& options, const Surface& surface, AnatomicalSpace space,
            std::ostream& file) {
   try {
@@ -96,17 +95,18 @@ void print_removed(std::ostream& out, const RemovedTriangles& removed) {
   std::string text = counted(removed.degenerate, "degenerate triangle") + ", " +
                      counted(removed.duplicates, "duplicate triangle");
   if (removed.opposite_duplicates > 0) {
-    text += " (" + grouped(removed.opposite_duplicates) + " wound against the one that stays)";
+    text +=
+        " (" + grouped(removed.opposite_duplicates) + " wound opposite to the one that is kept)";
   }
   print_row(out, "dropped", text);
   if (removed.collinear_left > 0) {
     print_row(out, "left in",
               counted(removed.collinear_left, "triangle") +
-                  " without an area: neighbors would gape without them");
+                  " without area: removing them would leave gaps");
   }
 }
 
-/// Prints a row if there are parts of that kind.
+/// Prints a row if there are parts of this kind.
 void print_parts(std::ostream& out, std::string_view name, std::size_t count, std::string_view kind,
                  std::string_view words) {
   if (count > 0) print_row(out, name, counted(count, kind) + std::string(words));
@@ -185,7 +185,7 @@ void convert(const ConvertOptions& options, std::ostream& out) {
   write(options, result.surface, loaded.space, *outputs.stream("OUT"));
   outputs.commit();
   print_text(options, loaded, result, out);
-  out.flush();  // before stderr
+  out.flush();  // before the warnings on stderr
   for (const std::string& warning : quick_check(Mesh(result.surface))) {
     warn_on_stderr(options.output.string() + ": " + warning);
   }

@@ -35,8 +35,8 @@ void docs(const DocsOptions& options, std::ostream& out) {
   const std::filesystem::path folder = documentation_folder();
   if (folder.empty()) {
     throw Error(
-        "the documentation is neither installed beside this program nor in sources above "
-        "it: it is in the package keepout, and in the folder docs of the sources");
+        "the documentation is missing: it is installed with the package keepout, and is the folder "
+        "docs of the sources, but this program finds neither");
   }
   if (!options.page.empty()) {
     out << (folder / (options.page + ".md")).string() << '\n';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first page of ./run, which builds this program before the command: `keepout simulate MESH
-// --out REPORT.html`, from a third of the sources.
+// The program that makes the first report of ./run: `keepout simulate MESH --out REPORT.html`. It
+// needs a third of the sources, so ./run builds it before the complete command.
 //   keepout_first_page MESH REPORT.html
 #include <cstdlib>
 #include <exception>

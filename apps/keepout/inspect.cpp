@@ -27,7 +27,7 @@
 namespace keepout::app {
 namespace {
 
-// Places of each kind of fault, at most.
+// The most places of each kind of fault.
 constexpr std::size_t places_in_text = 3;
 constexpr std::size_t places_in_json = 10;
 constexpr std::size_t places_on_page = 2000;
@@ -43,7 +43,7 @@ Inspection examine_file(const InspectOptions& options) {
   const StopSignal stop({}, BeforeWork::ends_process);
   Inspection inspection;
   LoadOptions load = options.load;
-  load.check = MeshCheck::none;  // all that it would say, and more, is among the findings
+  load.check = MeshCheck::none;  // the findings contain all results of this check, and more
   inspection.loaded = read_named_mesh(options.mesh, load);
   const Mesh& mesh = *inspection.loaded.mesh;
   const std::size_t most = options.page ? places_on_page : places_in_json;
@@ -64,7 +64,7 @@ std::string triple(const Vec3& v, std::string_view between) {
   return text;
 }
 
-/// The unit that was asked for, or that is assumed, and the others that are plausible.
+/// Returns the unit that was requested or is assumed, and the other plausible units.
 std::string unit_text(const LoadOptions& load, double extent) {
   if (load.scale) return "mm, scaled by " + trimmed(*load.scale) + " as asked";
   if (!load.unit.empty()) return "mm, from a file in " + load.unit + " as asked";
@@ -78,7 +78,7 @@ std::string unit_text(const LoadOptions& load, double extent) {
   return text;
 }
 
-/// Which anatomical space, and how it is known.
+/// Returns the anatomical space, and how it is known.
 std::string space_text(const LoadedMesh& loaded) {
   std::string text(name(loaded.space));
   if (loaded.space == AnatomicalSpace::unstated) return text + ": RAS, LPS or any other";
@@ -87,7 +87,7 @@ std::string space_text(const LoadedMesh& loaded) {
   return text + ", turned from " + std::string(name(loaded.stated));
 }
 
-/// Returns one place of each of the first groups of faults, and how many groups there are beside.
+/// Returns one place of each of the first groups of faults, and the number of other groups.
 std::string where_text(const FaultPlaces& places) {
   std::string text;
   const std::size_t count = std::min({places_in_text, places.groups, places.places.size()});
@@ -99,7 +99,7 @@ std::string where_text(const FaultPlaces& places) {
   return more > 0 ? text + ", and in " + counted(more, "more place") : text;
 }
 
-/// As JSON has it: null where nothing is known.
+/// Returns the name for JSON; null if the space is unknown.
 Json or_null(AnatomicalSpace space) {
   if (space == AnatomicalSpace::unstated) return nullptr;
   return name(space);
@@ -149,7 +149,7 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// At most so many places, as JSON has them.
+/// Returns at most `most` places, for JSON.
 Json list_of(const FaultPlaces& places, std::size_t most) {
   Json list = Json::array();
   for (const FaultPlace& place : places.places) {
@@ -161,7 +161,7 @@ Json list_of(const FaultPlaces& places, std::size_t most) {
   return list;
 }
 
-/// All that was found, with at most so many places of each kind of fault.
+/// Returns all results, with at most `most_places` places of each kind of fault.
 Json members_of(const Inspection& inspection, std::size_t most_places) {
   const MeshFindings& mesh = inspection.mesh;
   const auto& crossings = inspection.self_intersections;
@@ -189,7 +189,7 @@ Json members_of(const Inspection& inspection, std::size_t most_places) {
             {"euler_characteristic", mesh.euler_characteristic},
             {"genus", or_null(mesh.genus)},
             {"area", mesh.area},
-            // Of an open surface it would depend on where the origin is.
+            // The volume of an open surface would depend on the position of the origin.
             {"signed_volume", mesh.is_watertight() ? Json(mesh.signed_volume) : nullptr},
             {"bounds", {{"low", json_of(mesh.bounds.low)}, {"high", json_of(mesh.bounds.high)}}},
             {"self_intersections", crossings ? Json(crossings->pairs) : Json(nullptr)},
@@ -217,11 +217,11 @@ Json members_of(const Inspection& inspection, std::size_t most_places) {
 void print_json(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
   Json json{{"mesh", options.mesh.string()}};
   json.update(members_of(inspection, places_in_json));
-  // A file name need not be UTF-8, and JSON must.
+  // A file name may be invalid UTF-8, which JSON does not allow.
   out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
-/// "2 boundary edges, 1 degenerate triangle, inside out".
+/// Returns a headline, such as "2 boundary edges, 1 degenerate triangle, inside out".
 std::string headline_of(const std::string& mesh, const Inspection& inspection) {
   std::string text;
   for (const Finding& finding : inspection.findings) {
@@ -233,7 +233,7 @@ std::string headline_of(const std::string& mesh, const Inspection& inspection) {
   return mesh + ": " + (text.empty() ? "no faults were found" : text) + ".";
 }
 
-/// The record of the page: docs/records.md.
+/// Returns the record of the page: see docs/records.md.
 Json record_of(const InspectOptions& options, const Inspection& inspection) {
   const std::string name = options.mesh.filename().string();
   Json record = new_record({.kind = "inspect",
@@ -246,7 +246,7 @@ Json record_of(const InspectOptions& options, const Inspection& inspection) {
   return record;
 }
 
-/// Returns what the page shows, before its name.
+/// Returns the text that precedes the file name of the page.
 std::string page_text(const Json& record, const Inspection& inspection) {
   if (!missing_template(record).empty()) return "Page, with tables, no pictures: ";
   const auto is_marked = [](const Finding& finding) { return finding.places.groups > 0; };

@@ -12,8 +12,8 @@
 
 namespace {
 
-/// Returns the first argument that is no option of the program itself; empty if there is none, or
-/// if words are to be completed.
+/// Commands that compare belong to another program, keepout-bench, which links planners and other
+/// libraries. It is optional, and installed beside this program.
 std::string_view word_of(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "--complete") return {};
   for (int i = 1; i < argc; ++i) {
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
     std::error_code error;
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
     execv((self.parent_path() / "keepout-bench").c_str(), argv);
-    // It is not there.
+    // keepout-bench is not installed here.
     if (word == "bench" || word == "compare" || word == "plan" || times_parts) {
       std::cerr << "keepout: '" << (times_parts ? "simulate --bench" : word)
                 << "' needs the program keepout-bench beside this one: install the package of that "

@@ -78,7 +78,7 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
                           : " If the measured ones are in meters, give --measured-in m";
   }
   if (doubt.empty() && options.fle) doubt = fit.doubt_of(*options.fle);
-  if (!doubt.empty()) std::cerr << "keepout: do not trust it: " << doubt << '\n';
+  if (!doubt.empty()) std::cerr << "keepout: do not trust this registration: " << doubt << '\n';
   const double largest = std::ranges::max(fit.residuals);
   std::vector<PairRow> rows;
   for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
@@ -103,13 +103,13 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
     out << formatted("%16.12f%16.12f%16.12f%18.9f\n", m(i, 0), m(i, 1), m(i, 2), m(i, 3));
     json["mesh_from_robot"].push_back({m(i, 0), m(i, 1), m(i, 2), m(i, 3)});
   }
-  out << "\nWhat is left between the " << counted(rows.size(), "pair") << '\n';
+  out << "\nResiduals of the " << counted(rows.size(), "pair") << '\n';
   print_rows(out, pair_columns, rows);
   const double fle = options.fle.value_or(fit.estimated_fle());
   out << formatted("\nFRE %.4f mm%s; FLE %.4f mm, ", fit.fre,
                    pairs.weights.empty() ? "" : " by weight", fle)
-      << (options.fle ? formatted("as told (the FRE lets expect %.4f)\n", fit.estimated_fle())
-                      : "estimated from it\n");
+      << (options.fle ? formatted("as given (the FRE suggests %.4f)\n", fit.estimated_fle())
+                      : "estimated from the FRE\n");
   json.update({{"pairs", json_of(pair_columns, rows)},
                {"fre", fit.fre},
                {"fle", fle},
@@ -120,11 +120,11 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
                {"targets", json_of(target_columns, targets)},
                {"margin", places.empty() ? Json(nullptr) : Json(margin_of(places))}});
   if (places.empty()) {
-    out << "No margin: say where in the mesh the tool works, with --target X Y Z.\n";
+    out << "No margin: give the places in the mesh where the tool works, with --target X Y Z.\n";
   } else {
     print_rows(out, target_columns, targets);
     out << formatted(
-        "Add %.4f mm to a guard's margin: so far off, at most, is the registration%s,\nwith a "
+        "Add %.4f mm to a guard's margin: the registration error%s is no larger,\nwith a "
         "probability of %g.\n",
         json["margin"].get<double>(), places.size() == 1 ? " there" : " at all of them and between",
         options.confidence);

@@ -26,7 +26,7 @@ namespace {
 void add_inspect(CLI::App& app, InspectOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "inspect",
-      "Say what a mesh is made of, what is wrong with it and where: counts, holes, winding, "
+      "Report the contents and the faults of a mesh, with their places: counts, holes, winding, "
       "degenerate and duplicate triangles, size, unit and anatomical space");
   add_mesh(command, options.mesh);
   add_load_options(command, options.load);
@@ -43,7 +43,7 @@ void add_convert(CLI::App& app, ConvertOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "convert",
       "Write a mesh again as binary STL or PLY: welded, without degenerate and duplicate "
-      "triangles, and, if asked for, in another space, unit or orientation; say what changed");
+      "triangles, and on request in another space, unit or orientation; report the changes");
   command.add_option("IN", options.input, std::string(mesh_help))->type_name("")->required();
   command
       .add_option("OUT", options.output,
@@ -54,33 +54,32 @@ void add_convert(CLI::App& app, ConvertOptions& options) {
       ->check(CLI::Validator([](const std::string& path) { return fault_of_output(path); }, ""));
   add_load_options(command, options.load);
   command.add_flag("--orient", options.orient,
-                   "Turn triangles so that neighbors agree and closed parts face outward; say "
-                   "where that cannot be decided");
+                   "Turn triangles so that neighbors agree and closed parts face outward; report "
+                   "the parts for which this cannot be decided");
 }
 
 void add_docs(CLI::App& app, DocsOptions& options) {
-  CLI::App& command = *app.add_subcommand("docs", "Say where the pages of the documentation are");
+  CLI::App& command = *app.add_subcommand("docs", "Print where the pages of the documentation are");
   CLI::Option* page = command.add_option("PAGE", options.page, "The page to find");
   page->type_name("");
   if (const auto pages = pages_of_docs(); !pages.empty()) page->check(one_of(pages));
 }
 
 void add_register(CLI::App& app, RegisterOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "register",
-      "Find where the mesh is in the robot's frame, from points that are known in both, and by how "
-      "much that may be off where the tool works");
+  CLI::App& command =
+      *app.add_subcommand("register",
+                          "Compute the pose of the mesh in the robot's frame from points that are "
+                          "known in both, and the expected error where the tool works");
   command
       .add_option("FILE", options.fiducials,
-                  "One pair a line, 'measured x,y,z, model x,y,z' and, if wanted, a weight; the "
+                  "One pair a line, 'measured x,y,z, model x,y,z' and optionally a weight; the "
                   "first line may be a header")
       ->type_name("")
       ->required();
   command
-      .add_option(
-          "--measured-in", options.unit,
-          "Unit of what was measured, which is also that of the robot's poses; the model is "
-          "in mm")
+      .add_option("--measured-in", options.unit,
+                  "Unit of the measured points, which is also that of the robot's poses; the model "
+                  "is in mm")
       ->transform(one_of<LengthUnit>({{"mm", LengthUnit::millimetre}, {"m", LengthUnit::metre}}))
       ->default_str("mm");
   command
@@ -92,18 +91,18 @@ void add_register(CLI::App& app, RegisterOptions& options) {
       ->check(number_within(-1e6, 1e6, "a number from -1e6 to 1e6", "MM"));
   command
       .add_option("--fle", options.fle,
-                  "Localisation error of a pair, root mean square; by default estimated from what "
-                  "is left between the pairs")
+                  "Fiducial localization error (FLE), root mean square; by default estimated from "
+                  "the residuals of the pairs")
       ->type_name("MM")
       ->check(length(Zero::refused));
-  command.add_option("--confidence", options.confidence, "Probability with which the margin holds")
+  command
+      .add_option("--confidence", options.confidence, "Probability that the margin is sufficient")
       ->check(number_within(0.01, 0.9999, "a probability from 0.01 to 0.9999", "PROBABILITY"))
       ->capture_default_str();
   command.add_option("--json", options.json, "Where to write the results as JSON")
       ->type_name("FILE.json");
-  command.add_flag(
-      "--anyway", options.trusted_anyway,
-      "End with exit status 0 even if the points say that the fit is not to be trusted");
+  command.add_flag("--anyway", options.trusted_anyway,
+                   "Exit with status 0 even if the fit is doubtful");
 }
 
 void add_replay(CLI::App& app, ReplayOptions& options) {
@@ -121,7 +120,7 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
       ->required();
   command
       .add_option("--planes", options.planes,
-                  "Where to write all planes that were posed, whether or not they limited the step")
+                  "Where to write all planes of each step, whether or not they limited it")
       ->type_name("PLANES.csv");
   add_activation(command, options.constraint.activation);
   add_constraint_options(command, options.constraint);
@@ -130,19 +129,17 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
   command.final_callback([&options] { guides_of(options.guides, Guided::tip); });
   CLI::Option* closed = command.add_flag_callback(
       "--closed-loop", [&options] { options.loop = Loop::closed; },
-      "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at the first line's "
-      "r, each step desires goal minus tip, and the tip follows what was solved");
+      "Lines are 'gx gy gz rx ry rz', goal and reset position: the tip starts at r of the first "
+      "line, the desired increment is goal minus tip, and the tip follows the solved increments");
   add_length(command, "--max-step", options.max_step, Zero::refused,
-             "Longest increment to desire in a closed loop")
+             "Longest desired increment in a closed loop")
       ->needs(closed);
   command.footer([] {
     return "STEPS.csv: step, status, tip, desired increment, solved increment (u), triangles in "
-           "reach,\n"
-           "planes, what each stage took, and how far the tip was from the surface before the "
-           "step; "
-           "empty "
-           "where\nthe step is invalid_input. PLANES.csv: allowed are all u with normal . u >= "
-           "offset.\nCtrl-C ends it early and keeps the steps that are finished.\n\n" +
+           "reach,\nplanes, the time of each stage, and the distance of the tip from the surface "
+           "before the step, which is\nempty if the step is invalid_input. PLANES.csv: the allowed "
+           "u satisfy normal . u >= offset.\nCtrl-C ends the run early and writes the finished "
+           "steps.\n\n" +
            listing("Rules", activation_rules()) + listing("Indices", index_backends()) +
            listing("Solvers", solver_backends());
   });
@@ -151,43 +148,41 @@ void add_replay(CLI::App& app, ReplayOptions& options) {
 void add_simulate(CLI::App& app, SimulateOptions& options) {
   CLI::App& command = *app.add_subcommand(
       "simulate",
-      "Push a tool over and into the anatomy with a simulated operator, without a fixture "
-      "and with each rule, and write an HTML report with pictures");
-  command.add_option("MESH", options.meshes, std::string(mesh_help) + "; with --robot several")
+      "Push a tool over and into the anatomy with a simulated operator, without a guard and with "
+      "each rule, and write an HTML report with pictures");
+  command.add_option("MESH", options.meshes, std::string(mesh_help) + "; several with --robot")
       ->type_name("");
   add_load_options(command, options.load);
   options.files.add_to(command);
-  command.add_option("--activation", options.rules, "Rules to run beside the unguarded tool")
+  command.add_option("--activation", options.rules, "Rules to run, besides the unguarded tool")
       ->check(one_of(names(activation_rules())))
       ->delimiter(',')
       ->capture_default_str();
   if (options.time_parts) {
-    command.add_flag(
-        "--bench", options.is_timing_parts,
-        "Then time indices, rules and solvers side by side on this mesh, into the same report: a "
-        "quick 'keepout bench'");
+    command.add_flag("--bench", options.is_timing_parts,
+                     "Also time indices, rules and solvers on this mesh, for the same report: a "
+                     "quick 'keepout bench'");
   }
   command.add_flag("--verbose", options.is_verbose, "Print the tables of --bench as well");
   add_constraint_options(command, options.constraint);
   add_convex_tool(command, options.constraint);
   add_length(command, "--max-step", options.max_step, Zero::refused,
-             "Longest increment to desire in a cycle");
+             "Longest desired increment in a cycle");
   add_number(command, "--seed", options.strokes.seed, 0, largest_seed,
-             "Seed of the operator: same seed, same motion");
+             "Seed of the operator: the same seed gives the same motion");
   add_number(command, "--strokes", options.strokes.count, 1, 100'000,
-             "How often the operator goes in");
+             "Number of strokes of the operator");
   add_number(command, "--cycles", options.strokes.cycles, 10, 1'000'000,
              "Control cycles of each stroke, at 1 kHz");
   CLI::Option* const robot =
       command
           .add_option(
               "--robot", options.robot,
-              "Drive the instrument of a robot instead: shaft, wrist and jaw, guarded in "
-              "joint space, in part, and not at all; without MESH on skull, airway and brain")
+              "Drive the instrument of a robot instead: shaft, wrist and jaw, guarded in joint "
+              "space, guarded in part, and unguarded; without MESH on skull, airway and brain")
           ->check(one_of({"psm"}));
   command
-      .add_option("--speed", options.speeds,
-                  "How fast, in multiples of 0.5 mm and 0.02 rad a cycle")
+      .add_option("--speed", options.speeds, "Speeds, in multiples of 0.5 mm and 0.02 rad a cycle")
       ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
       ->delimiter(',')
       ->capture_default_str()
@@ -206,23 +201,22 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
   for (const auto& option : step_options) {
     if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
   }
-  command.footer("Ctrl-C ends it early and keeps the strokes that are finished.");
+  command.footer("Ctrl-C ends the run early and reports the finished strokes.");
   command.final_callback([&options] {
     guides_of(options.guides, options.robot.empty() ? Guided::tip : Guided::instrument);
     if (options.constraint.tool) options.rules = {options.constraint.activation};
     if (!options.robot.empty()) return;
     if (options.meshes.empty()) throw CLI::RequiredError("MESH");
     if (options.meshes.size() > 1) {
-      throw CLI::ValidationError("MESH", "is one, not several, but with --robot");
+      throw CLI::ValidationError("MESH", "must be one mesh; only --robot takes several");
     }
   });
 }
 
 void add_serve(CLI::App& app, ServeOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "serve",
-      "Answer requests of other programs, one JSON object a line, on stdin and stdout or on a "
-      "Unix socket");
+  CLI::App& command = *app.add_subcommand("serve",
+                                          "Answer requests of other programs, one JSON object a "
+                                          "line, on stdin and stdout or on a Unix socket");
   ServiceSettings& service = options.service;
   add_mesh(command, service.mesh);
   add_load_options(command, options.load);
@@ -230,13 +224,13 @@ void add_serve(CLI::App& app, ServeOptions& options) {
       command.add_option("--socket", options.socket, "Listen at this path instead of stdin")
           ->type_name("PATH");
   add_number(command, "--max-clients", options.most_clients, 1, 256,
-             "Clients of the socket at a time")
+             "Most clients of the socket at a time")
       ->needs(socket);
   add_number(command, "--max-line", service.longest_line, 256, std::uint64_t{1} << 24,
              "Longest request")
       ->type_name("BYTES");
-  add_number(command, "--joints", service.limits.joints, 1, 64, "Columns of a Jacobian, at most");
-  add_number(command, "--rows", service.limits.rows, 0, 1024, "Rows of a request's own, at most");
+  add_number(command, "--joints", service.limits.joints, 1, 64, "Most columns of a Jacobian");
+  add_number(command, "--rows", service.limits.rows, 0, 1024, "Most rows of a request");
   add_activation(command, service.constraint.activation);
   add_constraint_options(command, service.constraint);
   add_convex_tool(command, service.constraint);

@@ -74,7 +74,7 @@ TEST(Convert, FaultyTrianglesAreDroppedAndVerticesWelded) {
   EXPECT_CONTAINS(outcome.output, "triangles     15 in, 12 out");
   EXPECT_CONTAINS(outcome.output, "vertices      9 in, 8 out");
   EXPECT_CONTAINS(outcome.output,
-                  "1 degenerate triangle, 2 duplicate triangles (1 wound against the one");
+                  "1 degenerate triangle, 2 duplicate triangles (1 wound opposite to the one");
   const MeshFindings found = examine(*load(folder.file("out.ply")).mesh);
   EXPECT_TRUE(found.is_watertight());
   EXPECT_EQ(found.duplicate_triangles + found.degenerate_triangles(), 0u);

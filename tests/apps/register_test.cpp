@@ -34,7 +34,7 @@ TEST_F(Register, TellsMatrixWorstPairErrorAndMarginAndWritesThem) {
   const std::filesystem::path path = folder.path() / "out.json";
   const std::string printed =
       text({.targets = {20, 0, 40, -10, 30, 50}, .fle = 0.5, .confidence = 0.95, .json = path});
-  for (const char* words : {"4 pairs", "FRE 0.1", "FLE 0.5000 mm, as told", "20, 0, 40",
+  for (const char* words : {"4 pairs", "FRE 0.1", "FLE 0.5000 mm, as given", "20, 0, 40",
                             "-10, 30, 50", "at all of them and between", "probability of 0.95"}) {
     EXPECT_CONTAINS(printed, words) << words;
   }
@@ -57,8 +57,8 @@ TEST_F(Register, TellsMatrixWorstPairErrorAndMarginAndWritesThem) {
 
 TEST_F(Register, DoubtsAWrongUnitOnStderrAndFailsUnlessItIsTrustedAnyway) {
   const std::string printed = text({.unit = LengthUnit::metre});
-  EXPECT_TRUE(
-      doubt.starts_with("keepout: do not trust it: the model's points are spread 0.001 times"))
+  EXPECT_TRUE(doubt.starts_with(
+      "keepout: do not trust this registration: the model's points are spread 0.001 times"))
       << doubt;
   EXPECT_CONTAINS(doubt, "If the measured ones are in mm, leave out --measured-in m");
   EXPECT_EQ(status, EXIT_FAILURE);

@@ -20,7 +20,7 @@ keepout = os.environ["KEEPOUT_COMMAND"]
 root = Path(__file__).parents[2]
 patience = 120  # on a busy machine [s]
 soon = 5  # within a second, if nothing else keeps the machine busy [s]
-stopping = "keepout: stopping; what is finished is kept. The same signal again ends it at once.\n"
+stopping = "keepout: stopping and writing the finished results. Repeat the signal to end at once.\n"
 
 
 def start(folder, *arguments, **environment):
@@ -252,7 +252,7 @@ def test_a_result_that_cannot_be_written_does_not_take_the_others_with_it(tmp_pa
     done = subprocess.run(["bash", "-c", f"{limit}'{keepout}' {line}"], cwd=tmp_path, capture_output=True, text=True,
                           timeout=patience, check=False)
     assert done.returncode == 1
-    assert (f"keepout: {lost}: could not be written to the end; is the disk full? (written all the same: {kept})\n"
+    assert (f"keepout: {lost}: could not be written to the end; is the disk full? (these were written: {kept})\n"
             in done.stderr)
     assert "No breach" in done.stderr or "verify" not in line
     text = (tmp_path / kept).read_text()

@@ -26,9 +26,9 @@ TEST(Usage, TheExitStatusSaysWhatKindOfEndItWas) {
   EXPECT_EQ(folder.run("--help").status, 0);
   EXPECT_EQ(folder.run("inspect no_such_mesh").status, 1);
   EXPECT_EQ(folder.run("inspect").status, 2);  // 130: verify_command_test.cpp
-  for (const char* status : {"0 if all went well", "1 if something failed",
+  for (const char* status : {"0 on success", "1 if something failed",
                              "2 if the command line is wrong", "130 if it was interrupted",
-                             "bench, compare, plan, replay, simulate\nand verify then keep"}) {
+                             "bench, compare, plan, replay, simulate\nand verify then write"}) {
     EXPECT_CONTAINS(folder.run("--help").output, status) << status;
   }
 }

@@ -31,7 +31,7 @@ bool open_in_browser(const std::string& url) {
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&actions);
   posix_spawnattr_init(&attributes);
-  // What a browser says belongs to no terminal, and Ctrl-C here is not meant for it.
+  // A separate session without a terminal: the browser's output and Ctrl-C do not mix with ours.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
   }

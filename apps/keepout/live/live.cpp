@@ -33,14 +33,14 @@ namespace {
 
 constexpr std::string_view no_fixture = "none";
 
-/// A mesh in the page: what the page is told of it, and the mesh itself.
+/// A mesh in the page: the facts that the page reads, and the packed mesh.
 struct Anatomy {
   Json facts;
   std::string text;  // gzipped, in base64
 };
 
-/// What is wrong with the settings on this mesh, and what should be known, is told here, and not
-/// by the page: the constraint itself is not kept. `start`: where an instrument begins.
+/// Returns warnings about the mesh, and about the settings on it. Builds the constraint only to
+/// collect its warnings. `start`: the start of an instrument, if there is one.
 std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions& options,
                                      const std::optional<RobotStart>& start) {
   std::vector<std::string> warnings = loaded.notices;
@@ -57,13 +57,14 @@ std::vector<std::string> warnings_of(const LoadedMesh& loaded, const LiveOptions
     return warnings;
   }
   MotionConstraintSettings settings = options.constraint;
-  if (settings.activation == no_fixture) settings.activation = "all_faces";  // which asks for least
+  // The rule with the fewest requirements.
+  if (settings.activation == no_fixture) settings.activation = "all_faces";
   settings.warn = warn;
   make_motion_constraint(loaded.mesh, settings).set_guides(guides_of(options.guides, Guided::tip));
   return warnings;
 }
 
-/// Where an instrument begins: link 0, its place and the rows of its rotation, and the joints.
+/// Returns the start of an instrument: position and rotation rows of link 0, and the joints.
 Json record_of(const RobotStart& start) {
   Json base = Json::array();
   for (const double x : start.base.position) base.push_back(x);
@@ -75,9 +76,10 @@ Json record_of(const RobotStart& start) {
 
 constexpr std::uint64_t starts_tried = 64;
 
-/// Returns the start of an instrument before a mesh, all of it farther away than the margin. The
-/// start is drawn as campaigns draw it, if possible with the port outside of the mesh's box, where
-/// people put it. The same on every run. Throws Error, naming the mesh, if there is no room. [mm]
+/// Returns the start of an instrument before a mesh; all of it is farther away than the margin.
+/// Draws the start as campaigns do, if possible with the port outside the mesh's box, as in
+/// practice. Returns the same start on every run. Throws Error with the mesh's name if no start is
+/// found. [mm]
 RobotStart instrument_start(const std::string& mesh_name, const std::shared_ptr<const Mesh>& mesh,
                             const RobotUnderTest& robot, double margin) {
   Scene scene(mesh_name, mesh, "wide_bvh");
@@ -86,7 +88,7 @@ RobotStart instrument_start(const std::string& mesh_name, const std::shared_ptr<
   for (std::uint64_t seed = 1; seed <= starts_tried; ++seed) {
     Random random(seed);
     auto start = find_start(scene, robot, Begin::apart, margin, random);
-    if (!start) break;  // none of thousands of places has room
+    if (!start) break;  // thousands of drawn places were too narrow
     const Vec3& port = start->base.position;
     if ((port.array() < box.low.array()).any() || (port.array() > box.high.array()).any()) {
       return *start;
@@ -95,7 +97,7 @@ RobotStart instrument_start(const std::string& mesh_name, const std::shared_ptr<
   }
   if (!first) {
     throw Error(mesh_name + ": there is no room for the instrument of '" + std::string(robot.name) +
-                "' before its surface: lower --margin");
+                "' in front of its surface: lower --margin");
   }
   return *first;
 }
@@ -117,15 +119,15 @@ Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options
                   .text = to_base64(gzipped(bytes.bytes))};
   if (start) {
     anatomy.facts["start"] = record_of(*start);
-    // What a cache calls the index of a mesh is the digest of the mesh.
+    // The cache names the index of a mesh by the digest of the mesh.
     anatomy.facts["digest"] = index_cache_file(*loaded.mesh, {}).stem().string();
   }
   return anatomy;
 }
 
-/// As it may stand in a script element: nothing in it is read as the element's end.
+/// Returns the JSON for a script element: no text in it can end the element.
 std::string in_script(const Json& json) {
-  // A file name need not be UTF-8, and JSON must.
+  // A file name may be invalid UTF-8, which JSON does not allow.
   const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string safe;
   for (const char c : text) safe += c == '<' ? std::string("\\u003c") : std::string(1, c);
@@ -154,28 +156,28 @@ void write_anatomy(std::ostream& page, const LiveOptions& options,
   }
 }
 
-/// The last lines on the terminal.
+/// Prints the last lines on the terminal.
 void print_page(std::ostream& out, const LiveOptions& options, const std::string& url,
                 std::uintmax_t size, bool opened) {
   out << options.page.string() << ", " << formatted("%.1f MB", 1e-6 * static_cast<double>(size))
-      << (opened ? ", is being opened in a browser; by hand:" : "; open it in a browser:") << "\n  "
-      << url << '\n'
+      << (opened ? ", is being opened in a browser; or open it yourself:"
+                 : "; open it in a browser:")
+      << "\n  " << url << '\n'
       << (options.robot.empty()
-              ? "Drag the red ball, which is the hand, into the anatomy: the blue ball is the "
-                "tool, "
-                "which goes\nas far as keepout lets it."
+              ? "Drag the red ball, the commanded position, into the anatomy: the blue ball is the "
+                "tool, which\nfollows as far as keepout allows."
               : "Drag the jaw into the anatomy: the instrument follows as far as keepout proves "
-                "that shaft,\nwrist and jaw keep clear.")
-      << " Drag beside it to turn, and use the wheel to zoom.\n";
+                "that shaft,\nwrist and jaw maintain their clearance.")
+      << " Drag elsewhere to turn the view, and use the wheel to zoom.\n";
 }
 
 }  // namespace
 
 void add_live(CLI::App& app, LiveOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "live",
-      "Make a page in which you drag the tool over the anatomy, with keepout itself in it, and "
-      "open it in the browser");
+  CLI::App& command =
+      *app.add_subcommand("live",
+                          "Make a page that contains keepout and a mesh, in which you drag the "
+                          "tool over the anatomy, and open it in the browser");
   command.add_option("MESH", options.meshes, std::string(mesh_help) + "; several to choose from")
       ->type_name("")
       ->capture_default_str();
@@ -189,33 +191,34 @@ void add_live(CLI::App& app, LiveOptions& options) {
       ->type_name("PAGE.html")
       ->capture_default_str();
   command.add_flag_callback(
-      "--no-open", [&options] { options.opening = Opening::by_hand; }, "Write it only");
+      "--no-open", [&options] { options.opening = Opening::by_hand; },
+      "Do not open the page in a browser");
   std::vector<std::string> rules = names(activation_rules());
   rules.emplace_back(no_fixture);
   add_name(command, "--activation", options.constraint.activation, std::move(rules),
-           "Rule that chooses the planes; none: no fixture")
+           "Rule that chooses the planes; none: unguarded")
       ->excludes(robot);
   StepOptions& step = options.constraint.options;
   add_option_of(command, "tool_radius", step)->excludes(robot);
   add_option_of(command, "margin", step);
   add_option_of(command, "radius", step)->excludes(robot);
   add_length(command, "--max-step", options.max_step, Zero::refused,
-             "Longest way of the tool in a cycle of 1 ms");
+             "Longest motion of the tool in a cycle of 1 ms");
   add_guides(command, options.guides);
   command.final_callback([&options] {
     guides_of(options.guides, options.robot.empty() ? Guided::tip : Guided::instrument);
   });
   command.footer(
-      "What these set, the page begins with; there they are changed while the tool moves.\n"
-      "The page is one file that needs no server and no network, and holds the meshes: pass it on "
-      "as you\nmay pass these on.");
+      "These options set the initial values of the page; there you can change them while the tool "
+      "moves.\nThe page is one file that needs no server and no network. It contains the meshes: "
+      "share it only if\nyou may share them.");
 }
 
 void live(const LiveOptions& options, std::ostream& out) {
   if (options.robot.empty())
     require_within_reach(options.max_step, options.constraint.options.radius);
   const std::filesystem::path template_file = page_template_file("live.html");
-  std::vector<NamedPath> inputs{{"the page without an anatomy", template_file}};
+  std::vector<NamedPath> inputs{{"the page template", template_file}};
   for (const std::filesystem::path& mesh : options.meshes) {
     inputs.push_back({"MESH", file_of_mesh(mesh)});
   }
@@ -236,7 +239,7 @@ void live(const LiveOptions& options, std::ostream& out) {
   write_anatomy(page, options, anatomy);
   page << parts.after;
   outputs.commit();
-  if (entry_of_open_file(options.page)) return;  // no browser can open it
+  if (entry_of_open_file(options.page)) return;  // a browser cannot open it
   const std::string url = file_url(options.page);
   const bool opened = options.opening == Opening::by_the_desktop && open_in_browser(url);
   print_page(out, options, url, std::filesystem::file_size(options.page), opened);

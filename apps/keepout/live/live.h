@@ -16,27 +16,27 @@ class App;
 
 namespace keepout::app {
 
-/// Who opens the page.
+/// The opener of the page: the desktop or the user.
 enum class Opening : std::uint8_t { by_the_desktop, by_hand };
 
 struct LiveOptions {
-  std::string robot = {};  // whose instrument is dragged; empty: a ball
+  std::string robot = {};  // the robot whose instrument is dragged; empty: a ball
   std::vector<std::filesystem::path> meshes{"skull"};
   LoadOptions load = {};
-  std::filesystem::path page = "keepout-live.html";  // to be written
+  std::filesystem::path page = "keepout-live.html";  // the file to write
   MotionConstraintSettings constraint = {
-      .options = {.tool_radius = 3.0}};  // that the page begins with
-  std::vector<std::string> guides = {};  // texts, that the page begins with
-  double max_step = 0.5;                 // longest way of the tool in a cycle [mm]
+      .options = {.tool_radius = 3.0}};  // initial values of the page
+  std::vector<std::string> guides = {};  // initial guides of the page, as texts
+  double max_step = 0.5;                 // longest motion of the tool in a cycle [mm]
   Opening opening = Opening::by_the_desktop;
 };
 
 /// Adds `keepout live` and its options to the command line.
 void add_live(CLI::App& app, LiveOptions& options);
 
-/// Writes a page in which one drags the tool over the meshes, with keepout itself in it, and opens
-/// it. Where it is goes to `out`. Throws Error, also when the page would overwrite a mesh; then
-/// none is written.
+/// Writes a page that contains keepout and the meshes, in which the user drags the tool over them.
+/// Opens the page, and prints its path to `out`. Throws Error, also if the page would overwrite a
+/// mesh; then it writes nothing.
 void live(const LiveOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

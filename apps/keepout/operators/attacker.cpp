@@ -49,7 +49,7 @@ void Attacker::look(const Vec3& at) {
       closest.distance > 0.0 ? Vec3(closest.offset / closest.distance) : random_->direction();
 }
 
-/// Returns a corner of the nearest triangle, the middle of an edge, or the center.
+/// Returns a corner, the middle of an edge or the center of the nearest triangle.
 Vec3 Attacker::target_on_triangle() const {
   const Triangle c = scene_->mesh()->triangle(triangle_);
   const std::size_t corner = random_->below(3), kind = random_->below(5);
@@ -71,7 +71,7 @@ Twist Attacker::wish(const Vec3& at, bool is_turn) {
       return {.linear = kept_ * std::pow(10.0, random_->uniform(-3.0, 1.0)) * random_->direction()};
     case Route::aim:
       if (cycle_ % attention_ == 0) goal_ = target_on_triangle();
-      // Beyond it, or short of it.
+      // The motion may overshoot the goal or fall short of it.
       return {.linear = random_->uniform(0.5, 2.0) * (goal_ - at)};
     case Route::ping_pong:
       if (cycle_ == 0) heading_ = inwards_;

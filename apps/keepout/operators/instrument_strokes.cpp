@@ -13,17 +13,17 @@ namespace keepout::app {
 namespace {
 
 constexpr double pass_lasts = 400.0;  // at speed 1 [cycles]
-constexpr int starts_to_lean = 12;    // of which the best is taken
+constexpr int starts_to_lean = 12;    // the best of these is used
 
-/// A place on an instrument, and the direction and distance to the surface.
+/// A place on an instrument, with the direction and the distance to the surface.
 struct Facing {
   Vec3 at = Vec3::Zero();
-  Vec3 inwards = Vec3::UnitZ();                               // unit, to the surface
+  Vec3 inwards = Vec3::UnitZ();                               // unit vector to the surface
   double distance = std::numeric_limits<double>::infinity();  // [mm]
 };
 
-/// Returns the one nearest to the surface, of places on a part of a body's axis, from one fraction
-/// of it to another.
+/// Returns the place on a part of a body's axis that is nearest to the surface. `from` and `to`:
+/// fractions of the axis.
 Facing facing(Scene& scene, const oracle::Segment& axis, double from, double to) {
   constexpr int places = 24;
   Facing best;
@@ -37,13 +37,13 @@ Facing facing(Scene& scene, const oracle::Segment& axis, double from, double to)
   return best;
 }
 
-/// Once in and back.
+/// One motion in and back.
 struct Pass {
   double depth = 0.0;            // below the surface [mm]
-  double slide = 0.0;            // along it, to and fro [mm]
-  Vec3 heading = Vec3::UnitX();  // of that, unit
+  double slide = 0.0;            // along the surface, to and fro [mm]
+  Vec3 heading = Vec3::UnitX();  // of the slide, unit
   double turn = 0.0;             // to and fro [rad]
-  Vec3 axis = Vec3::UnitX();     // of that, unit
+  Vec3 axis = Vec3::UnitX();     // of the turn, unit
 };
 
 Pass draw_pass(Manner manner, const Vec3& inwards, Random& random) {
@@ -81,8 +81,8 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
   }
   if (!start) {
     throw Error(
-        "no place was found where an instrument can begin, 5 to 20 mm before the surface with its "
-        "shaft free; is the mesh in mm?");
+        "found no start for the instrument, 5 to 20 mm before the surface with a free shaft; is "
+        "the mesh in mm?");
   }
   stroke.start = *start;
 

@@ -15,11 +15,11 @@
 namespace keepout::app {
 namespace {
 
-// On a mesh of 100 mm and more; on a smaller one they are scaled. [mm]
-// Heights are those of a ball's center, or of the lowest point of a convex tool.
+// Lengths for a mesh of at least 100 mm; smaller meshes scale them. Heights are those of a ball's
+// center, or of the lowest point of a convex tool. [mm]
 constexpr double start_height = 8.0;   // above the surface at both ends of a stroke
-constexpr double deepest = 5.0;        // goal below the surface, at most
-constexpr double slide_length = 30.0;  // over the surface, at most
+constexpr double deepest = 5.0;        // greatest depth of a goal below the surface
+constexpr double slide_length = 30.0;  // longest slide over the surface
 constexpr double tremor_amplitude = 0.1;
 
 class TipStrokes {
@@ -37,10 +37,10 @@ class TipStrokes {
     const double height = start_height * scale_;
     const std::optional<SurfacePoint> start = place_to_start(height);
     if (!start) {
-      throw Error(
-          "no free place to start a stroke from: nowhere is there room for " + trimmed(height) +
-          " mm above the surface, on the side that its normals point to; if they point into "
-          "the solid, flip all triangles ('keepout inspect' tells whether they do)");
+      throw Error("no free place to start a stroke from: there is no place with " +
+                  trimmed(height) +
+                  " mm of free space above the surface, on the side of its normals; if the normals "
+                  "point into the solid, flip all triangles ('keepout inspect' reports it)");
     }
     const double lift = reach_against(start->normal);
     const double depth = random_.uniform(0.2, 1.0) * (deepest * scale_);
@@ -75,8 +75,8 @@ class TipStrokes {
     return on_surface(point);
   }
 
-  /// Returns a place on the surface with free space above it, and prefers one that faces outwards:
-  /// strokes deep in a cavity would be as good a test, but invisible in a picture.
+  /// Returns a place on the surface with free space above it. Prefers a place that faces outward: a
+  /// stroke deep in a cavity would be as good a test, but invisible in a picture.
   std::optional<SurfacePoint> place_to_start(double height) {
     const Vec3 middle = audit_.mesh().bounds().center();
     std::array<std::optional<SurfacePoint>, 3> others;  // the better first
@@ -97,7 +97,7 @@ class TipStrokes {
     return std::nullopt;
   }
 
-  /// Returns how far the tool reaches from its tip towards a surface with that normal. [length]
+  /// Returns how far the tool extends from its tip towards a surface with this normal. [length]
   double reach_against(const Vec3& normal) const {
     return tool_ == nullptr ? 0.0 : tool_->radius() + tool_->support(-normal).dot(-normal);
   }
@@ -114,7 +114,7 @@ class TipStrokes {
         guides_, [&](const Guide& guide) { return guide.region().excess(start) <= 0.0; });
   }
 
-  /// Follows the surface from a place, in a straight direction as seen from above.
+  /// Returns places along the surface, in a direction that is straight as seen from above.
   std::vector<SurfacePoint> slide_over(const SurfacePoint& start, double length) {
     constexpr int stations = 16;
     std::vector<SurfacePoint> way{start};
@@ -128,14 +128,14 @@ class TipStrokes {
   }
 
   Audit& audit_;
-  const ConvexTool* tool_;  // null: a ball
+  const ConvexTool* tool_;  // null for a ball
   std::vector<Guide> guides_;
   std::optional<ToolAudit> tool_audit_;
   Random random_;
   std::size_t cycles_;
   double scale_;  // of lengths
   std::vector<Vec3>
-      points_;  // of the surface, drawn many at a time: each draw visits all triangles
+      points_;  // of the surface, many drawn at once, because each draw visits all triangles
 };
 
 }  // namespace

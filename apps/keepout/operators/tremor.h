@@ -9,8 +9,7 @@
 
 namespace keepout::app {
 
-/// A smooth shake of an operator's hand: the sum of three waves, each along a direction and at a
-/// frequency of its own.
+/// A smooth tremor: the sum of three waves, each with its own direction and frequency.
 class Tremor {
  public:
   /// `amplitude`: root of the sum of the squared amplitudes of the waves. [mm]

@@ -7,7 +7,7 @@
 
 namespace keepout::app {
 
-/// Base64 with padding (RFC 4648, section 4): how bytes stand in a page.
+/// Returns Base64 with padding (RFC 4648, section 4), the form of bytes in a page.
 std::string to_base64(std::span<const std::uint8_t> bytes);
 
 }  // namespace keepout::app

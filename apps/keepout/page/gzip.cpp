@@ -11,19 +11,19 @@ namespace keepout::app {
 
 std::vector<std::uint8_t> gzipped(std::span<const std::uint8_t> bytes) {
   z_stream stream = {};
-  constexpr int as_gzip = 16;  // added to the window's bits
+  constexpr int as_gzip = 16;  // added to the window bits
   constexpr int default_memory = 8;
   if (deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, MAX_WBITS + as_gzip, default_memory,
                    Z_DEFAULT_STRATEGY) != Z_OK) {
-    throw std::bad_alloc();  // nothing else can be wrong
+    throw std::bad_alloc();  // the only possible error
   }
   std::vector<std::uint8_t> result;
   std::vector<std::uint8_t> part(std::size_t{1} << 16);
-  stream.next_in = const_cast<Bytef*>(bytes.data());  // of which it only reads
+  stream.next_in = const_cast<Bytef*>(bytes.data());  // zlib only reads it
   std::size_t left = bytes.size();
   do {
     const std::size_t fed =
-        std::min<std::size_t>(left, std::size_t{1} << 30);  // its counts have 32 bits
+        std::min<std::size_t>(left, std::size_t{1} << 30);  // zlib counts with 32 bits
     stream.avail_in = static_cast<uInt>(fed);
     left -= fed;
     do {

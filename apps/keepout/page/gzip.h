@@ -7,7 +7,7 @@
 
 namespace keepout::app {
 
-/// As a gzip file (RFC 1952), which browsers decompress by themselves; as small as zlib makes it.
+/// Returns a gzip file (RFC 1952), at zlib's best compression. Browsers can decompress it.
 std::vector<std::uint8_t> gzipped(std::span<const std::uint8_t> bytes);
 
 }  // namespace keepout::app

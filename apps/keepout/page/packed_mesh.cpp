@@ -8,10 +8,11 @@
 namespace keepout::app {
 namespace {
 
-/// No coordinate of a mesh is beyond what floats reach.
+/// Returns true if the number is a float. Precondition: in the range of floats, as all coordinates
+/// of a mesh are.
 bool is_float(double number) { return static_cast<double>(static_cast<float>(number)) == number; }
 
-/// The lowest byte first, whatever the order on this machine.
+/// Appends the bytes of a number, the lowest first, on every machine.
 template <class Bits>
 void append(std::vector<std::uint8_t>& bytes, Bits bits) {
   for (unsigned shift = 0; shift < 8 * sizeof bits; shift += 8) {

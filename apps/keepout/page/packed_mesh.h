@@ -10,13 +10,14 @@
 
 namespace keepout::app {
 
-/// A mesh as a page carries it: every bit of it, in bytes that compress well.
+/// A mesh in a page: without loss, in bytes that compress well.
 struct PackedMesh {
-  std::string_view coordinates;  // "float32" where that is all of each of them, else "float64"
-  /// All x, then all y, then all z of the vertices, each number with its lowest byte first; then
-  /// the corners of the triangles, each as the number of the first vertex that no corner before has
-  /// named, less its own (modulo 2^32): small, since a welded mesh numbers its vertices by their
-  /// first use. All lowest bytes of these, then all second, all third, all highest.
+  std::string_view coordinates;  // "float32" if all coordinates are floats, else "float64"
+  /// First all x, all y and all z of the vertices, each number with its lowest byte first. Then one
+  /// code for each corner: the lowest vertex number not used by earlier corners, minus the corner's
+  /// own number (modulo 2^32). The codes are small, because a welded mesh numbers its vertices by
+  /// their first use. They are stored as all lowest bytes, then all second, all third and all
+  /// highest bytes.
   std::vector<std::uint8_t> bytes;
 };
 

@@ -12,9 +12,9 @@ namespace keepout::app {
 namespace {
 
 constexpr const char* what_to_do =
-    "In a checkout of keepout, ./run makes the pages of reports and ./run live makes live.html, "
-    "where there are npm and a network; an installed keepout has them if they were made before the "
-    "installation; from elsewhere, name their folder in the environment variable KEEPOUT_WEB";
+    "In a checkout of keepout, with npm and a network, ./run makes the pages of reports and ./run "
+    "live makes live.html. An installed keepout has the pages that existed at the installation. "
+    "For pages in another directory, set the environment variable KEEPOUT_WEB to it";
 
 }  // namespace
 

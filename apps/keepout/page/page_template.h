@@ -7,19 +7,19 @@
 
 namespace keepout::app {
 
-// A page without what it is to show, as apps/web/build makes it: one file, with a place for that.
+// A page without its data, as apps/web/build makes it: one file, with a mark for the data.
 
-/// The file of a name: in the folder that the environment variable KEEPOUT_WEB names, or in
-/// share/keepout/web beside the folder of this program. It need not be there.
+/// Returns the file of a template: in the directory that the environment variable KEEPOUT_WEB
+/// names, or in share/keepout/web beside this program's directory. The file may be missing.
 std::filesystem::path page_template_file(std::string_view name);
 
-/// The page before and after the place.
+/// The page before and after the mark.
 struct PageTemplate {
   std::string before, after;
 };
 
-/// `place`: the comment that marks it. Throws Error when the file is not there, or has no such
-/// place.
+/// Reads a template. `place`: the comment that marks the data. Throws Error if the file is missing
+/// or does not have exactly one such comment.
 PageTemplate read_page_template(const std::filesystem::path& file, std::string_view place);
 
 }  // namespace keepout::app

@@ -26,7 +26,7 @@ double area(const Mesh& mesh) {
   return 0.5 * twice;
 }
 
-/// Whether a triangle is within the part of which no detail is left out.
+/// Returns true if a triangle is in the region that keeps all detail.
 bool is_close(const Mesh& mesh, const Corners& corners, const std::optional<Box>& closely) {
   return closely && std::ranges::all_of(corners, [&](VertexId v) {
            return distance_to(*closely, mesh.vertices()[v]) == 0.0;
@@ -38,9 +38,10 @@ std::size_t close_triangles(const Mesh& mesh, const std::optional<Box>& closely)
       mesh.triangles(), [&](const Corners& corners) { return is_close(mesh, corners, closely); }));
 }
 
-/// The vertices that stay, numbered by their first use, and the triangles that keep an extent.
+/// Returns the remaining vertices, numbered by their first use, and the triangles that do not
+/// collapse.
 Surface with_cells(const Mesh& mesh, double cell, const std::optional<Box>& closely) {
-  std::map<std::array<std::int64_t, 3>, VertexId> taken;  // of each cell: the vertex that stays
+  std::map<std::array<std::int64_t, 3>, VertexId> taken;  // of each cell: the remaining vertex
   std::vector<VertexId> stays(mesh.vertex_count());
   for (VertexId v = 0; v < mesh.vertex_count(); ++v) {
     const Vec3& place = mesh.vertices()[v];
@@ -68,8 +69,7 @@ Surface with_cells(const Mesh& mesh, double cell, const std::optional<Box>& clos
 }  // namespace
 
 Surface coarsened(const Mesh& mesh, std::size_t most, const std::optional<Box>& closely) {
-  // A cell of a flat grid has two triangles; the next larger one is tried as long as there are
-  // more.
+  // A cell of a flat grid has two triangles. The cells grow until few enough triangles are left.
   const std::size_t all = most + close_triangles(mesh, closely);
   double cell = std::sqrt(2.0 * area(mesh) / static_cast<double>(most));
   for (int tries = 0;; ++tries, cell *= 1.4) {
@@ -81,7 +81,7 @@ Surface coarsened(const Mesh& mesh, std::size_t most, const std::optional<Box>& 
 Json drawn_mesh(const std::string& name, const Mesh& mesh, const std::optional<Box>& closely) {
   std::optional<Surface> coarser;
   if (mesh.triangle_count() > most_triangles) {
-    // Where what is close is a large mesh by itself, it cannot all be drawn either.
+    // The close region may itself be too large to draw completely.
     const bool is_much = close_triangles(mesh, closely) > most_triangles;
     coarser = coarsened(mesh, most_triangles, is_much ? std::nullopt : closely);
   }

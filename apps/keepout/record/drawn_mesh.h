@@ -10,13 +10,13 @@
 
 namespace keepout::app {
 
-/// A mesh as a record has it: its size, and what a page draws of it. `closely`: the part that a
-/// page looks at from near, of which no detail is left out. [mm]
+/// Returns a mesh as a record contains it: its size, and a version to draw. `closely`: the region
+/// that a page magnifies, which keeps all detail. [mm]
 Json drawn_mesh(const std::string& name, const Mesh& mesh,
                 const std::optional<Box>& closely = std::nullopt);
 
-/// A surface of about `most` triangles, and those within the box, that looks like the mesh from
-/// far: the vertices in each cell of a grid are put on one of them.
+/// Returns a surface of about `most` triangles, plus those in the box, that resembles the mesh from
+/// afar. All vertices in a cell of a grid are merged into one of them.
 ///
 /// Source: J. Rossignac, P. Borrel, "Multi-resolution 3D approximations for rendering complex
 /// scenes", 1993.

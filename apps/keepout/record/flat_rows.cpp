@@ -17,7 +17,7 @@ void add_cells(const Json& object, const std::string& before, Cells& cells) {
   }
 }
 
-/// Each name once; one that a row before has not stands behind the one that precedes it here.
+/// Adds the new names of a row to the columns, each after the column that precedes it in the row.
 void add_columns(const Cells& cells, std::vector<std::string>& columns) {
   std::size_t at = 0;
   for (const auto& [name, value] : cells) {
@@ -30,7 +30,7 @@ void add_columns(const Cells& cells, std::vector<std::string>& columns) {
   }
 }
 
-/// null where it has none.
+/// Returns the value in a column; null if the row does not have it.
 Json cell_of(const Cells& cells, const std::string& column) {
   const auto cell = std::ranges::find(cells, column, &Cells::value_type::first);
   return cell == cells.end() ? Json() : cell->second;
@@ -54,7 +54,7 @@ FlatRows flat(const Json& rows) {
     add_cells(row, "", lines.emplace_back());
     add_columns(lines.back(), table.columns);
   }
-  // What is an object in one row and null in another has its columns by the one.
+  // A value that is an object in one row and null in another needs no column of its own.
   std::erase_if(table.columns, [&](const std::string& column) {
     return std::ranges::any_of(table.columns, [&](const std::string& other) {
       return other.starts_with(column + '_') && std::ranges::all_of(lines, [&](const Cells& cells) {

@@ -9,16 +9,16 @@
 
 namespace keepout::app {
 
-/// The rows of a record as a table: a column for each member, those of objects within under both
-/// names, "step_us_p50". Arrays are left out.
+/// The rows of a record as a table, with a column for each member. A member of a nested object gets
+/// both names, "step_us_p50". Arrays are omitted.
 struct FlatRows {
   std::vector<std::string> columns;
-  std::vector<std::vector<Json>> rows;  // as many cells as there are columns; null: it has none
+  std::vector<std::vector<Json>> rows;  // one cell for each column; null: the row does not have it
 };
 FlatRows flat(const Json& rows);
 
-/// As CSV, below a line of names: numbers with all their digits, text in quotes where it has to be;
-/// what there is none of is empty.
+/// Prints a table as CSV, with a header: numbers with all digits, text in quotes if necessary, and
+/// empty cells for null.
 void print_csv(std::ostream& out, const FlatRows& table);
 
 }  // namespace keepout::app

@@ -7,9 +7,9 @@
 #include "shared/machine.h"
 #include "shared/timing.h"
 
-// What the JSON of several records is made of.
+// Parts of the JSON of several records.
 
-/// null stands for what there is none of.
+/// Writes an empty optional as null.
 template <class T>
 struct nlohmann::adl_serializer<std::optional<T>> {
   static void to_json(auto& json, const std::optional<T>& value) {

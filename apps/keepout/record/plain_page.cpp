@@ -49,7 +49,7 @@ void print_table(std::ostream& out, const std::string& title, const FlatRows& ta
   out << "</tbody></table></div>\n";
 }
 
-/// What is an array of objects is a table; so are the plain members of an object.
+/// Prints an array of objects as a table, and the simple members of an object as another one.
 void print_member(std::ostream& out, const std::string& name, const Json& value) {
   if (value.is_array() && !value.empty() && value.front().is_object()) {
     print_table(out, name, flat(value));
@@ -67,7 +67,7 @@ void print_paragraph(std::ostream& out, const Json& text) {
   if (text != "") out << "<p>" << escaped(text.get<std::string>()) << "</p>\n";
 }
 
-/// A picture that is an image runs no scripts and fetches nothing, whatever is in it.
+/// Prints a picture as an image, so that it can neither run scripts nor load anything.
 void print_figure(std::ostream& out, const Json& figure) {
   const std::string picture = figure.at("svg").get<std::string>();
   const std::span bytes(reinterpret_cast<const std::uint8_t*>(picture.data()), picture.size());
@@ -77,7 +77,8 @@ void print_figure(std::ostream& out, const Json& figure) {
       << escaped(figure.at("caption").get<std::string>()) << "</figcaption></figure>\n";
 }
 
-/// The paper's numbers beside ours, of all experiments; then what each found.
+/// Prints the published numbers of all experiments beside ours, then the results of each
+/// experiment.
 void print_experiments(std::ostream& out, const Json& experiments) {
   Json claims = Json::array();
   for (const Json& experiment : experiments) {
@@ -86,7 +87,7 @@ void print_experiments(std::ostream& out, const Json& experiments) {
       claims.back().update(claim);
     }
   }
-  print_table(out, "Beside the paper", flat(claims));
+  print_table(out, "Compared with Li et al. (2020)", flat(claims));
   for (const Json& experiment : experiments) {
     const std::string title = experiment.at("title").get<std::string>();
     out << "<h2>" << escaped(title) << "</h2>\n";
@@ -111,9 +112,9 @@ void print_plain_page(std::ostream& out, const Json& record) {
       << escaped(record.at("subject").get<std::string>()) << "</p>\n<h1>" << headline << "</h1>\n";
   for (const Json& text : record.at("account")) print_paragraph(out, text);
   if (!record.at("complete").get<bool>()) {
-    out << "<p><strong>It was stopped: this is what was finished.</strong></p>\n";
+    out << "<p><strong>The command was stopped: this page shows the finished part.</strong></p>\n";
   }
-  out << "<p>Made again by: <code>" << escaped(record.at("command").get<std::string>())
+  out << "<p>Command that repeats it: <code>" << escaped(record.at("command").get<std::string>())
       << "</code></p>\n";
   if (record.contains("experiments")) print_experiments(out, record["experiments"]);
   for (const auto& [key, value] : record.items()) {

@@ -7,8 +7,9 @@
 
 namespace keepout::app {
 
-/// A page of what a record says in words and rows, for where there is no front end that could draw:
-/// see report_page.h. Series of numbers, such as the cycles of a stroke, are left to the JSON.
+/// Prints a page with the texts and rows of a record, without pictures, for use without page
+/// templates: see report_page.h. Series of numbers, such as the cycles of a stroke, are only in the
+/// JSON.
 void print_plain_page(std::ostream& out, const Json& record);
 
 }  // namespace keepout::app

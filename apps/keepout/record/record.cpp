@@ -22,13 +22,13 @@ namespace {
 
 constexpr int format = 1;  // see docs/records.md
 
-/// What a line has to itself: the members of the outer objects, and the entries of their arrays.
+/// Prints JSON with one line for each member of the outer objects and each entry of their arrays.
 void print_lines(std::ostream& out, const Json& value, int depth) {
   const bool has_lines =
       !value.empty() && ((value.is_object() && depth < 2) ||
                          (value.is_array() && depth < 3 && value.front().is_structured()));
   if (!has_lines) {
-    // The name of a file need not be UTF-8, and JSON must.
+    // A file name may be invalid UTF-8, which JSON does not allow.
     out << value.dump(-1, ' ', false, Json::error_handler_t::replace);
     return;
   }
@@ -43,7 +43,7 @@ void print_lines(std::ostream& out, const Json& value, int depth) {
   out << (is_object ? "\n}" : "\n]");
 }
 
-/// Not bytes: our texts are in UTF-8.
+/// Returns the number of characters, not bytes: our texts are in UTF-8.
 std::size_t characters_in(const std::string& word) {
   std::size_t width = 0;
   for (const char c : word) width += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
@@ -65,7 +65,7 @@ std::ifstream open_record(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, none)) {
     throw Error(path.string() + ": is a folder; name a record in it");
   }
-  if (!file) throw Error(path.string() + ": cannot be read; is it there?");
+  if (!file) throw Error(path.string() + ": cannot be read; does it exist?");
   return file;
 }
 
@@ -74,8 +74,8 @@ std::string fault_of(const Json& json) {
                              "compare",      "plan",           "plan_robot", "verify",
                              "verify_robot", "experiments",    "inspect"};
   const std::string none =
-      "is no whole record; 'keepout simulate', 'bench', 'compare', 'plan' and 'verify' write one "
-      "where --json says";
+      "is no whole record; 'keepout simulate', 'bench', 'compare', 'plan' and 'verify' write "
+      "records with --json";
   if (!json.is_object() || !json.contains("keepout_record") || !json.contains("format") ||
       std::ranges::find(kinds, json["keepout_record"]) == kinds.end()) {
     return none;
@@ -95,7 +95,7 @@ std::string fault_of(const Json& json) {
 }
 
 void RecordFiles::add_to(CLI::App& command) {
-  command.add_option("--json", json, "Where to write all that was found: see docs/records.md")
+  command.add_option("--json", json, "Where to write all results as JSON: see docs/records.md")
       ->type_name("FILE");
   CLI::Option* out =
       command.add_option("--out", page, "Where to write a report with pictures, plots and tables")
@@ -129,7 +129,7 @@ void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& f
       notices() << "keepout: " << files.page->string()
                 << " is a plain page of tables, without pictures and plots: " << missing << ".\n";
       if (const auto kept = files.kept_json()) {
-        notices() << "Once that is there, the command 'report " << kept->string()
+        notices() << "Once the template is there, the command 'report " << kept->string()
                   << "' makes the whole page.\n";
       }
     }

@@ -20,46 +20,46 @@ class App;
 
 namespace keepout::app {
 
-// A record is what a command found, as docs/records.md describes it; a report is a page that shows
-// one.
+// A record contains the results of a command (docs/records.md); a report is a page that shows one.
 
-/// What every record has. A command adds the rest.
+/// The common members of all records. A command adds the others.
 struct RecordHead {
   std::string_view kind = {};     // "simulate", "bench", ...
   std::string date = date_now();  // ISO 8601, UTC
-  std::string command = {};       // that does it again
+  std::string command = {};       // the command that repeats the run
   bool complete = true;
-  std::string subject = {};               // what was done, in a line
-  std::string headline = {};              // what came out, in a sentence
-  std::vector<std::string> account = {};  // what is to be said beside it
-  std::optional<Machine> machine = {};    // none: several
-  Json settings = Json::object();         // what it was told: names and values
+  std::string subject = {};               // the purpose of the run, in a line
+  std::string headline = {};              // the result, in a sentence
+  std::vector<std::string> account = {};  // further sentences about the result
+  std::optional<Machine> machine = {};    // empty if there were several machines
+  Json settings = Json::object();         // settings of the run: names and values
 };
 Json new_record(const RecordHead& head);
 
-/// Opens a record to be read. Throws Error if there is none, or a folder.
+/// Opens a record for reading. Throws Error if it is missing or a directory.
 std::ifstream open_record(const std::filesystem::path& path);
 
-/// Why this is no record of the format that is known, as far as its head goes; empty where it is.
+/// Returns why this is not a record of the known format, judged by its common members; empty if it
+/// is.
 std::string fault_of(const Json& json);
 
 /// The files that a command writes: its record, its report, and its rows as a table.
 struct RecordFiles {
   std::optional<std::filesystem::path> json, page, csv = {};
 
-  /// Adds --json and --out to a command; a `page` that is set is the one by default.
+  /// Adds --json and --out to a command; if `page` is set, it is the default.
   void add_to(CLI::App& command);
 
-  /// Returns the JSON file to write. Without --json, if the report will be a plain page
-  /// (see write_record), it is kept beside the page, so that the report can be made later; unless
-  /// the page goes to stdout or another open file.
+  /// Returns the JSON file to write. Without --json, if the report will be a plain page (see
+  /// write_record), the record is written beside the page, so that the report can be made later. It
+  /// is not written if the page goes to stdout or another open file.
   std::optional<std::filesystem::path> kept_json() const;
 
   /// Returns the names of all files that are written, as a list for a sentence.
   std::string names() const;
 
-  /// Opens all of them: "--json", "--csv" and "--out". Throws Error as OutputFiles and file_of_mesh
-  /// do. `meshes`: files and fixtures that the command reads. `option`: what the user calls them.
+  /// Opens the files of "--json", "--csv" and "--out". Throws Error as OutputFiles and file_of_mesh
+  /// do. `meshes`: the meshes that the command reads. `option`: their name on the command line.
   template <class Meshes = std::initializer_list<std::filesystem::path>>
   OutputFiles open(const Meshes& meshes, std::string_view option = "MESH") const {
     std::vector<NamedPath> inputs;
@@ -69,14 +69,14 @@ struct RecordFiles {
 };
 
 /// Writes a record to the stream "--json" and its report to "--out", as far as these are among the
-/// outputs, and commits them. Without the front end of pages (see page_template.h) the report is a
-/// plain page of tables, and a notice says so.
+/// outputs, and commits them. Without page templates (see page_template.h) the report is a plain
+/// page of tables, and a notice reports it.
 void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files);
 
-/// The record itself, in lines that can be read and compared.
+/// Prints the record in lines that people and tools can compare.
 void print_json(std::ostream& out, const Json& record);
 
-/// Prints a text, or each of a list, in lines that fit a terminal.
+/// Prints a text, or each text of a list, in lines that fit a terminal.
 void print_wrapped(std::ostream& out, const Json& text);
 
 }  // namespace keepout::app

@@ -17,7 +17,7 @@
 namespace keepout::app {
 namespace {
 
-/// skull.json and skull.html.json are of skull.html.
+/// Returns the page of a record: skull.html for skull.json and skull.html.json.
 std::filesystem::path page_of(const std::filesystem::path& record) {
   std::filesystem::path page = record;
   if (page.extension() == ".json") page.replace_extension();
@@ -26,7 +26,7 @@ std::filesystem::path page_of(const std::filesystem::path& record) {
 
 Json read_record(const std::filesystem::path& path) {
   std::ifstream file = open_record(path);
-  constexpr int deepest = 64;  // of what is in what; ours are not deeper than ten
+  constexpr int deepest = 64;  // nesting; our records have at most ten levels
   const auto is_shallow = [](int depth, Json::parse_event_t, const Json&) {
     if (depth > deepest) throw Error("nested too deeply");
     return true;
@@ -47,9 +47,10 @@ Json read_record(const std::filesystem::path& path) {
 
 void add_report(CLI::App& app, ReportOptions& options) {
   CLI::App& command = *app.add_subcommand(
-      "report", "Make the report of a record that another command has kept with --json");
+      "report", "Make the report of a record that another command wrote with --json");
   command.add_option("FILE", options.record, "The record")->type_name(".json")->required();
-  command.add_option("--out", options.page, "Where to write the report; else beside the record")
+  command
+      .add_option("--out", options.page, "Where to write the report; default: beside the record")
       ->type_name("REPORT.html");
 }
 
@@ -59,7 +60,7 @@ void report(const ReportOptions& options, std::ostream& out) {
   progress.advance();
   const std::filesystem::path page = options.page.value_or(page_of(options.record));
   OutputFiles outputs(std::array{NamedPath{"FILE", options.record}}, {{"--out", page}});
-  // What another command has kept has a plain page already; of experiments there is none yet.
+  // Other commands have already made a plain page of their record, but `experiments` has not.
   const bool is_first = record.at("keepout_record") == "experiments";
   const std::string missing = is_first ? missing_template(record) : "";
   if (missing.empty()) {

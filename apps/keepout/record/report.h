@@ -13,14 +13,14 @@ namespace keepout::app {
 
 struct ReportOptions {
   std::filesystem::path record;               // JSON that another command has written
-  std::optional<std::filesystem::path> page;  // to be written; none: beside the record
+  std::optional<std::filesystem::path> page;  // the file to write; empty: beside the record
 };
 
 /// Adds `keepout report` and its options to the command line.
 void add_report(CLI::App& app, ReportOptions& options);
 
-/// Makes the report of a record that was kept, and says on `out` where it is. Throws Error when the
-/// file is no record of a format that is known, or the front end of pages is missing.
+/// Makes the report of a record, and prints its path to `out`. Throws Error if the file is not a
+/// record of the known format, or if the page template is missing.
 void report(const ReportOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* record_mark = "<!-- keepout report: the record goes here -->";
 
-/// What shows anatomy comes with what draws it.
+/// Returns the template for a record. Only the template for anatomy contains the code that draws
+/// it.
 PageTemplate template_for(const Json& record) {
   const std::string kind = record.value("keepout_record", "");
   const bool shows_anatomy = kind.starts_with("simulate") || kind == "plan" || kind == "inspect";

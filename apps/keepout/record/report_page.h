@@ -8,12 +8,12 @@
 
 namespace keepout::app {
 
-/// What is missing to make the report of a record, or of any where there is none yet, more than a
-/// plain page: in words, empty where there is all. See page_template.h.
+/// Returns why the report of a record can only be a plain page, as text; empty if it can be
+/// complete. null stands for all kinds of records. See page_template.h.
 std::string missing_template(const Json& record = nullptr);
 
-/// Writes the report of a record as one HTML page that needs nothing but itself. Throws Error where
-/// something is missing.
+/// Writes the report of a record as one self-contained HTML page. Throws Error if its template is
+/// missing.
 void print_report(std::ostream& out, const Json& record);
 
 }  // namespace keepout::app

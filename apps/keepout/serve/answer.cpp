@@ -8,7 +8,7 @@
 namespace keepout::app {
 namespace {
 
-/// Appends the outcome of a step or a polytope, with a reason unless it is ok.
+/// Appends the outcome of a step or a polytope, and the reason unless it is ok.
 template <class Result>
 void append_outcome(std::string& out, const Result& result) {
   append_member(out, "ok", result.ok());
@@ -26,8 +26,8 @@ void append_limits(std::string& out, Limits limits) {
                     std::views::transform([](Limit limit) { return name(limit); }));
 }
 
-/// Appends the increment of the joints. A step that is not ok has none: then all are zero, so that
-/// a client that reads nothing else stands still.
+/// Appends the increment of the joints. For a step that is not ok it consists of zeros, so that a
+/// client that reads only the increment does not move.
 void append_increment(std::string& out, std::span<const double> increment, std::size_t joints) {
   append_member(out, "increment",
                 std::views::iota(std::size_t{0}, joints) | std::views::transform([&](auto i) {
@@ -35,8 +35,8 @@ void append_increment(std::string& out, std::span<const double> increment, std::
                 }));
 }
 
-/// Appends the pairs of body and mesh with less clearance, if there are any; level null if the
-/// pair has none.
+/// Appends the pairs of body and mesh with degraded clearance, if there are any. The fraction is
+/// null if no clearance of the pair is certified.
 void append_degraded(std::string& out, std::span<const DegradedClearance> degraded) {
   if (degraded.empty()) return;
   append_member(out, "degraded", degraded | std::views::transform([](const auto& pair) {
@@ -58,7 +58,7 @@ void append_number(std::string& out, double value) {
   } else if (value == 0.0) {
     out += std::signbit(value) ? "-0.0" : "0";
   } else {
-    std::array<char, 32> digits;  // the longest double has 24
+    std::array<char, 32> digits;  // a double has at most 24 characters
     out.append(digits.data(), std::to_chars(digits.begin(), digits.end(), value).ptr);
   }
 }

@@ -21,7 +21,7 @@ namespace {
 
 Vec3 vector(std::span<const double> numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
-/// Returns the three numbers of a key; zeros without it.
+/// Returns the three numbers of a key; zeros without this key.
 Vec3 vector(const Json& request, std::string_view key) {
   return request.contains(key) ? vector(numbers(request, key)) : Vec3::Zero();
 }
@@ -40,7 +40,7 @@ Pose frame_of(const Json& request) {
   return {m.topRightCorner<3, 1>(), m.topLeftCorner<3, 3>()};
 }
 
-/// Returns the path of a key. Throws Error unless a file is there: a pipe would hold up all
+/// Returns the path of a key. Throws Error unless it is a regular file: a pipe would block all
 /// clients.
 std::filesystem::path file_of(const Json& request, const char* key) {
   const std::string text = request[key].get<std::string>();
@@ -51,7 +51,7 @@ std::filesystem::path file_of(const Json& request, const char* key) {
   return text;
 }
 
-/// The four numbers of a link's number and a point of it.
+/// Returns the point of a link: the link's number, and three coordinates.
 LinkPoint link_point(std::span<const double> numbers) {
   const double link = numbers[0];
   if (!(link >= 0.0 && link <= Chain::most_joints && link == std::floor(link))) {
@@ -69,7 +69,7 @@ Chain read_chain_of([[maybe_unused]] const Json& request) {
 #else
   throw Error(
       "this build reads no URDF: install liburdfdom-dev and liburdfdom-headers-dev, and build it "
-      "anew");
+      "again");
 #endif
 }
 
@@ -89,7 +89,7 @@ std::vector<std::string_view> keys_of_instruments() {
   return keys;
 }
 
-/// Returns the client's own constraint, or the one that clients share.
+/// Returns the client's own constraint, or else the constraint that clients share.
 MotionConstraint& tip_of(Client& client) noexcept {
   return client.tip.constraint ? *client.tip.constraint : client.service.constraint;
 }
@@ -152,7 +152,7 @@ void open_instrument(Client& client, const Json& request, std::string& out) {
     option.set(settings.options, *option_value(request[option.name], option.kind));
   }
   settings.solver = request.value("solver", settings.solver);
-  Instrument instrument = read_instrument(request);  // before an index is built for nothing
+  Instrument instrument = read_instrument(request);  // before an index is built in vain
   MotionConstraintSettings of_index = client.service.tip;
   of_index.index = request.value("index", of_index.index);
   const auto index = of_index.index == client.service.tip.index
@@ -193,7 +193,7 @@ void joint_step(Client& client, const Json& request, std::string& out) {
   append_guides(out, client.instrument.guide_names, step.guides, step.relaxation);
 }
 
-/// The rule and the narrow phase of the service do not count: a tool has its own.
+/// Ignores the rule and the narrow phase of the service: a convex tool has its own.
 void open_tool(Client& client, const Json& request, std::string& out) {
   MotionConstraintSettings settings = client.service.tip;
   settings.options.tool_radius = 0.0;
@@ -221,7 +221,8 @@ void set_guides(Client& client, const Json& request, std::string& out) {
   if (of == "instrument") {
     const auto of_base = std::ranges::find(guides, 0, &Guide::link);
     if (of_base != guides.end()) {
-      throw Error("guide '" + of_base->name() + "' is of a tip, or of the base: name a link, as " +
+      throw Error("guide '" + of_base->name() +
+                  "' is for a tip, or for the base: name a link, as in " +
                   std::string(guide_forms));
     }
     instrument_of(client);
@@ -276,8 +277,8 @@ void place_anatomy(Client& client, const Json& request, std::string& out) {
       guarded.place(static_cast<std::size_t>(number), frame_of(request), twist_of(request));
   if (!is_ok(placed)) {
     throw Error(
-        "'frame', 'linear' or 'angular' is implausible beside the mesh: it keeps its previous "
-        "pose, and joint steps are invalid_input until it has a valid one");
+        "'frame', 'linear' or 'angular' is implausible beside the mesh: the mesh keeps its "
+        "previous pose, and joint steps are invalid_input until it has a valid one");
   }
   append_member(out, "ok", true);
 }

@@ -16,7 +16,7 @@ namespace keepout::app {
 namespace {
 
 constexpr std::size_t longest_id = 128;  // [bytes]
-constexpr int deepest = 8;               // more than any request needs
+constexpr int deepest = 8;               // more levels than any request needs
 
 [[noreturn]] void refuse_as_json(const std::string& why) {
   throw Refusal{"not_json", "the line is not JSON: " + why};
@@ -50,8 +50,9 @@ bool fits(const Json& value, const Field& field) {
          });
 }
 
-/// Returns the line as JSON. Sets the id as soon as it is read, for a line that breaks off. Throws
-/// the library's exceptions, and Refusal for faults that the value no longer shows.
+/// Returns the line as JSON. Sets the id as soon as it is read, so that it is known for an
+/// incomplete line. Throws the library's exceptions, and Refusal for faults that are not visible in
+/// the value.
 Json parsed(std::string_view line, std::string& id) {
   std::set<std::string> keys;
   std::string key;
@@ -73,12 +74,12 @@ Json parsed(std::string_view line, std::string& id) {
   return json;
 }
 
-/// What the library says, in printable characters, and no more of the line than helps.
+/// Returns the library's message in printable characters, and only the useful part of the line.
 std::string cause(std::string_view text) {
   if (const std::size_t at = text.find("column "); at != std::string_view::npos) {
     text.remove_prefix(at);
   } else if (const std::size_t end = text.find("] "); end != std::string_view::npos) {
-    text.remove_prefix(end + 2);  // the library's number for it
+    text.remove_prefix(end + 2);  // the library's error number
   }
   return printable(text);
 }
@@ -168,7 +169,7 @@ RequestReader::RequestReader(const RequestLimits& limits, std::span<const Verb> 
 
 const Verb& RequestReader::read(std::string_view line, std::string& id, Json& request) const {
   id = "null";
-  // The library would take it for the end of the line.
+  // The library would read it as the end of the line.
   if (const std::size_t at = line.find('\0'); at != std::string_view::npos) {
     refuse_as_json("column " + std::to_string(at + 1) + ": a NUL byte");
   }
@@ -181,7 +182,7 @@ const Verb& RequestReader::read(std::string_view line, std::string& id, Json& re
   return checked_verb(request);
 }
 
-/// Throws Refusal unless each key is known and has a value that is one of its field.
+/// Throws Refusal unless each key is known and its value is valid for its field.
 void RequestReader::check_values(const Json& request) const {
   if (!request.is_object()) {
     refuse("a request is one object on a line: {\"id\":1,\"do\":\"ping\"}");
@@ -204,14 +205,14 @@ void RequestReader::check_values(const Json& request) const {
   }
 }
 
-/// Returns what a request asks for. Throws Refusal unless it has all keys that the verb needs, and
-/// no key that the verb does not take.
+/// Returns the verb of a request. Throws Refusal unless the request has all keys that the verb
+/// needs, and no other key than the verb takes.
 const Verb& RequestReader::checked_verb(const Json& request) const {
   const std::string asked = request.value("do", std::string());
   const auto verb = std::ranges::find(verbs_, asked, &Verb::name);
   if (verb == verbs_.end()) {
     const std::string known = quoted(verbs_ | std::views::transform(&Verb::name));
-    refuse(asked.empty() ? "'do' is missing: say what to do, one of " + known
+    refuse(asked.empty() ? "'do' is missing: it must be one of " + known
                          : "there is nothing to do by the name " + in_quotes(asked) +
                                "; 'do' must be one of " + known);
   }
@@ -225,7 +226,7 @@ const Verb& RequestReader::checked_verb(const Json& request) const {
              field.expected);
     }
     if (is_given && std::ranges::find(takes, field.name) == takes.end()) {
-      refuse(in_quotes(field.name) + " is nothing that " + in_quotes(verb->name) +
+      refuse(in_quotes(field.name) + " is not a key that " + in_quotes(verb->name) +
              " takes; it takes " + quoted(takes));
     }
   }

@@ -51,7 +51,7 @@ std::error_code last_error() { return {errno, std::system_category()}; }
   throw Error("--socket " + socket.string() + ": " + why + (error ? ": " + error.message() : ""));
 }
 
-/// Removes a socket that no server listens to.
+/// Removes a socket without a listening server.
 void make_way(asio::io_context& io, const path& file, const Local::endpoint& endpoint) {
   std::error_code error;
   const auto type = std::filesystem::symlink_status(file, error).type();
@@ -69,29 +69,30 @@ void make_way(asio::io_context& io, const path& file, const Local::endpoint& end
     fail(file, "another server answers there: end it, or take another path");
   }
   if (error != asio::error::connection_refused) {
-    fail(file, "a socket is there that cannot be asked", error);
+    fail(file, "cannot connect to the socket there", error);
   }
   std::filesystem::remove(file, error);
-  if (error) fail(file, "what an earlier server has left cannot be removed", error);
+  if (error) fail(file, "cannot remove the socket of an earlier server", error);
 }
 
-/// A Unix socket that clients connect to: its file is there, for its owner alone (0600), as long as
-/// this object.
+/// A Unix socket that clients connect to. Its file exists as long as this object, with access for
+/// its owner only (0600).
 class UnixSocket {
  public:
-  /// Replaces a socket that a dead server has left behind. Throws Error if another server answers
-  /// there, if something else than a socket is there, if the path is too long, and if the file
-  /// cannot be made.
+  /// Replaces a socket that a terminated server has left. Throws Error if another server answers
+  /// there, if the path is something else than a socket, if the path is too long, or if the file
+  /// cannot be created.
   UnixSocket(asio::io_context& io, path file) : file_(std::move(file)), acceptor_(io) {
     constexpr std::size_t longest = sizeof(sockaddr_un::sun_path) - 1;
     if (file_.empty()) fail(file_, "give the path of a file");
     if (const std::size_t size = file_.native().size(); size > longest) {
       fail(file_, "the path has " + std::to_string(size) + " bytes; a Unix socket's has at most " +
-                      std::to_string(longest) + ": take a shorter one, or one that is relative");
+                      std::to_string(longest) + ": take a shorter one, or a relative one");
     }
     const Local::endpoint endpoint(file_.native());
     const path folder = file_.has_parent_path() ? file_.parent_path() : ".";
-    // Without this lock, two servers that start at once might each remove the other's new socket.
+    // Without this lock, two servers that start simultaneously might each remove the other's new
+    // socket.
     const int folder_file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder_file < 0) {
       fail(file_, "its folder " + folder.string() + " cannot be used", last_error());
@@ -102,7 +103,8 @@ class UnixSocket {
     make_way(io, file_, endpoint);
     std::error_code error;
     acceptor_.open(endpoint.protocol(), error);
-    // Before there is a file, so that it never is open to others: Linux makes it with this mode.
+    // Set before the file exists, so that it is never open to others: Linux creates it with this
+    // mode.
     ::fchmod(acceptor_.native_handle(), S_IRUSR | S_IWUSR);
     if (!error) acceptor_.bind(endpoint, error);
     if (error) fail(file_, "the socket cannot be made", error);
@@ -112,10 +114,10 @@ class UnixSocket {
     if (!error) acceptor_.listen(64, error);
     if (!error) return;
     ::unlink(file_.c_str());
-    fail(file_, "the socket cannot be listened to", error);
+    fail(file_, "cannot listen to the socket", error);
   }
   ~UnixSocket() {
-    struct stat there = {};  // somebody else may have put another file in its place
+    struct stat there = {};  // another process may have replaced the file
     if (::lstat(file_.c_str(), &there) == 0 && there.st_dev == made_.st_dev &&
         there.st_ino == made_.st_ino) {
       ::unlink(file_.c_str());
@@ -134,16 +136,16 @@ void rethrow(const std::exception_ptr& failure) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Serves a client until it leaves: while its answers are unsent none of its lines is read, so a
-/// client that does not read takes up no more memory than one turn's answers. Returns what went
-/// wrong with the files; empty if the client just left.
+/// Serves a client until it leaves. Reads no line while answers are unsent, so that a client that
+/// does not read uses no more memory than the answers of one turn. Returns the fault of the files;
+/// empty if the client just left.
 template <class In, class Out>
 asio::awaitable<std::string> converse(Service& service, In& in, Out& out) {
   Client client{service};
   std::string answers;
   const std::size_t room = most_received(service);
-  std::vector<char> received(room + 1);  // and the end of the last line
-  std::size_t size = 0;                  // of what was received
+  std::vector<char> received(room + 1);  // plus the end of the last line
+  std::size_t size = 0;                  // of the received bytes
   std::error_code error;
   auto noting = asio::redirect_error(asio::use_awaitable, error);
   for (bool has_ended = false; !has_ended;) {
@@ -154,7 +156,7 @@ asio::awaitable<std::string> converse(Service& service, In& in, Out& out) {
     std::string_view unread(received.data(), size);
     while (const std::size_t done = take_turn(client, unread, answers)) {
       unread.remove_prefix(done);
-      // Other clients have their turn before this returns.
+      // Other clients have their turn before async_write returns.
       co_await asio::async_write(out, asio::buffer(answers), noting);
       if (error) co_return error == asio::error::broken_pipe ? "" : "stdout: " + error.message();
       answers.clear();
@@ -169,7 +171,7 @@ asio::awaitable<void> serve_socket(Service& service, Local::socket socket) {
   co_await converse(service, socket, socket);
 }
 
-/// Serves all clients of a socket; one more than `most_clients` at a time is refused.
+/// Serves all clients of a socket, at most `most_clients` at a time; refuses others.
 asio::awaitable<void> serve_clients(Service& service, Local::acceptor& door,
                                     std::size_t most_clients) {
   const auto executor = door.get_executor();
@@ -178,7 +180,7 @@ asio::awaitable<void> serve_clients(Service& service, Local::acceptor& door,
   while (true) {
     Local::socket client =
         co_await door.async_accept(asio::redirect_error(asio::use_awaitable, error));
-    if (error) {  // no room for another open file, most likely: tried again from time to time
+    if (error) {  // most likely too many open files: try again after a pause
       asio::steady_timer pause(executor, std::chrono::milliseconds(100));
       co_await pause.async_wait(asio::use_awaitable);
     } else if (clients < most_clients) {
@@ -193,12 +195,12 @@ asio::awaitable<void> serve_clients(Service& service, Local::acceptor& door,
       append_error(out, "null", "too_many_clients",
                    "there are " + std::to_string(most_clients) +
                        " clients already: close one, or start with a larger --max-clients");
-      client.write_some(asio::buffer(out), error);  // a new socket has room for it
+      client.write_some(asio::buffer(out), error);  // always fits into the buffer of a new socket
     }
   }
 }
 
-/// Returns stdin or stdout for Asio, which makes a file non-blocking: opened anew where that is
+/// Returns stdin or stdout for Asio, which makes a file non-blocking. Opens the file anew if
 /// possible, since other processes may share it.
 int own_file(int file, int mode) {
   struct stat status = {};
@@ -210,7 +212,7 @@ int own_file(int file, int mode) {
   return ::fcntl(file, F_DUPFD_CLOEXEC, 0);
 }
 
-/// Throws Error if stdin cannot be read or stdout cannot be written to, as if they were closed (see
+/// Throws Error if stdin cannot be read or stdout cannot be written, as if they were closed (see
 /// run_program).
 void require_stdio() {
   for (const auto& [file, useless] :
@@ -223,13 +225,13 @@ void require_stdio() {
   }
 }
 
-/// Serves the one client of stdin and stdout. Returns what went wrong with these.
+/// Serves the one client of stdin and stdout. Returns their fault, or an empty text.
 std::string serve_stdio(Service& service, asio::io_context& io) {
   const int flags[] = {::fcntl(STDIN_FILENO, F_GETFL), ::fcntl(STDOUT_FILENO, F_GETFL)};
   Descriptor in(io, own_file(STDIN_FILENO, O_RDONLY));
   Descriptor out(io, own_file(STDOUT_FILENO, O_WRONLY));
   out.async_wait(Descriptor::wait_error, [&](std::error_code error) {
-    if (!error) io.stop();  // the reader has gone
+    if (!error) io.stop();  // the reader has ended
   });
   std::string trouble;
   asio::co_spawn(io, converse(service, in, out),
@@ -255,7 +257,7 @@ int serve(const ServeOptions& options, std::ostream& log) {
   settings.notices = loaded.notices;
   Service service(loaded.mesh, settings);
   const StopSignal stop;
-  ::signal(SIGPIPE, SIG_IGN);  // a client who has gone is an error of write() alone
+  ::signal(SIGPIPE, SIG_IGN);  // makes a lost client an error of write() only
   asio::io_context io(1);
   Descriptor stopped(io, ::dup(stop.file()));
   stopped.async_wait(Descriptor::wait_read, [&](std::error_code) { io.stop(); });
@@ -283,27 +285,27 @@ frame of the mesh. Lines for people go to stderr.
   {"id":1,"do":"step","tip":[0,0,60],"desired":[0,0,-0.5]}
   {"id":1,"ok":true,"status":"free","motion":[0,0,-0.5],"triangles":0,"planes":0,"distance":10}
 
-step      tip, desired: the motion that the tip may make instead of the desired one; zero unless ok.
-          'distance' is that of the tip from the surface, before it.
-          With jacobian, three rows of n numbers: 'increment' is that of the joints.
+step      tip, desired: the motion that the tip may execute instead of the desired one; zero unless
+          ok. 'distance' is the distance of the tip from the surface before the motion.
+          With jacobian, three rows of n numbers: 'increment' is the increment of the joints.
           With rows and bounds: rows . u >= bounds holds for the increment u.
 steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".
 polytope  tip, radius: normals and offsets of the free space around it, normal . d >= offset.
 instrument  urdf, a file, and capsules, arrays of [link,x,y,z,link,x,y,z,radius]: opens an
-          instrument of this client's. Its options: index, solver, )" +
+          instrument for this client. Its options: index, solver, )" +
          enumerated(names(instrument_options)) + R"(.
-joint_step  q, and linear and angular of its flange, or an increment: the increment of the joints.
-tool      tool, as --tool takes it, and narrow_phase: from now on this client's steps guard it.
-guides    guides, texts as --guide of 'keepout replay' takes them, of this client's tip; or with of,
-          "instrument", of his instrument: see docs/guides.md.
-anatomy   file, and margin: one more mesh that his instrument is kept out of; unit or scale, flip,
-          space and untagged as for the mesh of the command.
-place     mesh, its number, frame, and linear and angular: where it is, and how it moves.
+joint_step  q, and linear and angular of the flange, or an increment: the increment of the joints.
+tool      tool, as for --tool, and narrow_phase: from now on this client's steps guard this tool.
+guides    guides, texts as for --guide of 'keepout replay', for this client's tip; or, with of
+          "instrument", for its instrument: see docs/guides.md.
+anatomy   file, and margin: another mesh for this client's instrument; unit or scale, flip, space
+          and untagged as for the mesh of the command.
+place     mesh, its number, frame, and linear and angular: the pose and the velocity of the mesh.
 info      version, mesh, settings and limits.
 statuses  all statuses by name, each with its reason.
-ping      whether it is there.
+ping      tests the connection.
 
-A line that cannot be carried out is answered, moves nothing and ends nothing:
+A line that cannot be carried out gets an answer, and has no other effect:
 
   {"id":2,"error":{"kind":"not_a_request","message":"'tip' must be an array of three numbers"}}
 

@@ -15,15 +15,15 @@ namespace keepout::app {
 struct ServeOptions {
   ServiceSettings service;
   LoadOptions load = {};
-  std::optional<std::filesystem::path> socket;  // to listen at; none: stdin and stdout
-  std::size_t most_clients = 16;                // of the socket, at a time
+  std::optional<std::filesystem::path> socket;  // the socket to listen to; empty: stdin and stdout
+  std::size_t most_clients = 16;                // clients of the socket at a time
 };
 
 /// Reads the mesh, and answers requests until the client or a signal ends it. Returns an exit
-/// status. `log`: for people. Throws Error for settings, mesh and socket.
+/// status. `log`: receives messages for people. Throws Error for settings, mesh and socket.
 int serve(const ServeOptions& options, std::ostream& log);
 
-/// The protocol on a page, for --help.
+/// Returns the protocol as one page, for --help.
 std::string protocol_help();
 
 }  // namespace keepout::app

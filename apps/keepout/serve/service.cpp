@@ -15,10 +15,10 @@
 namespace keepout::app {
 namespace {
 
-constexpr int protocol = 2;  // goes up when an old client would no longer be understood
-constexpr std::size_t enough_output = std::size_t{1} << 16;  // for a turn [bytes]
+constexpr int protocol = 2;  // increases with each change that an old client would not understand
+constexpr std::size_t enough_output = std::size_t{1} << 16;  // of one turn [bytes]
 
-/// With capacity for the largest request.
+/// Returns the settings with capacity for the largest request.
 MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
                                        const RequestLimits& limits) {
   settings.capacity.variables = std::max<std::size_t>(limits.joints, 3);
@@ -26,14 +26,14 @@ MotionConstraintSettings with_room_for(MotionConstraintSettings settings,
   return settings;
 }
 
-/// Without its braces.
+/// Returns the JSON of an object without its braces.
 std::string members_of(const Json& object) {
-  // A path need not be UTF-8.
+  // A path may be invalid UTF-8.
   const std::string text = object.dump(-1, ' ', false, Json::error_handler_t::replace);
   return text.substr(1, text.size() - 2);
 }
 
-/// Returns all statuses, where `reason` is that of a tip, and the names of all limits.
+/// Returns all statuses and the names of all limits. `reason` is the reason for a tip.
 Json statuses_and_limits() {
   Json statuses = Json::array();
   for (std::size_t i = 0; i < status_count; ++i) {
@@ -77,8 +77,8 @@ Json info_on(const Mesh& mesh, const ServiceSettings& settings, const MotionCons
             {"motions", settings.limits.motions}}}};
 }
 
-/// Appends the answer to a line. Returns how many steps the work was worth. A blank line is no
-/// work, but a sea of them must not hold up the others.
+/// Appends the answer to a line. Returns the work in steps. A blank line counts as one step, so
+/// that many of them do not block other clients.
 std::size_t answer(Client& client, std::string_view line, std::string& out) {
   const Service& service = client.service;
   const bool is_too_long =
@@ -90,7 +90,7 @@ std::size_t answer(Client& client, std::string_view line, std::string& out) {
     if (is_too_long) {
       throw Refusal{"line_too_long",
                     "the line has more than " + std::to_string(service.longest_line) +
-                        " bytes and was skipped: send less at a time, or raise --max-line"};
+                        " bytes and was skipped: send shorter lines, or raise --max-line"};
     }
     Json request;
     const Verb& verb = service.requests.read(line, id, request);

@@ -21,55 +21,54 @@ namespace keepout::app {
 
 using Json = nlohmann::ordered_json;
 
-/// [x, y, z]
+/// Returns [x, y, z].
 inline Json json_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// As a table shows what has no form of its own: text as it is, numbers with all their digits.
+/// Returns the default text of a value in a table: text as it is, numbers with all their digits.
 inline std::string plain(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-/// JSON has no infinity.
+/// Returns null for infinity and NaN, which JSON cannot represent.
 inline Json or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// A count with its thousands set apart; "-" for null.
+/// Returns a count with thousands separators; "-" for null.
 inline std::string count_text(const Json& value) {
   return value.is_null() ? "-" : grouped(value.get<std::uint64_t>());
 }
 
-/// So many significant digits; "-" for null.
+/// Returns a number with `digits` significant digits; "-" for null.
 template <int digits = 3>
 std::string figure_text(const Json& value) {
   return value.is_null() ? "-" : rounded(value.get<double>(), digits);
 }
 
-/// The format of a number, by the rules of printf, as the argument of a template.
+/// A printf format of a number, as a template argument.
 template <std::size_t size>
 struct NumberFormat {
   constexpr NumberFormat(const char (&from)[size]) { std::copy_n(from, size, text); }
   char text[size];
 };
-/// A number in that format; "-" for null.
+/// Returns a number in this format; "-" for null.
 template <NumberFormat format>
 std::string number_text(const Json& value) {
   return value.is_null() ? "-" : formatted(format.text, value.get<double>());
 }
 
-/// One figure of the rows of a table: what JSON calls it, where it comes from, and how a table for
-/// a terminal shows it.
+/// A column of a table: its key in JSON, its value in a row, and its form on a terminal.
 template <class Row>
 struct Column {
   std::string key;                        // empty: not in JSON
-  std::function<Json(const Row&)> value;  // or a member of the row
-  std::string heading = {};               // in the table
-  /// In the table, at least; below 0: to the left; 0: not in the table. [characters]
+  std::function<Json(const Row&)> value;  // a function of the row, or a member of it
+  std::string heading = {};               // on a terminal
+  /// The least width on a terminal; negative: left-aligned; 0: not on a terminal. [characters]
   int width = 0;
-  std::string (*text)(const Json&) = &plain;  // in the table
+  std::string (*text)(const Json&) = &plain;  // on a terminal
 };
 template <class Row>
 using Columns = std::vector<Column<Row>>;
 
-/// {"key": value, ...}
+/// Returns {"key": value, ...}.
 template <class Row>
 Json json_of(const Columns<Row>& columns, const Row& row) {
   Json json = Json::object();
@@ -86,7 +85,7 @@ Json json_of(const Columns<Row>& columns, const std::vector<Row>& rows) {
   return list;
 }
 
-/// A line of the table, without its end: what `text` says of each column.
+/// Prints a line of the table, without its end: the `text` of each column.
 template <class Row, class Text>
 void print_cells(std::ostream& out, const Columns<Row>& columns, const Text& text) {
   const char* between = "";
@@ -107,7 +106,7 @@ void print_row(std::ostream& out, const Columns<Row>& columns, const Row& row) {
   print_cells(out, columns, [&](const Column<Row>& c) { return c.text(c.value(row)); });
 }
 
-/// All of it.
+/// Prints the headings and all rows.
 template <class Row>
 void print_rows(std::ostream& out, const Columns<Row>& columns, const std::vector<Row>& rows) {
   print_headings(out, columns);

@@ -22,7 +22,7 @@
 namespace keepout::app {
 namespace {
 
-/// An option that takes the name of an anatomical space, in any case.
+/// Adds an option that takes the name of an anatomical space, in lower or upper case.
 CLI::Option* add_space(CLI::App& command, const char* name, AnatomicalSpace& space,
                        const char* description) {
   const auto take = [&space](const std::string& word) { space = space_named(word).value(); };
@@ -46,7 +46,7 @@ std::string no_such_command(const CLI::App& app, const std::string& word) {
 std::string unknown_option(const CLI::App& app, const CLI::App& command, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
   if (app.get_option_no_throw(name) != nullptr) {
-    return name + " goes before the command: '" + app.get_name() + " " + name + " ... " +
+    return name + " must precede the command: '" + app.get_name() + " " + name + " ... " +
            command.get_name() + "'";
   }
   const std::string missing = "there is no option " + name;
@@ -60,11 +60,11 @@ std::string unknown_option(const CLI::App& app, const CLI::App& command, const s
   return missing + did_you_mean(name, option_names(command));
 }
 
-/// CLI11's own words, but where they do not say enough.
+/// Returns the message of CLI11, or a clearer one where CLI11 says too little.
 std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
   const std::string told = error.what();
   const std::string kind = error.get_name();
-  // A mistyped option is the likeliest reason of whatever else seems to be missing.
+  // A mistyped option is the most likely cause of any other missing argument.
   const std::vector<std::string> extra = app.remaining(true);
   const auto option = std::find_if(extra.begin(), extra.end(), is_option);
   if (option != extra.end()) return unknown_option(app, command, *option);
@@ -72,7 +72,8 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
   if (&command == &app && kind == "RequiredError") {
     return "a command is missing; there are " + enumerated(command_names(app));
   }
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {  // whose name is the command's
+  // Its get_name() is the command's.
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     return "'" + extra.front() + "' is one argument too many for " + command.get_name();
   }
   if (kind == "RequiredError") return "an argument is missing: " + told;
@@ -82,13 +83,13 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
     const bool is_surplus = told.find("At Most") != std::string::npos;
     if (colon != std::string::npos) {
       return told.substr(0, colon) +
-             (is_surplus ? ": it is given more than once" : ": a value is missing");
+             (is_surplus ? ": this option is given more than once" : ": a value is missing");
     }
   }
   if (kind == "RequiresError") {
     const std::size_t verb = told.find(" requires ");
     if (verb != std::string::npos) {
-      return told.substr(0, verb) + " has a meaning only together with " + told.substr(verb + 10);
+      return told.substr(0, verb) + " can only be used together with " + told.substr(verb + 10);
     }
   }
   if (kind == "ExcludesError") {
@@ -164,8 +165,8 @@ CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
     const char* const last = text.data() + text.size();
     const auto [end, error] = std::from_chars(text.data(), last, value);
     bool is_whole = error == std::errc{} && end == last;
-    if (!is_whole) {                               // 1e6
-      constexpr double most = 9007199254740992.0;  // 2^53: above it, doubles leave numbers out
+    if (!is_whole) {                               // for example 1e6
+      constexpr double most = 9007199254740992.0;  // 2^53: larger doubles skip integers
       double number = 0.0;
       const auto [stop, fault] = std::from_chars(text.data(), last, number);
       is_whole = fault == std::errc{} && stop == last && number >= 0.0 && number <= most &&
@@ -210,16 +211,16 @@ void add_mesh(CLI::App& command, std::filesystem::path& mesh) {
 
 void add_load_options(CLI::App& command, LoadOptions& load) {
   add_space(command, "--space", load.space,
-            "Anatomical space to have the mesh in: turned if the file says SPACE=LPS or SPACE=RAS "
-            "and it is the other one. Without it: as it stands");
+            "Anatomical space of the mesh in memory: the mesh is converted if the file states the "
+            "other one with SPACE=LPS or SPACE=RAS. Default: as in the file");
   add_space(command, "--untagged", load.untagged,
-            "Anatomical space of a file that does not say which it is in");
+            "Anatomical space of a file that does not state one");
   std::vector<std::string> units;
   for (const UnitGuess& known : length_units()) units.emplace_back(known.unit);
   CLI::Option* const unit =
       command
           .add_option("--unit", load.unit,
-                      "Unit of the lengths in the file, which are scaled to mm. Without it: mm")
+                      "Unit of the lengths in the file, which are scaled to mm. Default: mm")
           ->type_name("")
           ->check(one_of(std::move(units)));
   command
@@ -229,7 +230,7 @@ void add_load_options(CLI::App& command, LoadOptions& load) {
       ->type_name("NUMBER")
       ->excludes(unit);
   command.add_flag("--flip", load.flip,
-                   "Wind each triangle the other way, if the normals point into the solid");
+                   "Reverse the winding of each triangle, if the normals point into the solid");
 }
 
 void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {
@@ -237,10 +238,10 @@ void add_constraint_options(CLI::App& command, MotionConstraintSettings& setting
            "Spatial index that finds triangles");
   command
       .add_option("--index-cache", settings.index_cache,
-                  "Keep what --index wide_bvh builds in this folder, for the next run")
+                  "Directory that stores the structure built by --index wide_bvh for the next run")
       ->type_name("FOLDER");
   add_part(command, "--solver", settings.solver, solver_names(), solver_backends,
-           "Solver of the step problem");
+           "Solver of the optimization problem of a step");
   for (const auto& option : step_options) add_option_of(command, option, settings.options);
   for (const auto& option : motion_settings) {
     if (option.kind != OptionKind::part) add_option_of(command, option, settings);
@@ -264,14 +265,14 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings) {
       command
           .add_option_function<std::string>(
               "--tool", take,
-              "A convex tool that shall not touch the surface, in place of the ball; it does not "
-              "turn. The tip is its origin, and a blade rises from it along z. One of: " +
+              "A convex tool, instead of the ball, that must not touch the surface; it does not "
+              "turn. The tip is its origin, and a blade extends from it along z. One of: " +
                   std::string(convex_tool_forms))
           ->type_name("TOOL")
           ->excludes(command.get_option("--tool-radius"));
-  add_part(command, "--narrow-phase", settings.narrow_phase, narrow_phase_names(),
-           narrow_phase_backends,
-           "What proposes the planes of --tool; each is proven, whatever it proposes")
+  add_part(
+      command, "--narrow-phase", settings.narrow_phase, narrow_phase_names(), narrow_phase_backends,
+      "Narrow phase that proposes the planes of --tool; each proposed plane is proved before use")
       ->needs(tool);
 }
 
@@ -288,12 +289,12 @@ CLI::Option* add_guides(CLI::App& command, std::vector<std::string>& guides) {
       "A region that the tip must not leave; may be given several times. [NAME=] and one of: " +
       std::string(region_forms);
   if (command.get_option_no_throw("--robot") != nullptr) {
-    help += ". With --robot, of a link: " + std::string(guide_forms);
+    help += ". With --robot, for a link: " + std::string(guide_forms);
   }
   return command.add_option("--guide", guides, help)
       ->type_name("GUIDE")
       ->check(CLI::Validator(is_guide, ""))
-      ->allow_extra_args(false);  // what follows a guide may be the mesh
+      ->allow_extra_args(false);  // the next word may be the mesh
 }
 
 std::string unknown_command(const CLI::App& app, const std::string& word) {

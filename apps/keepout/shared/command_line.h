@@ -19,12 +19,12 @@
 
 namespace keepout::app {
 
-// What the options of a command may be told.
+// Options of commands, and validators of their values.
 
-/// A name, with a hint at the one that was meant, and a list of all.
+/// Accepts one of these names. The message of an error suggests a similar name and lists all names.
 CLI::Validator one_of(std::vector<std::string> names);
 
-/// The same, for transform(): names of the values of an enumeration.
+/// Accepts the names of the values of an enumeration; for transform().
 template <class Enum>
 CLI::Validator one_of(const std::vector<std::pair<std::string, Enum>>& values) {
   std::vector<std::string> names;
@@ -43,7 +43,7 @@ CLI::Validator one_of(const std::vector<std::pair<std::string, Enum>>& values) {
   return {replace, check.get_description()};
 }
 
-/// The same of an enumeration whose values from 0 on have these names.
+/// Accepts the names of the values of an enumeration, which are numbered from 0.
 template <class Enum>
 CLI::Validator one_of(std::span<const std::string_view> names) {
   std::vector<std::pair<std::string, Enum>> values;
@@ -53,8 +53,8 @@ CLI::Validator one_of(std::span<const std::string_view> names) {
   return one_of(values);
 }
 
-/// Accepts the names of the parts that can be had. For a part whose module is absent, the message
-/// says what it needs. `backends` returns the registry of these parts.
+/// Accepts the names of the available parts. For a part whose module is absent, the message says
+/// what it needs. `backends` returns the registry of these parts.
 template <class Backends>
 CLI::Validator one_of_parts(std::vector<std::string> names, Backends backends) {
   const CLI::Validator known = one_of(std::move(names));
@@ -69,34 +69,33 @@ CLI::Validator one_of_parts(std::vector<std::string> names, Backends backends) {
   return {check, known.get_description()};
 }
 
-/// Above it, whole numbers are not read back as they were written.
+/// The largest whole number that is read back unchanged from a record.
 inline constexpr std::uint64_t largest_seed = (std::uint64_t{1} << 63) - 1;
 
 enum class Zero { allowed, refused };
 
-/// A number from `low` to `high`, which `expected` tells in words; CLI11's own checks let 'nan'
-/// pass and tell their range in 300 digits. `type`: what the help calls it.
+/// Accepts a number from `low` to `high`. `expected` describes the range in words, and `type` is
+/// its name in the help. CLI11's own check accepts 'nan' and prints the range with 300 digits.
 CLI::Validator number_within(double low, double high, std::string expected, std::string type);
 
-/// A length in millimeters. The limit keeps squares of lengths, and sums of them, far from the end
-/// of a double's range.
+/// Accepts a length in millimeters. Its limit keeps sums of squared lengths far from overflow.
 CLI::Validator length(Zero zero);
 
-/// A whole number in decimal digits, or with an exponent, such as 20000, 2e4 or 1.5e3. For
-/// transform(), which hands on its digits: CLI11 alone would take '-1' for 2^64 - 1, too many
-/// digits for the largest number, and '010' for 8.
+/// Accepts a whole number in decimal digits, or with an exponent, such as 20000, 2e4 or 1.5e3. For
+/// transform(), which passes the digits on. CLI11 alone accepts '-1' as 2^64 - 1, a number with too
+/// many digits as the largest number, and '010' as 8.
 CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 
-/// The most that a count of steps may be.
+/// The largest count of steps.
 inline constexpr std::uint64_t most_steps = 1'000'000'000'000;
 
-/// Any text but an empty one.
+/// Accepts any text that is not empty.
 CLI::Validator not_empty();
 
-/// A command of ./run that is no command of this program.
+/// A command of ./run that is not a command of this program.
 inline constexpr const char* run_command = "experiments";
 
-// Options of one kind; the value as it is stands in the help.
+// Options of one kind; the help shows the current value.
 
 CLI::Option* add_length(CLI::App& command, const std::string& name, double& value, Zero zero,
                         const std::string& description);
@@ -108,7 +107,7 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, Number& valu
       ->transform(whole_number(low, high))
       ->capture_default_str();
 }
-/// Adds an option of a table; `options` must live as long as the command line is parsed.
+/// Adds an option of a table. `options` must outlive the parsing of the command line.
 template <class Options>
 CLI::Option* add_option_of(CLI::App& command, const Option<Options>& option, Options& options) {
   const auto take = [&](const std::string& text) {
@@ -130,7 +129,7 @@ CLI::Option* add_option_of(CLI::App& command, const Option<Options>& option, Opt
   return added;
 }
 
-/// The same for the option of that name.
+/// Adds the option of this name.
 template <class Options>
 CLI::Option* add_option_of(CLI::App& command, std::string_view name, Options& options) {
   return add_option_of(command, option_named(table_of(options), name), options);
@@ -139,7 +138,7 @@ CLI::Option* add_option_of(CLI::App& command, std::string_view name, Options& op
 CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& value,
                       std::vector<std::string> names, const std::string& description);
 
-// What several commands take.
+// Options that several commands have.
 
 /// Adds an option that chooses an index, a solver or a narrow phase by name: see one_of_parts.
 template <class Backends>
@@ -151,33 +150,33 @@ CLI::Option* add_part(CLI::App& command, const std::string& name, std::string& v
       ->capture_default_str();
 }
 
-/// The mesh: a file or a fixture.
+/// Adds the mesh: a file or the name of a sample mesh.
 void add_mesh(CLI::App& command, std::filesystem::path& mesh);
 
 /// Adds the options of load_mesh() to a command that places something in the frame of the mesh.
 void add_load_options(CLI::App& command, LoadOptions& load);
 
-/// Of every command that builds a motion constraint, but for the rule, of which one may take
-/// several.
+/// Adds the options of a motion constraint except the rule: some commands take several rules.
 void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings);
 void add_activation(CLI::App& command, std::string& activation);
 
-/// Of every command that guards one tool, and judges it by nothing but the guard: a convex tool in
-/// place of the ball. Precondition: add_constraint_options.
+/// Adds a convex tool that replaces the ball, for commands that guard one tool and use only the
+/// guard as judge. Precondition: add_constraint_options.
 void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
 
-/// Adds the guides of a tip, and of links if the command has the option --robot already, as texts.
-/// Each is checked to be one.
+/// Adds the guides of a tip as texts, and of links if the command already has the option --robot.
+/// Checks that each text is a guide.
 CLI::Option* add_guides(CLI::App& command, std::vector<std::string>& guides);
 
-/// The tool that guides are for.
+/// The kind of tool that guides constrain.
 enum class Guided : std::uint8_t { tip, instrument };
 
 /// Returns the guides of texts that add_guides has taken. Throws CLI::ValidationError if one is not
-/// of that tool.
+/// for this kind of tool.
 std::vector<Guide> guides_of(std::span<const std::string> texts, Guided guided);
 
-/// Says that there is no command of that name, with a hint at what was meant and at the help.
+/// Returns a message that there is no command of this name, with a similar name and a hint at the
+/// help.
 std::string unknown_command(const CLI::App& app, const std::string& word);
 
 /// Returns the names of a program's commands.
@@ -189,8 +188,8 @@ std::vector<std::string> option_names(const CLI::App& command);
 /// Throws CLI::ValidationError if a list has an empty item, as in '1,,2': CLI11 leaves it out.
 void refuse_empty_items(const CLI::App& command, std::span<const std::string> words);
 
-/// What is wrong with a command line, in words that name the option and its value, with a hint at
-/// what was meant and at the help. `error`: what app.parse() threw, and no call for help.
+/// Returns a message on a wrong command line. It names the option and its value, suggests a similar
+/// name and points to the help. `error`: what app.parse() threw; not a request for help.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace keepout::app

@@ -11,7 +11,7 @@
 namespace keepout::app {
 namespace {
 
-/// Returns the names that an option takes: its help lists them in braces (one_of).
+/// Returns the names that an option accepts: its help lists them in braces (one_of).
 std::vector<std::string> values_of(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t first = type.find('{');
@@ -23,7 +23,7 @@ std::vector<std::string> values_of(const CLI::Option& option) {
   return values;
 }
 
-/// Returns the argument without an option's name that follows `count` others; or null.
+/// Returns the positional argument that follows `count` other ones; null if no argument is left.
 const CLI::Option* argument_after(const CLI::App& command, std::size_t count) {
   const std::vector<const CLI::Option*> arguments =
       command.get_options([](const CLI::Option* option) { return option->get_positional(); });
@@ -43,8 +43,8 @@ bool is_mesh(const CLI::Option& option) {
 void print_completions(const CLI::App& app, std::span<const std::string> words, std::ostream& out) {
   if (words.empty()) return;
   const CLI::App* command = &app;
-  const CLI::Option* open = nullptr;  // waits for its value
-  std::size_t arguments = 0;          // of the command, without an option's name
+  const CLI::Option* open = nullptr;  // expects its value
+  std::size_t arguments = 0;          // positional arguments of the command
   for (const std::string& word : words.first(words.size() - 1)) {
     if (word == "=") continue;
     if (open != nullptr) {

@@ -12,11 +12,10 @@ class App;
 
 namespace keepout::app {
 
-/// Prints what the last of `words` may be completed to, one a line: commands, options of the
-/// command that the words before it name, or names that are values of the option before it or of
-/// the argument in its place. Where a mesh is expected, prints names of fixtures, and an empty
-/// line: files are as welcome. Prints nothing where only the user's files come into question.
-/// `words`: as bash cuts a command line, "=" a word.
+/// Prints the completions of the last of `words`, one a line: commands, options of the command, or
+/// the names that the current option or argument accepts. For a mesh, prints the names of sample
+/// meshes and an empty line, because files are accepted as well. Prints nothing if only a file name
+/// is expected. `words`: as bash splits a command line, with "=" as a word.
 void print_completions(const CLI::App& app, std::span<const std::string> words, std::ostream& out);
 
 }  // namespace keepout::app

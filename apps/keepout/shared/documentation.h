@@ -6,12 +6,12 @@
 
 namespace keepout::app {
 
-/// Returns the folder of the pages of documentation: installed beside this program, or else in the
-/// sources that it was built in. Empty if it is in neither.
+/// Returns the directory of the documentation pages: installed beside this program, or in the
+/// sources that the program was built in. Empty if it is in neither.
 std::filesystem::path documentation_folder();
 
-/// Returns a text in which each "docs/NAME.md" names the page where it is on this machine.
-/// Unchanged without a documentation_folder().
+/// Returns the text with each "docs/NAME.md" replaced by the path of that page on this machine.
+/// Returns it unchanged without a documentation_folder().
 std::string with_places_of_pages(const std::string& text);
 
 }  // namespace keepout::app

@@ -8,7 +8,7 @@
 
 namespace keepout::app {
 
-/// Prints one fact as a line of a list for a terminal: its name, and its value in a column.
+/// Prints a fact as a line for a terminal: its name, and its value in a column.
 inline void print_row(std::ostream& out, std::string_view name, const std::string& value) {
   out << "  " << std::left << std::setw(14) << name << value << '\n';
 }

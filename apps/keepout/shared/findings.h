@@ -12,21 +12,22 @@
 
 namespace keepout::app {
 
-/// Something about a mesh that its user should know before trusting it.
+/// A property of a mesh that its user must know before trusting the mesh.
 struct Finding {
   std::string_view key;  // stable, for programs
-  std::size_t count;     // 1 where there is nothing to count
-  std::string_view one;  // what there are `count` of; empty where there is nothing to count
+  std::size_t count;     // 1 if there is nothing to count
+  std::string_view one;  // the noun that `count` counts; empty if there is nothing to count
   std::string_view meaning;
   std::string_view advice;
-  FaultPlaces places = {};  // none where there is nothing to count
+  FaultPlaces places = {};  // empty if there is nothing to count
 };
 
-/// Returns the findings, the worst first. `self_intersections`: if they were searched for.
+/// Returns the findings, the worst first. `self_intersections`: empty if they were not searched
+/// for.
 std::vector<Finding> findings_of(const MeshFindings& mesh,
                                  const std::optional<SelfIntersections>& self_intersections);
 
-/// Of what there are how many, and what that means, without a full stop: for people.
+/// Returns the count and the meaning as text for people, without a full stop.
 std::string text_of(const Finding& finding);
 
 }  // namespace keepout::app

@@ -19,7 +19,7 @@
 namespace keepout::app {
 namespace {
 
-/// What stands behind a key in one of the system's files; empty where there is none.
+/// Returns the value of a key in one of the system's files; empty if the key is missing.
 std::string value_of(const char* file, std::string_view key, std::string_view separator) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {
@@ -30,7 +30,7 @@ std::string value_of(const char* file, std::string_view key, std::string_view se
   return {};
 }
 
-/// A number of kibibytes there. [bytes]
+/// Returns a value of such a file that is given in kibibytes. [bytes]
 std::size_t memory_of(const char* file, std::string_view key) {
   std::istringstream text(value_of(file, key, ":"));
   std::size_t count = 0;
@@ -44,7 +44,7 @@ std::string operating_system() {
   return name.empty() ? "unknown system" : name;
 }
 
-/// What one reading of the clock takes, of many.
+/// Returns the mean time of one clock reading. [ns]
 double clock_cost() {
   using Clock = std::chrono::steady_clock;
   constexpr int readings = 100'000;

@@ -7,33 +7,33 @@
 
 namespace keepout::app {
 
-/// Where something ran: the machine, how keepout was built, and the libraries in it.
+/// The environment of a run: the machine, how keepout was built, and its libraries.
 struct Machine {
   std::string processor;
   unsigned cores = 0;
   double memory_gib = 0.0;
-  std::string simd;  // the instruction set that keepout ran on
+  std::string simd;  // the instruction set in use
   std::string system;
   std::string compiler;
   std::string flags;
   std::string build_type;
   std::string keepout;                 // version
   std::vector<std::string> libraries;  // name and version
-  double clock_ns = 0.0;               // what reading the clock adds to each time
+  double clock_ns = 0.0;               // the time that one clock reading adds to each measured time
 };
 Machine this_machine();
 
-/// The processor's name, as the system tells it.
+/// Returns the processor's name, as the system reports it.
 std::string processor();
 
-/// Memory that a process could still take. [bytes]
+/// Returns the memory that a process could still allocate. [bytes]
 std::size_t available_memory();
 
-/// The most memory that the process has held at once since it began, or since reset_peak_memory().
-/// [bytes] 0 where the system does not tell.
+/// Returns the peak memory of the process since it began, or since reset_peak_memory(). 0 if the
+/// system does not report it. [bytes]
 std::size_t peak_memory();
 
-/// The time now in UTC, as ISO 8601 has it.
+/// Returns the present time in UTC, in ISO 8601 format.
 std::string date_now();
 
 }  // namespace keepout::app

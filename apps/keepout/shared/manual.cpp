@@ -10,7 +10,7 @@
 namespace keepout::app {
 namespace {
 
-/// Returns a text of which man takes no character for a request.
+/// Returns the text with every character escaped that man would read as a request.
 std::string as_roff(const std::string& text) {
   std::string result;
   bool at_start = true;
@@ -28,18 +28,18 @@ std::string as_roff(const std::string& text) {
   return result;
 }
 
-/// Prints lines as they are.
+/// Prints lines unformatted.
 void print_lines(const std::string& text, std::ostream& out) {
   if (text.empty()) return;
   out << ".PP\n.nf\n" << as_roff(text) << (text.ends_with('\n') ? "" : "\n") << ".fi\n";
 }
 
-/// Prints the options of a program, or those of a command that the program itself has not.
+/// Prints the options of a program, or those options of a command that the program does not have.
 void print_options(const CLI::App& command, std::ostream& out) {
   const CLI::Formatter formatter;
   const CLI::App* const program = command.get_parent();
   for (const CLI::Option* option : command.get_options()) {
-    if (option->get_group().empty()) continue;  // not for users
+    if (option->get_group().empty()) continue;  // hidden from users
     if (program != nullptr && program->get_option_no_throw(option->get_name()) != nullptr) continue;
     const bool is_positional = option->get_positional();
     std::string values = formatter.make_option_opts(option);
@@ -70,7 +70,7 @@ void print_manual(const CLI::App& app, std::ostream& out) {
   const std::string name = app.get_name();
   std::istringstream description(app.get_description());
   std::string verb, what;
-  description >> verb;  // the name, with which the sentence begins
+  description >> verb;  // the name of the program, which begins the sentence
   std::getline(description >> std::ws, what, '.');
   out << ".TH " << capitals(name) << " 1 \"\" \"" << name << ' ' << KEEPOUT_VERSION
       << "\" \"User Commands\"\n.SH NAME\n"

@@ -9,7 +9,8 @@ class App;
 
 namespace keepout::app {
 
-/// Prints the manual page of a program, for man: all that --help says of it and of each command.
+/// Prints the manual page of a program for man: the --help texts of the program and of each
+/// command.
 void print_manual(const CLI::App& app, std::ostream& out);
 
 }  // namespace keepout::app

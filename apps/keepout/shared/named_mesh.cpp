@@ -25,7 +25,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Anything there but a folder, which is no mesh and so hides none.
+/// Returns true for anything but a directory: a directory is not a mesh, and hides no sample mesh.
 bool is_file(const std::filesystem::path& path) {
   std::error_code none;
   const std::filesystem::file_status status = std::filesystem::status(path, none);
@@ -36,12 +36,12 @@ bool is_shape(const std::filesystem::path& name) {
   return !is_file(name) && contains(names(shapes()), name.string());
 }
 
-/// One of the real meshes that fixtures/prepare makes.
+/// Returns true for the name of a real mesh that fixtures/prepare makes.
 bool is_prepared(const std::filesystem::path& name) {
   return !is_file(name) && contains(real_names(), name.string());
 }
 
-/// The meshes in the folder where the user thought there was this one.
+/// Returns the meshes in the directory that the path names.
 std::vector<std::string> files_beside(const std::filesystem::path& path) {
   constexpr std::array<std::string_view, 6> extensions{".stl", ".ply", ".obj",
                                                        ".off", ".vtk", ".vtp"};
@@ -68,13 +68,13 @@ std::vector<std::string> files_beside(const std::filesystem::path& path) {
   const std::string stem = path.stem().string();
   std::string hint = did_you_mean(name, known);
   if (hint.empty() && contains(fixtures, stem)) hint = did_you_mean(stem, fixtures);
-  throw Error(name + ": there is no such file, and no fixture of that name" +
-              (hint.empty() ? "; fixtures are " + enumerated(fixtures) : hint));
+  throw Error(name + ": there is no such file, and no sample mesh of that name" +
+              (hint.empty() ? "; sample meshes are " + enumerated(fixtures) : hint));
 }
 
 LoadedMesh generate(const std::filesystem::path& name, const LoadOptions& options) {
   if (options.space != AnatomicalSpace::unstated && options.space != options.untagged) {
-    throw Error(name.string() + ": is generated, and in no anatomical space: leave --space out");
+    throw Error(name.string() + ": is generated, and in no anatomical space: omit --space");
   }
   LoadedMesh loaded{.mesh = std::make_shared<const Mesh>(make_shape(name.string())),
                     .space = options.untagged};
@@ -90,13 +90,11 @@ LoadedMesh generate(const std::filesystem::path& name, const LoadOptions& option
 }  // namespace
 
 const std::string_view mesh_help =
-    "Mesh file in mm, STL, PLY, OBJ, OFF, VTK or VTP; or the name of a fixture, such as skull or "
-    "cube: see "
-    "'keepout --help'";
+    "Mesh file in mm: STL, PLY, OBJ, OFF, VTK or VTP; or the name of a sample mesh, such as skull "
+    "or cube: see 'keepout --help'";
 
 std::string mesh_names_help() {
-  return "MESH is a file, or, where there is no file of that name, a fixture:\n"
-         "  prepared   " +
+  return "MESH is a file, or, if there is no file of that name, a sample mesh:\n  prepared   " +
          enumerated(real_names()) + "\n" + "  generated  " + enumerated(names(shapes())) + "\n";
 }
 
@@ -111,7 +109,7 @@ std::filesystem::path file_of_mesh(const std::filesystem::path& name) {
   if (is_prepared(name)) return fixture_path(name.string());
   std::error_code error;
   const bool exists = std::filesystem::exists(std::filesystem::status(name, error));
-  // load_mesh() refuses a folder, and a path that cannot be followed, and says why.
+  // load_mesh() rejects a directory and a path with broken links, and says why.
   if (exists || (error && error != std::errc::no_such_file_or_directory)) return name;
   refuse(name);
 }
@@ -132,9 +130,9 @@ std::string mesh_words(const std::filesystem::path& mesh, const LoadOptions& loa
 LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions& options) {
   const bool is_sample = is_shape(name) || is_prepared(name);
   if (is_sample && (!options.unit.empty() || options.scale || options.flip)) {
-    throw Error(name.string() +
-                ": is a sample mesh, in mm and wound as it should be: leave --unit, --scale and "
-                "--flip out");
+    throw Error(
+        name.string() +
+        ": is a sample mesh, in mm and with correct winding: omit --unit, --scale and --flip");
   }
   return is_shape(name) ? generate(name, options) : load_mesh(file_of_mesh(name), options);
 }

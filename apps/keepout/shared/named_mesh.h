@@ -10,19 +10,19 @@
 
 namespace keepout::app {
 
-// What a user may name where a command takes a mesh: a file, or a fixture, which is one of the real
-// meshes that fixtures/prepare makes, or one of the generated shapes. A file of that name wins.
+// Names of meshes on a command line: a file or a sample mesh, which is one of the real meshes that
+// fixtures/prepare makes, or a generated shape. A file has priority over a sample mesh.
 
-/// What MESH is, for the help of a command; and which names there are.
+/// The help of the argument MESH, and the list of sample meshes.
 extern const std::string_view mesh_help;
 std::string mesh_names_help();
 
-/// Returns the names of all fixtures.
+/// Returns the names of all sample meshes.
 std::vector<std::string> fixture_names();
 
-/// The file behind the name; the name itself for a generated shape. Throws Error, with the names
-/// that were likely meant, when there is neither a file nor a fixture of that name, and when a real
-/// fixture is not prepared.
+/// Returns the file of a mesh name; the name itself for a generated shape. Throws Error, with
+/// similar names, if there is neither a file nor a sample mesh of this name. Throws Error if a real
+/// mesh is not prepared.
 std::filesystem::path file_of_mesh(const std::filesystem::path& name);
 
 /// Returns the words that name the mesh on a command line: its name, and the options that it was
@@ -32,7 +32,7 @@ std::string mesh_words(const std::filesystem::path& mesh, const LoadOptions& loa
 /// Reads or generates it. Throws Error.
 LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions& options = {});
 
-/// Like read_named_mesh(), but also writes notices and warnings to stderr, a line each.
+/// Like read_named_mesh(), but also writes notices and warnings to stderr, one a line.
 LoadedMesh load_named_mesh(const std::filesystem::path& name, const LoadOptions& options = {});
 
 }  // namespace keepout::app

@@ -9,28 +9,29 @@
 
 namespace keepout::app {
 
-// Names that a user may type, and how to tell of them.
+// Names that a user may type, and messages about them.
 
-/// "; did you mean 'certified'?", to go on with after an error; empty where there is no such name.
+/// Returns "; did you mean 'certified'?", to append to an error message; empty if no name is
+/// similar.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& names);
 
-/// "a, b, c".
+/// Returns "a, b, c".
 std::string enumerated(const std::vector<std::string>& names, std::string_view between = ", ");
 
-/// "a", "a and b", "a, b and c".
+/// Returns "a", "a and b", "a, b and c".
 std::string listed(const std::vector<std::string>& names);
 
-/// The beginning of somebody else's text, other bytes than printable ASCII as '?': up to 200 bytes,
-/// and "..." where there are more.
+/// Returns the beginning of untrusted text: at most 200 bytes, "..." if there are more. Replaces
+/// bytes other than printable ASCII by '?'.
 std::string printable(std::string_view text);
 
-/// The same in quotes.
+/// Returns printable(text) in quotes.
 std::string in_quotes(std::string_view text);
 
-/// As a shell needs it to be one word.
+/// Returns the word quoted for a shell.
 std::string shell_word(const std::string& word);
 
-/// The names in a table of parts.
+/// Returns the names in a table of parts.
 template <class Table>
 std::vector<std::string> names(const Table& table) {
   std::vector<std::string> all;
@@ -38,7 +39,7 @@ std::vector<std::string> names(const Table& table) {
   return all;
 }
 
-/// A table of parts as text, a line each below the title.
+/// Returns a table of parts as text: the title, and one line for each part.
 template <class Table>
 std::string listing(std::string_view title, const Table& table) {
   constexpr std::size_t name_width = 18;

@@ -33,7 +33,8 @@ std::string rounded(double value, int digits) {
   if (value == 0.0) return "0";
   const int magnitude = static_cast<int>(std::floor(std::log10(std::abs(value))));
   const int decimals = std::clamp(digits - 1 - magnitude, 0, 9);
-  return formatted("%.*f", decimals, value);  // the largest double has 309 digits
+  return formatted("%.*f", decimals,
+                   value);  // this buffer must hold 309 digits of the largest double
 }
 
 std::string trimmed(double value, int digits) {
@@ -71,7 +72,7 @@ std::string for_terminal(std::string text) {
     const char* const value = std::getenv(variable);
     if (value == nullptr || *value == '\0') continue;
     std::string locale = value;
-    for (char& c : locale) c = static_cast<char>(c | ' ');  // lower case
+    for (char& c : locale) c = static_cast<char>(c | ' ');  // to lower case
     const bool is_utf8 =
         locale.find("utf-8") != std::string::npos || locale.find("utf8") != std::string::npos;
     return is_utf8 ? text : in_ascii(std::move(text));

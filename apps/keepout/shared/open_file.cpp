@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the number of an entry that is this process' own; -1 for every other.
+/// Returns the descriptor number of an entry that belongs to this process; -1 for every other
+/// entry.
 int own_descriptor(const fs::path& entry) {
   const std::string own = "/proc/" + std::to_string(::getpid()) + "/";
   if (!entry.string().starts_with(own)) return -1;
@@ -49,8 +50,8 @@ OpenFile::OpenFile(const fs::path& entry) {
   if (own < 0) {
     descriptor_ = ::open(entry.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOCTTY);
   } else if (const int flags = ::fcntl(own, F_GETFL); flags >= 0) {
-    errno = EBADF;  // a file that is open for reading alone
-    // Not opened anew: the copy shares its position with those who write there before and behind.
+    errno = EBADF;  // the file is open for reading only
+    // Duplicated, not opened anew: the copy shares its position with the other writers of the file.
     if ((flags & O_ACCMODE) != O_RDONLY) descriptor_ = ::fcntl(own, F_DUPFD_CLOEXEC, 0);
   }
   if (descriptor_ < 0) {
@@ -70,7 +71,7 @@ std::error_code OpenFile::write(std::string_view text) noexcept {
     const ssize_t written = ::write(descriptor_, text.data(), text.size());
     if (written >= 0) {
       text.remove_prefix(static_cast<std::size_t>(written));
-    } else if (errno == EAGAIN) {  // another process has made it non-blocking
+    } else if (errno == EAGAIN) {  // another process has made the file non-blocking
       struct pollfd ready = {.fd = descriptor_, .events = POLLOUT, .revents = 0};
       ::poll(&ready, 1, -1);
     } else if (errno != EINTR) {

@@ -17,33 +17,33 @@
 namespace keepout::app {
 namespace {
 
-/// A partial file, where a signal handler can read of it: no memory of the heap, no lock.
+/// The name of a partial file, which a signal handler can read: it uses no heap memory and no lock.
 struct PartialFile {
-  std::atomic<bool> exists = false;  // or is about to
-  std::array<char, 4096> path;       // ends with a zero
+  std::atomic<bool> exists = false;  // or is about to exist
+  std::array<char, 4096> path;       // zero-terminated
 };
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// A command has three at most. One that found no room would merely outlive a signal.
+// A command has at most three. A file without a free entry would only remain after a signal.
 std::array<PartialFile, 8> partial_files;
 
 void remove_partial_files_and_end(int signal) {
   remove_partial_files();
   ::signal(signal, SIG_DFL);
-  ::raise(signal);  // delivered when this returns
+  ::raise(signal);  // delivered when this function returns
 }
 
 void handle_signals() {
   for (const int signal : {SIGHUP, SIGINT, SIGPIPE, SIGTERM}) {
     struct sigaction action = {};
-    // Whoever had it ignored, nohup for one, or handles it otherwise, is right.
+    // A signal that is ignored, for example by nohup, or handled elsewhere stays so.
     if (::sigaction(signal, nullptr, &action) != 0 || action.sa_handler != SIG_DFL) continue;
     action.sa_handler = remove_partial_files_and_end;
     ::sigaction(signal, &action, nullptr);
   }
 }
 
-/// Returns where a result will be, all links followed.
+/// Returns the path of a result, with all links followed.
 std::filesystem::path target_of(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::path target = follow_links(path, error);
@@ -60,7 +60,7 @@ std::string failure_of(const std::error_code& error) {
          "; results are written to a regular file only, so give the name of one";
 }
 
-/// One name for each file, also for one that does not exist.
+/// Returns one unique name for each file, even for a file that does not exist.
 std::filesystem::path unique_name(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(target_of(path), error);
@@ -69,14 +69,14 @@ std::filesystem::path unique_name(const std::filesystem::path& path) {
 }
 
 /// Returns true if an output would overwrite another file. A pipe or a terminal that is open twice,
-/// as stdin and as stdout, is overwritten by nothing.
+/// as stdin and as stdout, cannot be overwritten.
 bool same_file(const std::filesystem::path& output, const std::filesystem::path& other) {
   const auto one = entry_of_open_file(output);
   const auto two = entry_of_open_file(other);
   if (one && one == two) return true;
   const std::filesystem::path& first = one ? *one : output;
   const std::filesystem::path& second = two ? *two : other;
-  std::error_code missing;  // hard links need both to exist
+  std::error_code missing;  // equivalent() finds hard links only if both files exist
   if (one && !std::filesystem::is_regular_file(first, missing)) return false;
   return std::filesystem::equivalent(first, second, missing) ||
          unique_name(first) == unique_name(second);
@@ -179,7 +179,7 @@ void OutputFiles::commit() {
   }
   if (faults.empty()) return;
   throw Error(enumerated(faults, "; ") +
-              (written.empty() ? "" : " (written all the same: " + enumerated(written) + ")"));
+              (written.empty() ? "" : " (these were written: " + enumerated(written) + ")"));
 }
 
 }  // namespace keepout::app

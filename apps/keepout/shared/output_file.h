@@ -17,11 +17,12 @@
 
 namespace keepout::app {
 
-/// Removes all partial files. For signal handlers: calls only what POSIX names async-signal-safe.
+/// Removes all partial files. May be called by signal handlers: it uses only functions that POSIX
+/// calls async-signal-safe.
 void remove_partial_files() noexcept;
 
-/// The name of a partial file, which SIGHUP, SIGINT, SIGPIPE and SIGTERM remove when they end the
-/// process. Not thread-safe.
+/// The name of a partial file. SIGHUP, SIGINT, SIGPIPE and SIGTERM remove the file when they end
+/// the process. Not thread-safe.
 class RemovedBySignals {
  public:
   explicit RemovedBySignals(std::filesystem::path path);
@@ -35,14 +36,14 @@ class RemovedBySignals {
   std::filesystem::path path_;
 };
 
-/// A file that replaces another when commit() is called, or a text that commit() appends to an
-/// open file. Without a commit nothing remains, and the old file stays, also if SIGHUP, SIGINT,
-/// SIGPIPE or SIGTERM ends the process before. Not thread-safe: one thread makes and ends all of
+/// A file that replaces another one when commit() is called, or a text that commit() appends to an
+/// open file. Without a commit nothing remains and the old file stays, even if SIGHUP, SIGINT,
+/// SIGPIPE or SIGTERM ends the process. Not thread-safe: one thread must create and destroy all of
 /// them.
 class OutputFile {
  public:
-  /// Throws Error if the file cannot be made, or would replace a directory, a device or a pipe. A
-  /// path for which entry_of_open_file() returns an entry replaces nothing: see OpenFile.
+  /// Throws Error if the file cannot be created, or would replace a directory, a device or a pipe.
+  /// A path for which entry_of_open_file() returns an entry replaces nothing: see OpenFile.
   explicit OutputFile(const std::filesystem::path& path);
 
   std::ostream& stream() noexcept;
@@ -55,39 +56,38 @@ class OutputFile {
   const std::string& name() const noexcept { return name_; }
 
  private:
-  /// Throws Error, naming the file, because it could not be written to the end.
+  /// Throws Error with the name of the file, because it could not be written completely.
   [[noreturn]] void fail(const std::error_code& error) const;
 
   std::string name_;
-  std::optional<OpenFile> open_;  // if set, the two below are not
+  std::optional<OpenFile> open_;  // if set, the next two are empty
   std::optional<RemovedBySignals> partial_;
   std::optional<FileReplacement> file_;
-  std::ostringstream text_;  // for open_
+  std::ostringstream text_;  // the text for open_
 };
 
-/// A path, and what the user calls it: MESH, --out.
+/// A path, and its name on the command line: MESH, --out.
 struct NamedPath {
   std::string_view name;
   std::filesystem::path path;
 };
 
-/// The files that a command was asked for, made before any work: what cannot be written shall not
-/// be told of after an hour.
+/// The files that a command must write. They are opened before any work, so that an unwritable file
+/// is reported at once and not after an hour.
 class OutputFiles {
  public:
-  /// What the user calls a file, and its path if he asked for it.
+  /// The name of a file on the command line, and its path if the user gave one.
   using Asked = std::pair<std::string_view, std::optional<std::filesystem::path>>;
 
-  /// Throws Error where OutputFile does, and, naming both, when an output is the same file as an
-  /// input or as another output, by whatever names and links, and whether or not it exists yet.
+  /// Throws Error as OutputFile does. Also throws Error, with both names, if an output is the same
+  /// file as an input or another output. Names, links and missing files make no difference.
   OutputFiles(std::span<const NamedPath> inputs, std::initializer_list<Asked> outputs);
 
-  /// Where to write; null where it was not asked for.
+  /// Returns the stream to write to; null if the file was not requested.
   std::ostream* stream(std::string_view name);
 
-  /// Commits each file of which the stream was asked for. If some cannot be written, commits the
-  /// others all the same, and then throws Error, naming both. Files whose stream was not asked for
-  /// may follow later.
+  /// Commits each file whose stream was requested. If some cannot be written, commits the others,
+  /// and then throws Error with the names of both. The other files may be committed later.
   void commit();
 
  private:

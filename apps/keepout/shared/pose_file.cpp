@@ -16,13 +16,13 @@
 namespace keepout::app {
 namespace {
 
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8, as spreadsheets write
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8, which spreadsheets write
 constexpr std::string_view blanks = " \t\r";
 constexpr std::string_view separators = " \t\r,";
 constexpr std::size_t longest_line = (1 << 16) - 1;  // [bytes]
 
-/// The words of a line, parted by blanks, or by a comma with or without blanks around it. Throws
-/// Error for an empty column.
+/// Returns the words of a line, separated by blanks, or by a comma with or without blanks around
+/// it. Throws Error for an empty column.
 std::vector<std::string_view> words_in(std::string_view line) {
   std::vector<std::string_view> words;
   bool is_after_comma = true;
@@ -41,10 +41,10 @@ std::vector<std::string_view> words_in(std::string_view line) {
   }
 }
 
-/// Throws Error for a word that is no finite number.
+/// Returns the number that a word contains. Throws Error if it is not a finite number.
 double number_in(std::string_view word) {
   const std::string quoted = in_quotes(word);
-  // from_chars knows no plus sign, but would take the minus after one.
+  // from_chars does not accept a plus sign, but would accept "-1" after one.
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -58,12 +58,12 @@ double number_in(std::string_view word) {
   return value;
 }
 
-/// What the lines of a kind of file are.
+/// The format of the lines of a kind of file.
 struct LineKind {
-  std::size_t most_numbers;  // six, or one more that may be left out
-  std::string_view option;   // of the command line, by which the file is named
-  std::string_view name;     // of the file
-  std::string_view told;     // after what is wrong with a line
+  std::size_t most_numbers;  // six, or seven if the last may be omitted
+  std::string_view option;   // of the command line that names the file
+  std::string_view name;     // of the kind of file
+  std::string_view told;     // follows the message on a faulty line
 };
 
 std::vector<double> numbers_of(const std::vector<std::string_view>& words, const LineKind& kind) {
@@ -79,8 +79,8 @@ std::vector<double> numbers_of(const std::vector<std::string_view>& words, const
   return numbers;
 }
 
-/// Hands the words of each line, and its number, to `take`, but for blank lines and comments.
-/// Throws Error with file and line for what that throws.
+/// Passes the words and the number of each line to `take`, except for blank lines and comments.
+/// Adds file and line to each Error that `take` throws.
 template <class Take>
 void read_lines(const std::filesystem::path& path, const LineKind& kind, const Take& take) {
   const auto told = [&](std::size_t number, const std::string& what) {
@@ -95,7 +95,7 @@ void read_lines(const std::filesystem::path& path, const LineKind& kind, const T
   std::vector<char> line(longest_line + 1);
   std::size_t number = 1;
   for (; file.getline(line.data(), std::ssize(line)); ++number) {
-    // A line end has been counted as well.
+    // gcount() includes the line end.
     const auto length = static_cast<std::size_t>(file.gcount()) - (file.eof() ? 0 : 1);
     std::string_view text(line.data(), length);
     if (number == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);

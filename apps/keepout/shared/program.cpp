@@ -34,26 +34,26 @@ namespace {
 constexpr int exit_usage = 2;
 
 constexpr const char* run_help =
-    "\nThe experiments of the paper, done again: ./run experiments, and with --full all of them.\n";
+    "\nExperiments that reproduce those of Li et al. (2020): ./run experiments, and with --full "
+    "all of them.\n";
 
 constexpr const char* exit_statuses =
-    "Exit status: 0 if all went well; 1 if something failed, or what was to be checked does not "
-    "hold;\n"
-    "2 if the command line is wrong; 130 if it was interrupted: bench, compare, plan, replay, "
-    "simulate\nand verify then keep what was finished.\n";
+    "Exit status: 0 on success; 1 if something failed, or if a check found a violation;\n2 if the "
+    "command line is wrong; 130 if it was interrupted: bench, compare, plan, replay, simulate\nand "
+    "verify then write the finished results.\n";
 
-/// Makes writing beyond a limit on the size of files fail, instead of ending the process. Opens
-/// stdin, stdout and stderr where they are closed, so that reading and writing fail there:
-/// otherwise the next file that is opened would be taken for one of them.
+/// Prepares the process. Writing beyond a limit on the size of files then fails instead of ending
+/// the process. Opens stdin, stdout and stderr if they are closed, so that reading and writing fail
+/// there. Otherwise the next file that is opened would get the number of one of them.
 void prepare_process() {
   ::signal(SIGXFSZ, SIG_IGN);
   for (const int file : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(file, F_GETFD) >= 0) continue;
-    ::open("/dev/null", file == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // gets the lowest number
+    ::open("/dev/null", file == STDIN_FILENO ? O_WRONLY : O_RDONLY);  // gets the lowest free number
   }
 }
 
-/// True once a write to a pipe failed because the reader has closed it.
+/// Set once a write to a pipe has failed because the reader has closed it.
 volatile std::sig_atomic_t reader_is_gone = 0;
 
 /// Lets a command finish its files if the reader of its output ends early, as `head` does.
@@ -65,8 +65,8 @@ void outlive_readers() {
   ::sigaction(SIGPIPE, &action, nullptr);
 }
 
-/// Returns the exit status, or failure if the output has lost its reader. Throws Error if what was
-/// printed could not be written: a full disk must not look like success.
+/// Returns the exit status, or failure if the reader of the output has ended. Throws Error if the
+/// output could not be written: a full disk must not look like success.
 int flushed(int status) {
   std::cout.flush();
   if (std::cout) return status;
@@ -74,7 +74,7 @@ int flushed(int status) {
   throw Error("stdout: could not be written to the end; is the disk full?");
 }
 
-/// Returns the name by which the user calls the program: ./run puts its own in the place of ours.
+/// Returns the name by which the user calls the program: ./run passes its own name.
 std::string called_as(const char* path) {
   return std::filesystem::path(path).filename() == "run" ? "./run" : "keepout";
 }
@@ -83,14 +83,14 @@ std::vector<CLI::App*> subcommands(CLI::App& app) {
   return app.get_subcommands([](CLI::App*) { return true; });
 }
 
-/// Prints what installed files ask for: completions and the manual page. Returns false if the words
-/// ask for neither.
+/// Prints the completions or the manual page, for installed files. Returns false if the words
+/// request neither.
 bool print_for_files(CLI::App& app, const std::vector<std::string>& words) {
   const std::string first = words.empty() ? "" : words.front();
   if (first == "--complete") {
     print_completions(app, std::span(words).subspan(1), std::cout);
   } else if (first == "--manual") {
-    // The reader's processor has other instruction sets than this one.
+    // The processor of the manual's reader may have other instruction sets.
     app.get_option("--simd")->option_text("TARGET");
     print_manual(app, std::cout);
   } else {
@@ -105,12 +105,12 @@ void set_up(CLI::App& app, const std::vector<Command>& commands) {
   const bool is_run = app.get_name() == "./run";
   app.footer(mesh_names_help() + (is_run ? run_help : "") + '\n' + exit_statuses);
   app.set_version_flag("-V,--version", KEEPOUT_VERSION);
-  app.set_help_all_flag("--help-all", "Help on every command");
+  app.set_help_all_flag("--help-all", "Print the help of every command");
   app.require_subcommand(1);
   const std::vector<std::string_view> targets = simd_targets();
   app.add_option_function<std::string>("--simd", use_simd_target,
-                                       "Instruction set to run on instead of the fastest that this "
-                                       "processor has; the steps are the same")
+                                       "Instruction set to use instead of the fastest one of this "
+                                       "processor; the steps are the same")
       ->check(one_of({targets.begin(), targets.end()}))
       ->default_str(std::string(simd_target()))
       ->type_name("TARGET");
@@ -135,7 +135,7 @@ void set_up(CLI::App& app, const std::vector<Command>& commands) {
       ->type_name("");
 }
 
-/// Runs `help`. Returns the exit status.
+/// Runs the command `help`. Returns the exit status.
 int help(CLI::App& app) {
   const CLI::Option& named = *app.get_subcommand("help")->get_option("COMMAND");
   const std::string name = named.empty() ? "" : named.as<std::string>();
@@ -165,7 +165,7 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
     app.parse(argc, argv);
     refuse_empty_items(*app.get_subcommands().front(), words);
   } catch (const CLI::Success& call_for_help) {
-    // CLI11 prints the help of the program although the command is mistyped.
+    // CLI11 prints the help of the program even if the command is mistyped.
     const std::vector<std::string> extra = app.remaining();
     if (app.get_subcommands().empty() && !extra.empty() && !extra.front().starts_with('-')) {
       std::cerr << "keepout: " << unknown_command(app, extra.front()) << '\n';
@@ -197,7 +197,7 @@ int run_program(const std::vector<Command>& commands, int argc, char** argv) {
   try {
     status = flushed(run(commands, argc, argv));
   } catch (const PreparationInterrupted&) {
-    status = exit_interrupted;  // fixture_path() has said so
+    status = exit_interrupted;  // fixture_path() has printed the reason
   } catch (const Error& error) {
     std::cerr << "keepout: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {

@@ -17,7 +17,7 @@ class App;
 
 namespace keepout::app {
 
-/// The way in which a user called a program.
+/// How a user called a program.
 struct Call {
   std::string program;  // as the user calls it: "keepout" or "./run"
   std::string command;  // the whole command line, for records
@@ -27,11 +27,11 @@ struct Call {
 struct Command {
   std::string_view name;
   std::function<void(CLI::App& app)> add;    // adds the command and its options to a command line
-  std::function<int(const Call& call)> run;  // runs it with these options; returns the exit status
-  std::string_view group = "Commands";       // the heading above it in help and manual
+  std::function<int(const Call& call)> run;  // runs it; returns the exit status
+  std::string_view group = "Commands";       // the heading of its list in help and manual
 };
 
-/// Returns the command of that name whose options are an Options. `run` takes the options and the
+/// Returns the command of this name; its options are an Options. `run` takes the options and the
 /// stream of results, and returns the exit status or nothing.
 template <class Options, class Run>
 Command command(std::string_view name, void (*add)(CLI::App&, Options&), Run run,
@@ -49,11 +49,11 @@ Command command(std::string_view name, void (*add)(CLI::App&, Options&), Run run
           }};
 }
 
-/// Runs the command that the command line names. Returns the exit status: see `--help`. Prints what
-/// failed on stderr.
+/// Runs the command that the command line names. Returns the exit status: see `--help`. Prints
+/// errors on stderr.
 ///
-/// Two command lines are for installed files, not for users. `--complete WORD...` prints what the
-/// last word may be completed to (completion.bash); `--manual` prints the manual page.
+/// Two command lines are for installed files, not for users. `--complete WORD...` prints the
+/// completions of the last word (completion.bash); `--manual` prints the manual page.
 int run_program(const std::vector<Command>& commands, int argc, char** argv);
 
 }  // namespace keepout::app

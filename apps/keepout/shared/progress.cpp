@@ -17,8 +17,8 @@ namespace {
 constexpr const char* quiet_variable = "KEEPOUT_QUIET";
 constexpr std::chrono::seconds between_plain_lines{10};
 
-/// Blocks all signals of the calling thread, and of those that it starts meanwhile: handlers must
-/// run on the thread that waits for them.
+/// Blocks all signals of the calling thread, and of the threads that it starts meanwhile. The
+/// thread that waits for signals must run their handlers.
 class BlockedSignals {
  public:
   BlockedSignals() {
@@ -119,7 +119,7 @@ void Progress::rewrite() {
 
 void Progress::report_until(const std::stop_token& stop) {
   const sched_param any{};
-  ::sched_setscheduler(0, SCHED_BATCH, &any);  // of this thread; if it is refused, no harm is done
+  ::sched_setscheduler(0, SCHED_BATCH, &any);  // applies to this thread; a refusal is harmless
   std::unique_lock lock(mutex_);
   while (
       !stopped_.wait_for(lock, stop, between_plain_lines, [&] { return stop.stop_requested(); })) {

@@ -12,8 +12,8 @@
 
 namespace keepout::app {
 
-/// Prints no progress and no notices from now on: the option --quiet. Errors and warnings stay.
-/// Sets the environment variable KEEPOUT_QUIET, which programs that this one starts obey as well.
+/// Suppresses progress and notices from now on: the option --quiet. Errors and warnings stay. Sets
+/// the environment variable KEEPOUT_QUIET, which also applies to programs that this one starts.
 void be_quiet();
 
 /// Returns true if KEEPOUT_QUIET is set.
@@ -23,18 +23,18 @@ bool is_quiet();
 std::ostream& notices();
 
 /// Prints a warning on stderr, "keepout: TEXT", after clearing a line that shows progress. Prints
-/// the same text only once.
+/// the same text only once. Not thread-safe.
 void warn_on_stderr(const std::string& text);
 
-/// Shows on stderr how much of a long piece of work is done: on a terminal in a line that is
-/// rewritten; elsewhere in a plain line every 10 seconds, and one at the end of work that took half
-/// a second or more. Shows nothing if is_quiet().
+/// Shows the progress of long work on stderr. On a terminal it rewrites one line. Elsewhere it
+/// prints a line every 10 seconds, and one at the end of work that took at least half a second.
+/// Shows nothing if is_quiet().
 ///
-/// The plain lines come from a thread of its own, so the work need not call advance() often. The
-/// thread sleeps between lines and has the scheduling policy SCHED_BATCH: waking, it does not
-/// preempt work that is being timed.
+/// A thread of its own prints the plain lines, so the work need not call advance() often. The
+/// thread sleeps between lines and has the scheduling policy SCHED_BATCH: when it wakes, it does
+/// not preempt work that is being timed.
 ///
-/// A caller that prints something else to the terminal meanwhile must call interrupt() first.
+/// A caller that prints other text to the terminal meanwhile must call interrupt() first.
 class Progress {
  public:
   Progress(std::string what, std::size_t total);
@@ -44,7 +44,7 @@ class Progress {
 
   void advance(std::size_t by = 1);
 
-  /// Shows at once what is being done.
+  /// Shows the current activity at once.
   void show(const std::string& detail);
 
   /// Clears the line on the terminal, until the next change.
@@ -62,7 +62,7 @@ class Progress {
   std::string what_;
   std::size_t total_;
   std::atomic<std::size_t> done_ = 0;
-  std::string detail_ = {};  // the mutex guards it
+  std::string detail_ = {};  // guarded by the mutex
   Clock::time_point start_ = Clock::now();
   Clock::time_point shown_ = start_;
   Form form_;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array stopping{SIGHUP, SIGINT, SIGTERM};
 
-// Signals come to the process, on whatever thread: those of an index's library among them.
+// The system delivers a signal to any thread of the process, also to one of an index's library.
 std::atomic<int> event_file{-1};
 std::atomic<bool> noted{false};
 std::atomic<bool> ends_process{false};
@@ -41,12 +41,12 @@ void note(int signal) {
     ::_exit(exit_interrupted);
   }
   if (!noted.exchange(true)) say(said_at_once);
-  // A second one is not waited for: it does what it did before.
+  // Restores the earlier action: the second signal acts as if this handler did not exist.
   for (std::size_t i = 0; i < stopping.size(); ++i) {
     if (stopping[i] == signal) ::sigaction(signal, &earlier_actions[i], nullptr);
   }
   const std::uint64_t one = 1;
-  // It can fail only if it is noted already.
+  // This fails only if the signal is already noted.
   [[maybe_unused]] const ssize_t written = ::write(event_file.load(), &one, sizeof one);
   errno = error;
 }
@@ -64,7 +64,7 @@ StopSignal::StopSignal(std::string_view said, BeforeWork before) {
   action.sa_handler = note;
   for (std::size_t i = 0; i < stopping.size(); ++i) {
     ::sigaction(stopping[i], &action, &earlier_actions[i]);
-    // What was ignored from the start, as under nohup, stays ignored.
+    // A signal that was ignored from the start, as under nohup, stays ignored.
     if (earlier_actions[i].sa_handler == SIG_IGN) {
       ::sigaction(stopping[i], &earlier_actions[i], nullptr);
     }

@@ -8,24 +8,24 @@
 
 namespace keepout::app {
 
-/// By which everything here is timed.
+/// The clock of all measured times.
 using BenchClock = std::chrono::steady_clock;
 
 inline double microseconds_since(BenchClock::time_point start) {
   return std::chrono::duration<double, std::micro>(BenchClock::now() - start).count();
 }
 
-/// How long something took, over many times. [us] Percentiles are by nearest rank: a time that did
-/// occur. Those that need more samples than there are, are missing.
+/// Statistics of repeated times. Percentiles are by nearest rank, so each is a measured time. A
+/// percentile that needs more samples than there are is empty. [µs]
 struct Timing {
   double p50 = 0.0;
-  std::optional<double> p99 = {};   // of 100 samples or more
-  std::optional<double> p999 = {};  // of 1000 samples or more
+  std::optional<double> p99 = {};   // needs at least 100 samples
+  std::optional<double> p999 = {};  // needs at least 1000 samples
   double max = 0.0;
   std::size_t samples = 0;
 };
 
-/// Sorts the samples. [us] All zero where there are none.
+/// Sorts the samples and returns their statistics; zeros without samples. [µs]
 Timing timing_of(std::vector<double>& samples);
 
 /// Any number of times, in bounded memory: beyond a million it keeps every second time, then every

@@ -12,8 +12,8 @@
 namespace keepout::app {
 namespace {
 
-/// Whether the line through both points meets the triangle, by the signed volumes that it spans
-/// with the three sides.
+/// Returns true if the line through both points meets the triangle: the signed volumes that it
+/// spans with the three sides then have equal signs.
 bool line_meets(const Triangle& triangle, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
   std::array<double, 3> volume;
@@ -24,7 +24,7 @@ bool line_meets(const Triangle& triangle, const Vec3& from, const Vec3& to) {
          (volume[0] <= 0.0 && volume[1] <= 0.0 && volume[2] <= 0.0);
 }
 
-/// The angle of a triangle at the part of it where the closest point lies. [rad]
+/// Returns the angle of a triangle at the feature that contains the closest point. [rad]
 double angle_at(const Triangle& triangle, Feature feature) {
   constexpr double pi = 3.141592653589793;
   if (is_face(feature)) return 2.0 * pi;
@@ -62,7 +62,7 @@ double Audit::clearance(double distance, Side side) const noexcept {
 }
 
 Hit Audit::nearest(const Vec3& point) {
-  // The kernel rounds in another way than the oracle does.
+  // The bound allows for the different rounding of kernel and oracle.
   const double reach = distance(point) * (1.0 + 1e-6) + 1e-12 * point.lpNorm<1>();
   candidates_.clear();
   tree_->collect(oracle::inflated({point, point}, reach), candidates_);
@@ -78,7 +78,7 @@ Hit Audit::nearest(const Vec3& point) {
 
 bool Audit::is_behind_sheet(const Vec3& point) {
   const Hit hit = nearest(point);
-  // Triangles that share the closest point share its bits: they are the ones around it.
+  // Triangles around a shared closest point compute it bitwise identically.
   Vec3 normal = Vec3::Zero();
   for (const TriangleId t : candidates_) {
     const Triangle triangle = mesh_->triangle(t);
@@ -116,11 +116,11 @@ PathAudit::PathAudit(Audit& audit, const Vec3& start)
 bool PathAudit::follow(const Vec3& to) {
   const Vec3 from = std::exchange(at_, to);
   const double room = std::exchange(distance_, audit_->distance(to));
-  // Too short a way to come near a closed surface: the side stays.
+  // The motion is too short to reach a closed surface, so the side stays the same.
   const bool stays_clear = (to - from).norm() < 0.999 * (room - Audit::touching);
   if (stays_clear && audit_->surface() == SurfaceKind::closed) return false;
   const Side start = std::exchange(here_, audit_->side(to, distance_));
-  // Parts of the way between two meetings lie on one side each: their middles tell which.
+  // Each part of the motion between two contacts is on one side, which is the side of its middle.
   std::vector<double> meetings = audit_->meetings(from, to);
   if (start == Side::touching) meetings.insert(meetings.begin(), 0.0);
   if (here_ == Side::touching) meetings.push_back(1.0);
@@ -140,7 +140,8 @@ bool PathAudit::changes_side(Side now) {
   if (now == Side::touching) return false;
   const Side before = std::exchange(side_, now);
   if (before == now || before == Side::touching) return false;
-  // Whoever leaves a closed surface went through it; an open one can be traversed around.
+  // A path from one side of a closed surface to the other crosses it; a path may go around an open
+  // one.
   return audit_->surface() == SurfaceKind::closed || met_;
 }
 

@@ -25,7 +25,7 @@ namespace {
 enum class Mode : std::uint8_t { certified, linearized, tip_only, none };
 const std::vector<std::string> mode_names{"certified", "linearized", "tip only", "none"};
 
-/// The bodies of the PSM, in its order.
+/// The bodies of the PSM, in the order of the instrument.
 constexpr std::array<const char*, 3> body_names{"shaft", "wrist", "jaw"};
 
 constexpr std::array<const char*, manners.size()> manner_names{
@@ -56,13 +56,13 @@ Columns<RunTally> mode_columns(bool has_guides) {
 }
 
 constexpr const char* columns_meaning =
-    R"(close: cycles in which a body was closer than the certified distance, as an independent judge sees
-five poses of each; in mesh: of them, those in which the mesh reached into it; deepest: how far, in mm,
-at most its radius. refused: cycles without a proven motion; limits: cycles that broke a joint's;
-guides, if there are any: cycles that left one by more than is promised.
+    R"(close: cycles in which a body was closer than its certified clearance; an independent judge
+examines five poses of each. in mesh: of these, cycles in which the mesh reached into the body;
+deepest: the depth in mm, at most the radius. refused: cycles without a proved motion; limits:
+cycles that broke a joint limit; guides, if any: cycles that left a guide by more than guaranteed.
 )";
 
-/// The cycles of a stroke in one mode, and which was the worst.
+/// Returns the cycles of a stroke in one mode, and the number of the worst cycle.
 Json run_json(const std::string& mode, const std::vector<Cycle>& cycles) {
   Json places = Json::array(), clearances = Json::array();
   for (const Cycle& cycle : cycles) {
@@ -114,8 +114,8 @@ class GuardedInstrument final : public SimulatedTool {
     return instrument_stroke(*on_, options_.strokes, number, speed);
   }
 
-  /// The step of all modes is the same, and differs in its meshes: it has none where only the tip
-  /// is guarded, or nothing is. Then it is damped least squares within the limits of the joints.
+  /// All modes use the same step with different meshes. It has no mesh if only the tip is guarded,
+  /// or if there is no guard. Without a mesh it is damped least squares within the joint limits.
   StrokeStart start(const Stroke& stroke, std::size_t guard) override {
     const auto mode = static_cast<Mode>(guard);
     const Scene& scene = on_->scene;
@@ -141,7 +141,7 @@ class GuardedInstrument final : public SimulatedTool {
                                        .meshes = {{scene.tree()}},
                                        .guides = judged_guides(guides_)},
                    joints_->instrument().chain(), random_, q_, step, joints_->tolerance());
-    // All starts are drawn farther away than the margin.
+    // All starts are farther away than the margin.
     return {.required = margin_ - step.band - 3.0 * joints_->tolerance()};
   }
 
@@ -170,8 +170,8 @@ class GuardedInstrument final : public SimulatedTool {
     return cycle;
   }
 
-  /// Keeps the stroke of each manner in which guarded bodies missed the margin most, in all modes
-  /// together.
+  /// Keeps one stroke of each manner: the one in which guarded bodies missed the margin most,
+  /// summed over all modes.
   void keep(FollowedStroke followed) override {
     const Stroke& stroke = followed.stroke;
     const auto manner = static_cast<std::size_t>(stroke.manner);
@@ -180,7 +180,7 @@ class GuardedInstrument final : public SimulatedTool {
               {"number", stroke.number},
               {"port", json_of(stroke.start.base.position)},
               {"runs", Json::array()}};
-    double told = 0.0;  // [mm]
+    double told = 0.0;  // shortfall of all guarded modes [mm]
     for (std::size_t mode = 0; mode < mode_names.size(); ++mode) {
       const std::vector<Cycle>& cycles = followed.runs[mode];
       const double least = std::ranges::min_element(cycles, {}, &Cycle::least)->least();
@@ -193,7 +193,7 @@ class GuardedInstrument final : public SimulatedTool {
   }
 
   SimulationResult result(const std::vector<RunTally>& runs) override {
-    std::size_t cycles = 0, broken = 0;  // certified
+    std::size_t cycles = 0, broken = 0;  // of the certified mode
     std::vector<std::string> still;      // runs in which the instrument did not move
     for (const RunTally& run : runs) {
       if (run.stood_still()) {
@@ -203,7 +203,7 @@ class GuardedInstrument final : public SimulatedTool {
       cycles += run.cycles;
       broken += run.any.below + run.breaches + run.guides_left;
     }
-    // A mesh without a stroke that is finished.
+    // The last mesh may have no finished stroke.
     if (meshes_.back()["strokes"].empty()) meshes_.erase(meshes_.size() - 1);
     const bool has_guides = !guides_.empty();
     const std::vector<std::string> untested = untested_guides(runs, options_.guides);
@@ -249,12 +249,12 @@ class GuardedInstrument final : public SimulatedTool {
   std::vector<Guide> guides_;
   std::unique_ptr<RobotScene> on_;
   Json meshes_ = Json::array();
-  std::array<double, manners.size()> told_ = {};  // of the strokes kept on the last mesh [mm]
+  std::array<double, manners.size()> told_ = {};  // of the strokes of the last mesh [mm]
   std::optional<InstrumentConstraint> joints_;
   std::optional<MotionConstraint> tip_;  // guards the tip alone
   std::optional<oracle::RobotJudge> judge_;
   Random random_{0};       // of the judge
-  std::vector<double> q_;  // positions of the joints
+  std::vector<double> q_;  // joint positions
   double speed_ = 1.0;
 };
 

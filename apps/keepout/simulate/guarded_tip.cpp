@@ -60,7 +60,7 @@ class GuardedTip final : public SimulatedTool {
     if (constraint_ != nullptr) {
       StageTimes times;
       const Step step = constraint_->step({.tip = tip_, .desired = motion}, times);
-      // Less than a nanometer when more was commanded is standing still.
+      // A motion of less than a nanometer, when more was commanded, counts as none.
       const bool is_still = step.motion.norm() < 1e-6 && motion.norm() > 1e-3;
       cycle.outcome = !step.ok() || is_still        ? Outcome::stopped
                       : step.status != Status::free ? Outcome::limited
@@ -92,10 +92,10 @@ class GuardedTip final : public SimulatedTool {
   std::optional<Audit> audit_;
   std::function<Stroke()> strokes_;
   std::vector<FollowedStroke> kept_;
-  MotionConstraint* constraint_ = nullptr;  // null: none
+  MotionConstraint* constraint_ = nullptr;  // null: no guard
   Vec3 tip_ = Vec3::Zero();
-  std::optional<PathAudit> path_;       // of a ball
-  std::optional<ToolAudit> tool_path_;  // of a convex tool
+  std::optional<PathAudit> path_;       // for a ball
+  std::optional<ToolAudit> tool_path_;  // for a convex tool
   std::optional<GuideAudit> guide_path_;
 };
 

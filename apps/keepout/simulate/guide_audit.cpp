@@ -9,7 +9,7 @@ namespace {
 
 using oracle::JudgedGuide;
 
-/// The rounding of many cycles, in a fraction of the coordinates.
+/// The rounding error of many cycles, as a fraction of the coordinates.
 constexpr double rounding = 1e-12;
 
 JudgedGuide::Kind judged(Guide::Kind kind) {

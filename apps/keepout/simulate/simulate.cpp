@@ -20,9 +20,9 @@
 namespace keepout::app {
 namespace {
 
-/// All strokes on all meshes, at all speeds, under all guards.
+/// The results of all strokes on all meshes, at all speeds, under all guards.
 struct Runs {
-  std::vector<RunTally> runs = {};        // only those with a stroke that is finished
+  std::vector<RunTally> runs = {};        // only those with a finished stroke
   std::shared_ptr<const Mesh> mesh = {};  // the last
   std::size_t finished = 0, planned = 0;  // strokes
 
@@ -30,7 +30,7 @@ struct Runs {
 };
 
 /// Follows a stroke under all guards, and adds it to their runs. Returns false if a signal came
-/// before it was finished: then nothing is added.
+/// before the stroke was finished; then it adds nothing.
 bool follow_stroke(SimulatedTool& tool, Stroke stroke, std::span<RunTally> runs,
                    const StopSignal& stop) {
   FollowedStroke followed{.stroke = std::move(stroke)};
@@ -84,7 +84,7 @@ Runs run_strokes(SimulatedTool& tool, const std::vector<std::filesystem::path>& 
   return all;
 }
 
-/// The last lines on the terminal.
+/// Prints the last lines on the terminal.
 void print_next(const SimulateOptions& options, const Json& record, std::ostream& out) {
   out << (missing_template(record).empty() ? "\nReport, with pictures, tables and settings: "
                                            : "\nReport, with tables and settings, no pictures: ")
@@ -130,15 +130,15 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   out << legend << '\n';
   PartTimings timings;
   try {
-    // The tables of the benchmark are many, and mean little to a reader who does not know it.
+    // The benchmark has many tables, which few readers need.
     std::ostream tables(options.is_verbose ? out.rdbuf() : nullptr);
     if (options.is_timing_parts && done.is_complete()) {
       timings = options.time_parts(options, done.mesh, stop, tables);
       record["benchmark"] = timings.benchmark;
       record["comparison"] = timings.comparison;
     }
-  } catch (const std::exception& error) {  // the simulation is complete, and kept
-    std::cerr << "keepout: the benchmark is left out: " << error.what() << '\n';
+  } catch (const std::exception& error) {  // the simulation is complete and must be reported
+    std::cerr << "keepout: the benchmark is omitted: " << error.what() << '\n';
   }
   const bool is_complete = done.is_complete() && timings.complete;
   record["complete"] = is_complete;

@@ -21,51 +21,53 @@ class SimulatedTool;
 
 /// Timings of all indices, rules and solvers on the mesh of a simulation.
 struct PartTimings {
-  Json benchmark, comparison;    // for the record; null if there are none
+  Json benchmark, comparison;    // for the record; null without timings
   std::size_t combinations = 0;  // rows of the benchmark
   bool complete = true;          // false if a signal stopped it
-  bool is_wrong = false;         // some part gave a wrong answer
+  bool is_wrong = false;         // a part gave a wrong answer
 };
 
-/// Times all parts on a mesh until a signal comes; prints tables to `out`.
+/// Times all parts on a mesh until a signal comes. Prints tables to `out`.
 using TimeParts = std::function<PartTimings(const SimulateOptions& options,
                                             const std::shared_ptr<const Mesh>& mesh,
                                             const StopSignal& stop, std::ostream& out)>;
 
-/// Makes the instrument of options.robot.
+/// Returns the instrument of options.robot as a simulated tool.
 using MakeInstrument =
     std::function<std::unique_ptr<SimulatedTool>(const SimulateOptions& options)>;
 
 struct SimulateOptions {
-  std::vector<std::filesystem::path> meshes;  // one; with a robot any number, by default real ones
+  std::vector<std::filesystem::path> meshes;  // one; with a robot any number
   LoadOptions load = {};
   RecordFiles files = {.json = {}, .page = "keepout-report.html"};
-  std::vector<std::string> rules;       // run beside the tool without a fixture
-  MotionConstraintSettings constraint;  // its activation is each of the rules in turn
-  std::vector<std::string> guides;      // texts: of the tip, or with a robot of its links
+  std::vector<std::string> rules;       // run in addition to the unguarded tool
+  MotionConstraintSettings constraint;  // its activation is replaced by each rule in turn
+  std::vector<std::string> guides;      // texts: guides of the tip, or of the robot's links
   StrokeSettings strokes;
   double max_step = 0.5;                 // longest increment commanded in a cycle [mm]
-  TimeParts time_parts = {};             // unset in programs that cannot
+  TimeParts time_parts = {};             // unset in a program that cannot time parts
   MakeInstrument make_instrument = {};   // unset in a program that simulates a tip only
-  bool is_timing_parts = false;          // whether to do so after the simulation
-  bool is_verbose = false;               // prints the tables of these timings
-  std::string robot;                     // drives its instrument instead of a tip; empty: a tip
-  std::vector<double> speeds{1.0, 5.0};  // of it, in multiples of 0.5 mm and 0.02 rad a cycle
-  std::string called_as = "keepout";     // in the suggestions at the end; empty: no suggestions
-  std::string command;                   // that does it again
+  bool is_timing_parts = false;          // run time_parts after the simulation
+  bool is_verbose = false;               // print the tables of these timings
+  std::string robot;                     // whose instrument is driven; empty: a tip
+  std::vector<double> speeds{1.0, 5.0};  // of a robot, in multiples of 0.5 mm and 0.02 rad a cycle
+  std::string called_as = "keepout";     // for the suggestions at the end; empty: no suggestions
+  std::string command;                   // the command that repeats the simulation
 };
 
 /// Moves a tip, or the instrument of a robot, over and into the anatomy in closed loop, without a
-/// guard and with each one, and judges each cycle. Writes a record of the kind simulate or
-/// simulate_robot (docs/records.md) and its report, and prints the outcome and what to try next. A
-/// rule that is named twice runs once.
+/// guard and with each guard, and judges each cycle. Writes a record of the kind simulate or
+/// simulate_robot (docs/records.md) and its report. Prints the outcome and suggestions. Runs a rule
+/// that is named twice once.
 ///
-/// A StopSignal ends it within a cycle. The strokes that are finished are kept; without one,
-/// nothing is written. Returns the exit status: failure if a certified cycle of an instrument broke
-/// what docs/joint-space-step.md promises, if a guarded tip left a guide, if a guarded convex tool
-/// touched the surface, or if a part that was timed gave a wrong answer;
-/// exit_interrupted if a signal stopped it. Throws Error, also if the report would
-/// overwrite the mesh; then there is no report.
+/// A StopSignal ends the simulation within a cycle. The finished strokes are reported; if no stroke
+/// is finished, nothing is written. Throws Error, also if the report would overwrite the mesh; then
+/// there is no report.
+///
+/// Returns the exit status. It is a failure if a certified cycle of an instrument broke a guarantee
+/// of docs/joint-space-step.md, or if a timed part gave a wrong answer. It is a failure as well if
+/// a guarded tip left a guide, or if a guarded convex tool touched the surface. It is
+/// exit_interrupted if a signal stopped the simulation.
 int simulate(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

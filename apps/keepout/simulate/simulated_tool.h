@@ -23,13 +23,13 @@ struct FollowedStroke {
 /// The outcome of a simulation, for a record and a terminal.
 struct SimulationResult {
   Json record;                // see docs/records.md
-  Columns<RunTally> columns;  // of the table of all runs
+  Columns<RunTally> columns;  // the columns of the table of all runs
   std::string_view legend = {};
-  bool is_broken = false;  // a promise was broken, or no guide was tested
+  bool is_broken = false;  // a guarantee was broken, or no guide was tested
 };
 
-/// The tool that an operator moves over meshes, under each of its guards, in the closed loop of
-/// simulate().
+/// The tool that an operator moves over meshes in the closed loop of simulate(), under each of its
+/// guards.
 class SimulatedTool {
  public:
   virtual ~SimulatedTool() = default;
@@ -39,26 +39,27 @@ class SimulatedTool {
                                            const StopSignal& stop) = 0;
   /// Returns the names of the guards; "none" lets the tool go anywhere.
   virtual std::vector<std::string> guards() const = 0;
-  /// Draws the next stroke. Throws Error if there is no place for it.
+  /// Draws the next stroke. Throws Error if no place is suitable.
   virtual Stroke draw(std::uint64_t number, double speed) = 0;
 
-  /// Places the tool where a stroke begins, under a guard.
+  /// Places the tool at the start of a stroke, under a guard.
   virtual StrokeStart start(const Stroke& stroke, std::size_t guard) = 0;
-  /// Makes one cycle: steps towards the goal, applies the motion and judges it.
+  /// Runs one cycle: steps towards the goal, applies the motion and judges it.
   virtual Cycle follow(const Pose& goal) = 0;
 
-  /// Keeps what the record shows of a stroke.
+  /// Keeps the data of a stroke for the record.
   virtual void keep(FollowedStroke followed) = 0;
-  /// Returns the result of runs, one for each mesh, speed and guard.
+  /// Returns the result of the runs, one for each mesh, speed and guard.
   virtual SimulationResult result(const std::vector<RunTally>& runs) = 0;
 };
 
-/// A tip, without a fixture and under each rule. Throws Error for options that contradict. The
+/// Returns a tip, unguarded and under each rule. Throws Error for contradictory options. The
 /// options must outlive it.
 std::unique_ptr<SimulatedTool> make_guarded_tip(const SimulateOptions& options);
 
-/// The instrument of a robot, in joint space: with the certified step, with one that certifies a
-/// linearized motion, with a certified tip only, and without a guard. The options must outlive it.
+/// Returns the instrument of a robot, in joint space: with the certified step, with a step that
+/// certifies a linearized motion, with a certified tip only, and without a guard. The options must
+/// outlive it.
 std::unique_ptr<SimulatedTool> make_guarded_instrument(const SimulateOptions& options);
 
 }  // namespace keepout::app

@@ -19,31 +19,31 @@ namespace keepout::app {
 
 /// The outcome of the motion that the operator commanded in one cycle.
 enum class Outcome : std::uint8_t {
-  moved_freely,  // all of it was allowed
-  limited,       // a part of it was
-  stopped        // none of it was, or, of a tip, less than a nanometer
+  moved_freely,  // all of the motion was allowed
+  limited,       // a part of the motion was allowed
+  stopped        // no motion, or less than a nanometer of a tip
 };
 
-/// One control cycle of a simulated stroke, as it ended. A tip is one body; an instrument has
+/// The result of one control cycle of a simulated stroke. A tip is one body; an instrument has
 /// shaft, wrist and jaw.
 struct Cycle {
   static constexpr double far = std::numeric_limits<double>::infinity();
 
-  std::array<Vec3, 3> places;  // where the bodies end [mm]
-  /// The least distance of each body to the surface, by an independent check: negative inside,
-  /// never negative for a tip beside an open surface, infinite beyond the margin of an instrument.
-  /// [mm]
+  std::array<Vec3, 3> places;  // the ends of the bodies [mm]
+  /// The least distance of each body to the surface, measured independently: negative inside, never
+  /// negative for a tip beside an open surface, infinite beyond the margin of an instrument. [mm]
   std::array<double, 3> clearances{far, far, far};
-  float step_us = 0.0F;  // time that the step of a tip took; 0 without a fixture [us]
+  float step_us = 0.0F;  // time of a tip's step; 0 without a guard [µs]
   Outcome outcome = Outcome::moved_freely;
-  bool is_breach = false;      // the tip passed through a triangle, a convex tool touched one, or a
-                               // joint left its limits
-  bool is_guide_left = false;  // by more than is promised
+  bool is_breach =
+      false;  // a tip crossed a triangle, a convex tool touched one, or a joint left its limits
+  bool is_guide_left = false;  // by more than guaranteed
   double guide_excess =
       -far;  // largest of a tip's guides at the end; -infinity without guides [mm]
   std::uint32_t guides_inside = 0;  // a bit for each guide: inside as the cycle began
 
-  /// Returns the smallest clearance; NaN if one is, as no clearance is proved then.
+  /// Returns the smallest clearance; NaN if any clearance is NaN, because then no clearance is
+  /// proved.
   double least() const {
     const auto unknown = std::ranges::find_if(clearances, [](double c) { return std::isnan(c); });
     return unknown != clearances.end() ? *unknown : *std::ranges::min_element(clearances);
@@ -52,43 +52,43 @@ struct Cycle {
 
 /// The clearances at the start of a stroke. [mm]
 struct StrokeStart {
-  double required = 0.0;       // that the guard must keep
-  double actual = Cycle::far;  // of the body that is nearest
+  double required = 0.0;       // by the guard
+  double actual = Cycle::far;  // of the nearest body
 };
 
 /// The cycles in which a body was too close.
 struct BodyTally {
-  std::size_t below = 0;    // closer than is required
-  std::size_t in_mesh = 0;  // of them, those in which the mesh reached into it
-  double deepest = 0.0;     // of those: how far, up to the radius of a body [mm]
+  std::size_t below = 0;    // closer than required
+  std::size_t in_mesh = 0;  // of these: cycles in which the mesh reached into the body
+  double deepest = 0.0;     // of these: the greatest depth, at most the body's radius [mm]
 
   void add(double clearance, double required);
 };
 
-/// The figures of all strokes on a mesh, at one speed, under one guard.
+/// The results of all strokes on a mesh, at one speed, under one guard.
 struct RunTally {
   std::string mesh = {};
   double speed = 1.0;
   std::string guard = {};
   std::size_t strokes = 0, cycles = 0;
   std::array<std::size_t, 3> outcomes = {};  // cycles, by outcome
-  std::size_t breaches = 0;                  // cycles
+  std::size_t breaches = 0;                  // cycles with a breach
   std::size_t guides_left = 0;               // cycles in which a guide was left
   double farthest_out = -Cycle::far;         // largest excess of a tip's guides [mm]
   std::uint32_t guides_inside = 0;           // a bit for each guide: inside in any cycle
   std::size_t strokes_inside = 0;            // with at least one cycle inside
   std::size_t strokes_breached = 0;          // with a cycle inside, or with a breach
-  std::size_t starts_too_close = 0;          // strokes that began nearer than is required
-  BodyTally any = {};                        // of the bodies together
+  std::size_t starts_too_close = 0;          // strokes that began closer than required
+  BodyTally any = {};                        // all bodies together
   std::array<BodyTally, 3> bodies = {};
-  double least = Cycle::far;  // clearance [mm]
+  double least = Cycle::far;  // smallest clearance [mm]
   std::vector<double> times_us = {};
 
   void add(const std::vector<Cycle>& stroke, const StrokeStart& start);
 
   std::size_t with(Outcome outcome) const { return outcomes[static_cast<std::size_t>(outcome)]; }
   bool kept_out() const noexcept { return strokes_breached == 0; }
-  /// Returns true if the tool moved in no cycle, so the guard was not tested.
+  /// Returns true if the tool moved in no cycle, so that the guard was not tested.
   bool stood_still() const { return cycles > 0 && with(Outcome::stopped) == cycles; }
 };
 

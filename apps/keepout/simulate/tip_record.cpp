@@ -18,21 +18,21 @@ using Strokes = std::vector<FollowedStroke>;
 /// The tool, the surface and the guides of a simulation.
 struct TipScene {
   SurfaceKind surface;
-  bool has_tool;  // a convex tool, of which contacts are counted, and no depth
+  bool has_tool;  // a convex tool: its contacts are counted, and it has no depth
   bool has_guides;
 
-  /// Returns true if a depth inside the anatomy is known.
+  /// Returns true if the depth inside the anatomy is known.
   bool has_depth() const noexcept { return surface == SurfaceKind::closed && !has_tool; }
 };
 
-/// Returns 0 if the tip has been inside, or has crossed, or touched as far as the check can tell.
-/// [mm]
+/// Returns the smallest clearance; 0 if the tip was inside, crossed the surface, or touched it
+/// within the accuracy of the audit. [mm]
 double closest(const RunTally& run) {
   return run.kept_out() && run.least > Audit::touching ? run.least : 0.0;
 }
 
 Columns<RunTally> columns_of(const TipScene& scene) {
-  // Without a fixture there is no step to be timed.
+  // An unguarded run has no step to time.
   const auto timed = [](auto figure) {
     return [=](const RunTally& run) {
       std::vector<double> times = run.times_us;
@@ -53,7 +53,7 @@ Columns<RunTally> columns_of(const TipScene& scene) {
       {"rate_khz", timed([](const Timing& t) { return 1000.0 / t.p50; }), "kHz", 9,
        number_text<"%.1f">},
       {"p50_us", timed([](const Timing& t) { return t.p50; }), "p50 us", 9, number_text<"%.2f">},
-      // The rank of a percentile that so few steps do not have is that of the last.
+      // With too few steps for a percentile, its rank is that of the slowest step.
       {"p99_us", timed([](const Timing& t) { return t.p99.value_or(t.max); }), "p99 us", 9,
        number_text<"%.2f">},
       {"p999_us", timed([](const Timing& t) { return t.p999.value_or(t.max); })},
@@ -78,7 +78,7 @@ Columns<RunTally> columns_of(const TipScene& scene) {
   return columns;
 }
 
-/// Returns what a run did with its guides, after the rest of its words; empty without guides.
+/// Returns how a run kept its guides, to append to its other words; empty without guides.
 std::string guide_words(const RunTally& run, bool has_guides) {
   if (!has_guides) return "";
   if (run.guides_left == 0) return "; left no guide";
@@ -115,12 +115,12 @@ std::string words(const RunTally& run, const TipScene& scene) {
          counted(run.strokes, "stroke");
 }
 
-/// "Rule 'a'", "Rules 'a' and 'b'".
+/// Returns "Rule 'a'" or "Rules 'a' and 'b'".
 std::string rules_text(const std::vector<std::string>& rules) {
   return (rules.size() == 1 ? "Rule " : "Rules ") + listed(rules);
 }
 
-/// Returns whether all rules kept the tool in its guides, as a sentence.
+/// Returns a sentence on whether all rules kept the tool in its guides.
 std::string guide_sentence(const std::vector<RunTally>& runs) {
   std::size_t left = 0;
   double out = 0.0;
@@ -133,13 +133,13 @@ std::string guide_sentence(const std::vector<RunTally>& runs) {
          (out <= 0.0 ? "." : ": it was at most " + length_text(out) + " outside.");
 }
 
-/// Returns which rules kept the tool out, which did not, and which were not tested, as the tool did
-/// not move. `required`: the clearance that rules keep. [mm]
+/// Returns which rules kept the tool out, which did not, and which were not tested because the tool
+/// did not move. `required`: the required clearance of the rules. [mm]
 std::string headline(const std::vector<RunTally>& runs, const TipScene& scene, double required) {
   if (runs.size() == 1) return "The tool moved without any fixture.";
   std::vector<std::string> kept_out, let_in, still;
   for (std::size_t r = 1; r < runs.size(); ++r) {
-    // Names of rules are odd words in a sentence: they get quotation marks.
+    // Quotation marks separate names of rules from the sentence.
     (runs[r].stood_still() ? still
      : runs[r].kept_out()  ? kept_out
                            : let_in)
@@ -186,11 +186,11 @@ Json moment_json(const Moment& moment) {
   return {{"stroke", moment.stroke}, {"cycle", moment.cycle}};
 }
 
-/// The moments of a run that a page shows.
+/// The moments of a run that the page shows.
 struct Moments {
-  /// The deepest penetration, or else the first crossing, or else the nearest approach.
+  /// The deepest penetration; without one the first crossing, and else the nearest approach.
   Moment worst = {};
-  double least = Cycle::far;  // clearance [mm]
+  double least = Cycle::far;  // smallest clearance [mm]
   std::vector<Moment> crossings = {};
 };
 
@@ -208,8 +208,8 @@ Moments moments_of(const Strokes& strokes, std::size_t run) {
   return moments;
 }
 
-/// Returns the run that says most about the rules: the deepest penetration that a rule let happen,
-/// or else a crossing, or else, as no rule failed, the run without a fixture.
+/// Returns the most informative run: the one with the deepest penetration under a rule, or else
+/// with a crossing. If no rule failed, returns the unguarded run.
 std::size_t telling_run(const std::vector<Moments>& moments) {
   const auto rank = [&](const Moments& of_run) {
     const bool is_harmless = of_run.least >= 0.0 && of_run.crossings.empty();
@@ -219,7 +219,7 @@ std::size_t telling_run(const std::vector<Moments>& moments) {
   return static_cast<std::size_t>(std::ranges::max_element(moments, {}, rank) - moments.begin());
 }
 
-/// Rounds a number of a cycle to the digits that records have.
+/// Rounds a number of a cycle to the digits of records.
 double to_digits(double value, double parts_of_one) {
   return std::round(value * parts_of_one) / parts_of_one;
 }
@@ -242,7 +242,8 @@ Json stroke_json(const std::vector<Cycle>& cycles) {
           {"outcome", std::move(outcomes)}};
 }
 
-/// Returns the bounds of the tips of all runs in a stroke, enlarged by half on all sides.
+/// Returns the bounds of the tips of all runs in a stroke, enlarged on all sides by half of their
+/// diagonal.
 Box around(const FollowedStroke& followed) {
   const Vec3 first = followed.runs.front().front().places.front();
   Box box{first, first};
@@ -284,7 +285,7 @@ Json settings_of(const SimulateOptions& options) {
 /// Returns the description of a rule, for the page.
 std::string description_of(const std::string& rule, bool has_tool) {
   if (rule == no_rule) return "the tool moves as commanded";
-  if (has_tool) return "the rule of convex tools: each motion of the whole tool is proven";
+  if (has_tool) return "the rule of convex tools: each motion of the whole tool is proved";
   return std::string(activation_rules().named(rule).description);
 }
 
@@ -318,7 +319,7 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
   record["has_convex_tool"] = scene.has_tool;
   record["guides"] = options.guides;
   record["cycle_s"] = cycle_seconds;
-  record["up"] = {0.0, 0.0, 1.0};  // head-wards in CT data
+  record["up"] = {0.0, 0.0, 1.0};  // toward the head, in CT data
   record["moment"] = {{"run", told}, {"stroke", moment.stroke}, {"cycle", moment.cycle}};
   for (const FollowedStroke& followed : strokes) {
     Json& hand = record["hand"].emplace_back(Json::array());

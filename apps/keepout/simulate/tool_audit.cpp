@@ -7,7 +7,7 @@
 namespace keepout::app {
 namespace {
 
-/// A tool as the oracle has it: a robot without joints, whose base is the tip.
+/// Returns a tool as the oracle represents it: a robot without joints, whose base is the tip.
 oracle::JudgedRobot judged(const ConvexTool& tool) {
   oracle::JudgedBody body{.points = {}, .radius = tool.radius()};
   for (const Vec3& point : tool.points()) body.points.push_back({.link = 0, .position = point});
@@ -21,7 +21,7 @@ ToolAudit::ToolAudit(Audit& audit, const ConvexTool& tool, const Vec3& start)
       of_core_(tool.points().front()),
       oracle_(audit.tree(), judged(tool), {.position = start}),
       tip_(start),
-      // No tool is farther from the surface than one of its points.
+      // The tool is at most as far from the surface as one of its points.
       clearance_(distance_at(start, 1.001 * audit.distance(start + of_core_) + Audit::touching)),
       is_inside_(is_inside(start, clearance_)) {}
 

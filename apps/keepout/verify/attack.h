@@ -19,8 +19,8 @@ class Attack {
   /// number of cycles; 0 if there is none, or no mesh.
   virtual std::uint64_t begin() = 0;
 
-  /// Commands a motion, makes the step, has it judged, tallies it and applies it. `number`: of the
-  /// cycle in the trajectory. Returns false if the trajectory ends here.
+  /// Commands a motion, runs the step, lets the judge examine it, tallies it and applies it.
+  /// `number`: the cycle in the trajectory. Returns false if the trajectory ends here.
   virtual bool cycle(std::uint64_t number) = 0;
 
   /// Returns true if no trajectory is left.
@@ -31,7 +31,7 @@ class Attack {
 };
 using Attacks = std::vector<std::unique_ptr<Attack>>;
 
-/// Arguments must outlive the attacks.
+/// Return the rows of a campaign. Arguments must outlive the attacks.
 Attacks attacks_on_tips(const Campaign& campaign, std::span<const Arena> arenas,
                         Findings& findings);
 Attacks attacks_on_instruments(const Campaign& campaign, std::span<const Arena> arenas);

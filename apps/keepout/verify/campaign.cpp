@@ -64,9 +64,9 @@ Findings run_campaign(const Campaign& campaign, std::span<const Arena> arenas,
       is_run = attack->row.starts > 0 || attack->is_done();
     }
     findings.is_complete = findings.is_complete && attack->is_done();
-    // Shards of tips have the same rows, so that they add up.
+    // Shards of tips must have the same rows, so that the rows can be added.
     if (is_run || !campaign.is_of_instruments()) findings.rows.push_back(std::move(attack->row));
-    attack.reset();  // and its mesh
+    attack.reset();  // frees the mesh as well
   }
   findings.seconds = microseconds_since(start) * 1e-6;
   return findings;

@@ -28,7 +28,7 @@ Surface soup(Random& random) {
   return surface;
 }
 
-/// A height over a disk: rings around a vertex, the outermost at the radius.
+/// Returns a height field over a disk: rings around a center vertex, the outermost at the radius.
 template <class Height>
 Surface disk(std::size_t rings, std::size_t columns, const Height& height) {
   Surface surface;
@@ -88,7 +88,7 @@ Surface sheets(Random& random) {
   Surface surface;
   const std::size_t count = 2 + random.below(3);
   for (std::size_t s = 0; s < count; ++s) {
-    // Each sheet has a triangulation of its own.
+    // Each sheet has its own triangulation.
     const Surface sheet = disk(1 + random.below(4), 8 + random.below(6),
                                [&](double, double) { return 1e-9 * static_cast<double>(s); });
     const auto first = static_cast<VertexId>(surface.vertices.size());

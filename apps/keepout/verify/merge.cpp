@@ -11,7 +11,8 @@
 namespace keepout::app {
 namespace {
 
-/// Returns the property that all shards of one campaign share and that differs here; else empty.
+/// Returns the name of a property that differs although all shards of a campaign share it; empty if
+/// there is no difference.
 std::string difference(const Json& a, const Json& b) {
   using Named = std::pair<const char*, const char*>;
   for (const auto& [key, what] : {Named{"version", "versions of keepout"}, Named{"seed", "seeds"},
@@ -33,8 +34,8 @@ std::string difference(const Json& a, const Json& b) {
   return {};
 }
 
-/// Returns true for a count. get() would turn negative numbers and fractions into counts, which
-/// could hide a breach in a sum.
+/// Returns true for a count. get() converts negative numbers and fractions into counts, which could
+/// hide a breach in a sum.
 bool is_count(const Json& value) {
   constexpr std::uint64_t most = std::uint64_t{1} << 53;
   return value.is_number_unsigned() && value.get<std::uint64_t>() <= most;
@@ -70,7 +71,7 @@ bool is_sound(const Json& record) {
     }
     is_there[index.get<std::size_t>() - 1] = true;
   }
-  // Another program may have changed the order, and the sum of the seconds is rounded.
+  // Another program may have changed the order of members, and the sum of the seconds is rounded.
   nlohmann::json total = record.at("total"), sum = total_of(meshes);
   total["seconds"] = sum["seconds"];
   return total == sum && record.at("steps_done") == sum["steps"];
@@ -94,7 +95,7 @@ Json read(const std::filesystem::path& path) {
   }
 }
 
-/// Appends incidents up to the largest number that is recorded.
+/// Appends incidents up to the largest recorded number.
 void append(Json& to, const Json& from, std::size_t most) {
   for (const Json& incident : from) {
     if (to.size() < most) to.push_back(incident);
@@ -118,7 +119,7 @@ CampaignResult merged(const std::vector<std::filesystem::path>& files, const std
       const Json& before = parts[i].at("shards");
       const auto twice = std::ranges::find_first_of(before, part.at("shards"), same_index);
       if (twice != before.end()) {
-        throw Error(both + " both hold shard " + twice->at("index").dump() + "/" +
+        throw Error(both + " both contain shard " + twice->at("index").dump() + "/" +
                     part.at("shard_count").dump() + ": it would count twice");
       }
     }
@@ -138,7 +139,7 @@ CampaignResult merged(const std::vector<std::filesystem::path>& files, const std
   sum["command"] = command;
   sum["date"] = date_now();
   CampaignResult result = finished(std::move(sum));
-  result.is_interrupted = false;  // the addition was not
+  result.is_interrupted = false;  // the campaign may be, but not the addition
   return result;
 }
 

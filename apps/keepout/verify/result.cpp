@@ -24,7 +24,7 @@ std::uint64_t sum(const Json& counts) {
   return sum;
 }
 
-/// Returns a column of the values at a place of a row, written as counts by default.
+/// Returns a column of the values at a place of a row, by default with the text of a count.
 Column<Json> column(const char* place, const char* heading, int width,
                     std::string (*text)(const Json&) = &count_text) {
   return {"", [at = Json::json_pointer(place)](const Json& row) { return row.at(at); }, heading,
@@ -70,13 +70,13 @@ Columns<Json> tip_columns() {
 }
 
 constexpr const char* tip_legend =
-    R"(contact: share of limited steps. led out: of the recovering ones, those from the
-forbidden side, which may cross. other: steps without a motion. crossed, broken: breaches
-of the theorem. least: smallest distance of any way, less tool radius and margin, in
-tau and as it is.
+    R"(contact: fraction of limited steps. led out: recovering steps from the forbidden side,
+which may cross. other: steps without a motion. crossed, broken: breaches of the
+theorem. least: smallest distance of any motion minus tool radius and margin, in tau
+and as a length.
 )";
 
-/// Returns an incident in a few lines, without Jacobian and rows.
+/// Returns the text of an incident in a few lines, without Jacobian and rows.
 std::string text(const Json& incident) {
   constexpr std::array<std::string_view, 6> first_of_a_line{"start",   "radius", "tip",
                                                             "desired", "motion", "distance"};
@@ -91,7 +91,8 @@ std::string text(const Json& incident) {
   return text + '\n';
 }
 
-/// Returns the rows and their total, the machines of the shards, and the first breaches.
+/// Returns the text of the rows and their total, the machines of the shards, and the first
+/// breaches.
 std::string table_of(const Json& record) {
   std::ostringstream out;
   auto rows = record.at("meshes").get<std::vector<Json>>();
@@ -154,7 +155,8 @@ CampaignResult finished(Json record) {
                        counted(steps, "step") + ".";
   std::vector<std::string> account;
   if (breaches > record.at("breaches").size()) {
-    account.push_back("Of the breaches " + grouped(record.at("breaches").size()) + " are kept.");
+    account.push_back("The record contains " + grouped(record.at("breaches").size()) +
+                      " of the breaches.");
   }
   if (!record["complete"].get<bool>()) {
     account.push_back("Incomplete: " + grouped(steps) + " of the campaign's " +

@@ -16,23 +16,23 @@ namespace keepout::app {
 /// verify_robot.
 struct CampaignResult {
   Json record;
-  std::string table;            // of the rows, with what its columns mean, for a terminal
-  bool is_broken = false;       // a promise did not hold
-  bool is_interrupted = false;  // the campaign was stopped before its end
+  std::string table;            // the rows with a legend, for a terminal
+  bool is_broken = false;       // a guarantee did not hold
+  bool is_interrupted = false;  // the campaign was stopped early
 
   /// Prints the table, and the headline and account of the record.
   void print(std::ostream& out) const;
 };
 
-/// Raised if the trajectories of a seed, or tallies, change.
+/// Increases when the trajectories of a seed, or the tallies, change.
 inline constexpr int campaign_format = 3;
 
-/// Adds up rows, number by number: of "least" numbers the smallest counts, of "deepest" ones and of
-/// triangles the largest. The first row may be null.
+/// Adds a row to a sum, number by number. Keeps the smallest of "least" numbers, and the largest of
+/// "deepest" numbers and of triangles. `sum` may be null at first.
 void add(Json& sum, const Json& row);
 Json total_of(const Json& rows);
 
-/// Returns the counts by the names of the enumerators.
+/// Returns the counts with the names of the enumerators as keys.
 template <class Enum>
 Json json_of(std::span<const std::uint64_t> counts) {
   Json json = Json::object();
@@ -49,9 +49,10 @@ CampaignResult finished(Json record);
 CampaignResult result_of(const Campaign& campaign, const Findings& findings);
 CampaignResult result_of_instruments(const Campaign& campaign, const Findings& findings);
 
-/// Adds up the records of shards of one campaign, into a record that `command` makes. Throws Error,
-/// naming files, if a file is not such a record, if its numbers contradict each other, or if two
-/// files are of different campaigns or versions, or share a shard.
+/// Adds up the records of shards of one campaign, into a record that `command` makes. Throws Error
+/// with the names of the files if a file is not such a record, or if its numbers contradict each
+/// other. Also throws Error if two files are of different campaigns or versions, or have a shard in
+/// common.
 CampaignResult merged(const std::vector<std::filesystem::path>& files, const std::string& command);
 
 }  // namespace keepout::app

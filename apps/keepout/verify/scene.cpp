@@ -65,7 +65,7 @@ std::vector<Arena> real_arenas(const std::string& index, std::vector<std::string
     try {
       const std::string name(fixture);
       arenas.push_back({name, [name, path = fixture_path(name), index] {
-                          // Their defects are known, and the reason to use them.
+                          // Their defects are known and intended.
                           const LoadedMesh loaded = load_mesh(path, {.check = MeshCheck::none});
                           return std::vector{Scene(name, loaded.mesh, index)};
                         }});

@@ -14,11 +14,11 @@
 
 namespace keepout::app {
 
-/// A mesh of a campaign, with what is built on it once: the index that the guard searches, and the
-/// oracle that judges it.
+/// A mesh of a campaign, with the structures that are built once: the index that the guard
+/// searches, and the oracle that judges.
 class Scene {
  public:
-  /// Throws Error if there is no index of that name.
+  /// Throws Error if there is no index of this name.
   Scene(std::string name, Surface surface, std::string_view index);
   Scene(std::string name, std::shared_ptr<const Mesh> mesh, std::string_view index);
 
@@ -35,11 +35,12 @@ class Scene {
   double mean_edge() const noexcept { return mean_edge_; }  // [length], > 0
   double farthest() const noexcept { return farthest_; }    // largest 1-norm of a vertex [length]
 
-  /// Returns true if the engine knows a free side: each edge has two triangles that are wound
-  /// alike.
+  /// Returns true if the engine knows a free side: each edge has two triangles with consistent
+  /// winding.
   bool has_sides() const noexcept { return has_sides_; }
 
-  /// Returns the nearest triangle by the engine's own search: to find hostile places, not to judge.
+  /// Returns the nearest triangle by the engine's own search, to find hostile places. Not for
+  /// judging.
   Hit nearest(const Vec3& point, double guess = 0.0) { return nearest_(point, guess); }
 
  private:
@@ -53,11 +54,11 @@ class Scene {
   bool has_sides_;
 };
 
-/// Throws Error, naming the mesh, if none of its triangles has an area.
+/// Throws Error with the name of the mesh if none of its triangles has an area.
 void require_area(const std::string& name, const Mesh& mesh);
 
-/// A mesh that a campaign may load: one mesh, maybe in several places, with a scene for each place;
-/// or a kind of mesh, of which one is drawn anew for each start of an instrument.
+/// A mesh that a campaign may load. It is one mesh, maybe in several places, with a scene for each
+/// place; or a kind of mesh, drawn anew for each start of an instrument.
 struct Arena {
   std::string mesh;
   std::function<std::vector<Scene>()> load = {};             // none once a signal has come
@@ -73,9 +74,9 @@ std::vector<Arena> real_arenas(const std::string& index, std::vector<std::string
 /// Returns a mesh that the user names (named_mesh.h). It is read when the campaign reaches it.
 Arena named_arena(const std::string& mesh, const std::string& index);
 
-/// Returns kinds of meshes of at most 400 triangles, some 40 mm large: `soup` (crossing triangles),
-/// `fan` (ridges and valleys around one vertex), `sheets` (1e-9 mm apart), `cone`, `bowl` and
-/// `saddle`.
+/// Returns kinds of meshes of at most 400 triangles, about 40 mm large. The kinds are `soup`
+/// (crossing triangles), `fan` (ridges and valleys around one vertex), `sheets` (1e-9 mm apart),
+/// `cone`, `bowl` and `saddle`.
 std::vector<Arena> hostile_arenas(const std::string& index);
 
 }  // namespace keepout::app

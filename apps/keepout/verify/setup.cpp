@@ -48,7 +48,7 @@ double log_uniform(double low, double high, Random& random) {
 }
 
 /// Draws the fraction of the required clearance that is the tool radius. Half of the tools are
-/// points; some of the others have no margin.
+/// points; some others have no margin.
 double draw_tool_share(Random& random) {
   const double kind = random.uniform();
   return kind < 0.5 ? 0.0 : kind < 0.6 ? 1.0 : random.uniform();
@@ -97,8 +97,8 @@ SurfacePoint on_any(const Mesh& mesh, Random& random) {
   }
 }
 
-/// Draws a unit vector off the surface, along the normal in half of the cases. If tips are taken as
-/// they are, it leads to either side.
+/// Draws a unit vector away from the surface, along the normal in half of the cases. It points to
+/// either side if tips on either side are accepted.
 Vec3 way_off(const Setup& setup, const SurfacePoint& place, Random& random) {
   const bool two_sided = setup.inside == Inside::taken_as_is;
   const double sign = two_sided && random.uniform() < 0.5 ? -1.0 : 1.0;
@@ -119,7 +119,7 @@ Vec3 at_distance(Scene& scene, Vec3 point, double distance) {
   return point;
 }
 
-/// Draws the required clearance itself, up to 1e-6 more, or up to 6 times as much.
+/// Draws a distance: the required clearance, up to 1e-6 more, or up to 6 times as much.
 double draw_distance(double kept, Random& random) {
   const double kind = random.uniform();
   if (kind < 0.3) return kept;
@@ -143,9 +143,9 @@ Vec3 off_the_surface(Scene& scene, Setup& setup, Random& random) {
   return tip;
 }
 
-/// Returns the center of the largest ball that touches the surface in a point and nowhere cuts it.
-/// Source: Ma, Bae, Choi, "3D medial axis point approximation using nearest
-/// neighbors and the normal field", The Visual Computer 28, 2012 (shrinking balls).
+/// Returns the center of the largest ball that touches the surface at a point and does not
+/// intersect it. Source: Ma, Bae, Choi, "3D medial axis point approximation using nearest neighbors
+/// and the normal field", The Visual Computer 28, 2012 (shrinking balls).
 Vec3 in_a_gap(Scene& scene, Setup& setup, Random& random) {
   Vec3 center = Vec3::Zero();
   double radius = 0.0;
@@ -203,18 +203,19 @@ Vec3 anywhere(Scene& scene, Setup& setup, Random& random) {
   return tip;
 }
 
-/// A kind of place where a tip is placed.
+/// A kind of start of a tip.
 struct Start {
   std::string_view name;
-  double weight;  // of the probability that it is drawn
-  /// Finds such a place. In a gap, changes the required clearance so that it almost fills the gap.
+  double weight;  // proportional to the probability
+  /// Finds a start of this kind. In a gap, changes the required clearance so that it almost fills
+  /// the gap.
   Vec3 (*place)(Scene& scene, Setup& setup, Random& random);
 };
 constexpr std::array<Start, 8> starts{{
-    {"vertex", 0.18, off_the_surface<on_vertex>},  // at the required clearance or a little more
+    {"vertex", 0.18, off_the_surface<on_vertex>},  // at the required clearance or slightly farther
     {"edge", 0.18, off_the_surface<on_edge>},
     {"face", 0.14, off_the_surface<on_face>},
-    {"gap", 0.25, in_a_gap},  // in the middle between two walls, with almost no room left
+    {"gap", 0.25, in_a_gap},  // in the middle between two walls, with almost no free space left
     {"open_space", 0.1, anywhere},
     {"too_close", 0.06, too_close},    // closer than the required clearance
     {"on_surface", 0.03, on_surface},  // on a vertex, an edge or a face, up to rounding

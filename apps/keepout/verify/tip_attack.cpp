@@ -13,17 +13,17 @@ namespace {
 
 using oracle::TipVerdict;
 
-// A tip is given up after so many steps in a row without a motion.
+// A tip is replaced after this many consecutive steps without a motion.
 constexpr int patience = 8;
 
-/// Returns the random numbers of one trajectory, which are independent of those of another.
+/// Returns the random numbers of one trajectory, which are independent of all others.
 Random random_of(std::uint64_t seed, std::uint64_t trajectory) {
   Random of_seed(seed);
   Random of_trajectory(of_seed.bits() ^ trajectory);
   return Random(of_trajectory.bits());
 }
 
-/// Returns true for a failure that no promise excludes: the tip was placed on the surface or
+/// Returns true for a failure that no guarantee excludes: the tip was placed on the surface or
 /// inside, and the options or the joints allow no way out.
 bool is_expected(Status failure, const Setup& setup) noexcept {
   const bool of_joints = failure == Status::ill_posed || failure == Status::infeasible;
@@ -31,8 +31,8 @@ bool is_expected(Status failure, const Setup& setup) noexcept {
          (setup.joints > 0 && of_joints);
 }
 
-/// Returns the record of a breach, or of a step that found no motion. `what`: the breach, or the
-/// status of the step.
+/// Returns the record of a breach, or of a step without a motion. `what`: the breach, or the status
+/// of the step.
 Json incident(std::string_view what, const Scene& scene, std::uint64_t trajectory,
               std::uint64_t cycle, const Setup& setup, const Motion& motion, const Step& step,
               const TipVerdict& verdict) {
@@ -62,7 +62,7 @@ Json incident(std::string_view what, const Scene& scene, std::uint64_t trajector
                {"desired", json_of(motion.desired)},
                {"motion", json_of(step.motion)},
                {"status", name(step.status)},
-               {"jacobian", jacobian},      // 3 x n, column by column; empty without one
+               {"jacobian", jacobian},      // 3 x n, column by column; empty without Jacobian
                {"row_matrix", row_matrix},  // of the extra rows, row by row
                {"row_bounds", row_bounds},
                {"distance", verdict.distance},
@@ -93,7 +93,7 @@ struct Tip {
   TipJoints joints;
   oracle::TipJudge judge;
   Vec3 place;
-  int failures = 0;  // since it last moved
+  int failures = 0;  // consecutive steps without a motion
 };
 
 class TipAttack final : public Attack {
@@ -121,8 +121,8 @@ class TipAttack final : public Attack {
     trajectory_ = next_;
     next_ = from(next_ + campaign_.shard.count);
     random_ = random_of(campaign_.seed, trajectory_);
-    random_.bits();  // which chose the arena
-    // The first scene is at the origin. The others are a minority.
+    random_.bits();  // skips the number that chose the arena
+    // The first scene is at the origin. The others are used in an eighth of the trajectories.
     const bool is_elsewhere = scenes_.size() > 1 && random_.uniform() < 0.125;
     scene_ = is_elsewhere ? 1 + random_.below(scenes_.size() - 1) : 0;
     return std::min(steps_of_a_trajectory, campaign_.steps - trajectory_ * steps_of_a_trajectory);
@@ -159,8 +159,8 @@ class TipAttack final : public Attack {
   bool is_done() const override { return next_ >= trajectory_count(campaign_.steps); }
 
  private:
-  /// Returns the first trajectory of the shard on this mesh, from this one on. A list of all would
-  /// take as much memory as the campaign has steps.
+  /// Returns the first trajectory of the shard on this mesh, at or after the given one. A list of
+  /// all would take memory in proportion to the steps of the campaign.
   std::uint64_t from(std::uint64_t trajectory) const noexcept {
     while (trajectory < trajectory_count(campaign_.steps) &&
            random_of(campaign_.seed, trajectory).below(arenas_.size()) != arena_) {
@@ -185,15 +185,15 @@ class TipAttack final : public Attack {
   std::size_t arena_;
   Findings& findings_;
   std::uint64_t next_;            // the number of the next trajectory on this mesh
-  std::uint64_t trajectory_ = 0;  // at present
+  std::uint64_t trajectory_ = 0;  // the current one
   std::vector<Scene> scenes_;
   std::vector<std::unique_ptr<Guard>> guards_;
-  std::size_t scene_ = 0;  // at present
+  std::size_t scene_ = 0;  // the current one
   Random random_{0};
   std::optional<Tip> tip_;
 };
 
-/// Options that the constraint accepts, until the first tip brings its own.
+/// Returns valid options, which the constraint has until the first tip sets its own.
 MotionConstraintSettings any_settings(const Scene& scene) {
   const double radius = scene.mean_edge();
   return {.options = {.radius = radius,

@@ -23,7 +23,7 @@ class TipJoints {
     for (int c = 0; c < setup.joints; ++c) rows_.col(c).segment<2>(2 * c) << 1.0, -1.0;
   }
 
-  /// Adds the Jacobian and the limits to a motion; every 40 cycles those of another pose.
+  /// Adds the Jacobian and the limits to a motion. Draws new ones every 40 cycles.
   void attach(Motion& motion) {
     if (jacobian_.cols() == 0) return;
     if (cycle_++ % 40 == 0) draw();
@@ -40,7 +40,7 @@ class TipJoints {
         random_->uniform() < 0.3 ? std::pow(10.0, random_->uniform(-8.0, 0.0)) : 1.0;
     const Vec3 common = random_->direction();
     for (auto column : jacobian_.colwise()) {
-      // All joints may do nearly the same: far from the tip, or near a singular pose.
+      // All joints may have nearly the same effect: far from the tip, or near a singular pose.
       const Vec3 own = random_->direction();
       column = scale * (spread < 1.0 ? Vec3(common + spread * own) : own);
     }
@@ -52,7 +52,7 @@ class TipJoints {
 
   Random* random_;
   bool has_limits_;
-  double longest_;  // step of the tip [length]
+  double longest_;  // largest step of the tip [length]
   std::size_t cycle_ = 0;
   TipJacobian::Matrix jacobian_;
   Rows rows_;

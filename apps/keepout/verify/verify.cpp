@@ -20,16 +20,16 @@
 namespace keepout::app {
 namespace {
 
-/// Returns the meshes that are named, by the user or for a robot. Without a name, returns small
-/// hostile meshes that are drawn, for instruments, or else all sample meshes; appends the error
-/// texts of those that are not there to `missing`.
+/// Returns the meshes that the user names, or those for the named robot. Without either, returns
+/// small hostile meshes, drawn anew, for instruments, and all sample meshes for tips. Appends an
+/// error text for each missing sample mesh to `missing`.
 std::vector<Arena> arenas_of(const VerifyOptions& options, std::vector<std::string>& missing) {
   const Campaign& campaign = options;
   std::vector<std::filesystem::path> named = options.meshes;
   if (named.empty() && !campaign.robot.empty()) named = {"skull", "airway", "brain", "femur"};
   std::vector<Arena> arenas;
   for (const std::filesystem::path& mesh : named) {
-    file_of_mesh(mesh);  // throws before any work if there is no such mesh
+    file_of_mesh(mesh);  // throws before any work if the mesh does not exist
     if (std::ranges::find(arenas, mesh.string(), &Arena::mesh) != arenas.end()) {
       throw Error(mesh.string() + ": is named twice");
     }
@@ -48,7 +48,7 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   if (!campaign.is_of_instruments() && campaign.shard.count > trajectories) {
     throw Error("--shard: there are only " + std::to_string(trajectories) + " trajectories of " +
                 std::to_string(steps_of_a_trajectory) +
-                " steps to share out; ask for fewer shards or more steps");
+                " steps to distribute; use fewer shards or more steps");
   }
   std::vector<std::string> missing;
   std::vector<Arena> arenas = arenas_of(options, missing);
@@ -73,7 +73,7 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   return result_of(campaign, findings);
 }
 
-/// Reads "I/N".
+/// Returns the shard that "I/N" describes.
 Shard shard_of(const std::string& text) {
   std::istringstream in(text);
   Shard shard{0, 0};
@@ -96,15 +96,13 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       "Try to break the certified step: adversarial closed-loop motion over many meshes, each step "
       "judged by an independent, exact oracle");
   command.add_option("MESH", options.meshes,
-                     "Mesh files in mm, or fixtures; without one, all fixtures");
+                     "Mesh files in mm, or sample meshes; default: all sample meshes");
   Campaign& campaign = options;
   CLI::Option* named =
-      command
-          .add_option("--robot", campaign.robot, "Try it with a whole instrument, in joint space")
+      command.add_option("--robot", campaign.robot, "Attack a whole instrument, in joint space")
           ->check(one_of(names(robots_under_test())));
   CLI::Option* chosen =
-      command
-          .add_option("--scenario", campaign.scenarios, "Kinds of attack, in joint space as well")
+      command.add_option("--scenario", campaign.scenarios, "Kinds of attack, also in joint space")
           ->check(one_of(names(app::scenarios())))
           ->delimiter(',');
   const std::array of_joints{
@@ -114,15 +112,15 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
           ->capture_default_str(),
       command
           .add_option("--speed", campaign.speeds,
-                      "How fast, in multiples of 0.5 mm and 0.02 rad a cycle")
+                      "Speeds, in multiples of 0.5 mm and 0.02 rad a cycle")
           ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
           ->delimiter(',')
           ->capture_default_str(),
-      command.add_option("--motion", campaign.motion, "Which motion is certified")
+      command.add_option("--motion", campaign.motion, "The motion that is certified")
           ->transform(one_of<CertifiedMotion>(certified_motion_names))
           ->default_str("actual"),
       add_length(command, "--margin", campaign.margin, Zero::refused,
-                 "Distance that bodies keep beyond their radius")};
+                 "Clearance of bodies beyond their radius")};
   command.final_callback([named, chosen, of_joints] {
     for (const CLI::Option* option : of_joints) {
       if (option->empty() || !named->empty() || !chosen->empty()) continue;
@@ -136,11 +134,11 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       ->excludes(named)
       ->excludes(chosen);
   add_number(command, "--seed", campaign.seed, 0, largest_seed,
-             "Seed: same seed and steps, same campaign");
+             "Seed: the same seed and steps give the same campaign");
   command
       .add_option_function<std::string>(
           "--shard", [&](const std::string& text) { campaign.shard = shard_of(text); },
-          "Do part I of N of the campaign")
+          "Run part I of N of the campaign")
       ->type_name("I/N")
       ->default_str("1/1")
       ->excludes(named)
@@ -156,14 +154,12 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
           ->type_name("FILES");
   for (CLI::Option* option : of_a_run) merge->excludes(option);
   command.footer(
-      "Ctrl-C ends it early: what is finished is printed and written.\n"
-      "The exit status is 0 only if no step broke what docs/certified-step.md promises, and with\n"
-      "--robot or --scenario docs/joint-space-step.md and docs/guides.md; but with --motion\n"
-      "linearized nothing is promised.\n\n"
-      "--scenario without --robot draws a chain and bodies anew for each start, and without MESH\n"
-      "a mesh of up to 400 triangles: soup, fan, sheets, cone, bowl, saddle. 'stuck', "
-      "'tip_guides'\n"
-      "and 'convex_tool' have a robot of their own.\n\n" +
+      "Ctrl-C ends the campaign early: the finished part is printed and written.\nThe exit status "
+      "is 0 only if no step broke a guarantee of docs/certified-step.md, and with --robot\nor "
+      "--scenario a guarantee of docs/joint-space-step.md or docs/guides.md. With --motion "
+      "linearized\nthere is no guarantee.\n\n--scenario without --robot draws a chain and bodies "
+      "anew for each start, and without MESH\na mesh of up to 400 triangles: soup, fan, sheets, "
+      "cone, bowl, saddle. 'stuck', 'tip_guides'\nand 'convex_tool' have their own robot.\n\n" +
       listing("Scenarios", scenarios()) + "\n" + listing("Robots", robots_under_test()));
 }
 
@@ -175,7 +171,7 @@ int verify(const VerifyOptions& options, std::ostream& out) {
                       {{"--out", options.files.page}, {"--json", options.files.kept_json()}});
   const CampaignResult result =
       options.merge.empty() ? run(options, out) : merged(options.merge, options.command);
-  result.print(out);  // first: a full disk takes no verdict away
+  result.print(out);  // before writing: a full disk must not hide the verdict
   write_record(outputs, result.record, options.files);
   if (result.is_broken) return EXIT_FAILURE;
   return result.is_interrupted ? exit_interrupted : EXIT_SUCCESS;

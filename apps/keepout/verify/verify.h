@@ -23,9 +23,9 @@ struct VerifyOptions : Campaign {
 /// Adds `keepout verify` and its options to the command line.
 void add_verify(CLI::App& app, VerifyOptions& options);
 
-/// Tries to break the promises of docs/certified-step.md or, if a robot or scenarios are named, of
-/// docs/joint-space-step.md; or adds up earlier campaigns. Prints a table. A StopSignal ends it
-/// early, and the finished part is printed and written. The exit status: failure if there was any
+/// Tries to break the guarantees of docs/certified-step.md or, if a robot or scenarios are named,
+/// of docs/joint-space-step.md; or adds up earlier campaigns. Prints a table. A StopSignal ends it
+/// early; then the finished part is printed and written. Returns the exit status: failure after any
 /// breach. Throws Error.
 int verify(const VerifyOptions& options, std::ostream& out);
 

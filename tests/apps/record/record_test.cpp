@@ -105,7 +105,8 @@ TEST(PlainPage, ShowsExperimentsInTablesAndInPicturesThatDoNothing) {
   print_plain_page(out, record);
   const std::string page = out.str();
   for (const char* words :
-       {"<h2>Beside the paper</h2>", "<th>experiment</th><th>about</th><th>paper</th>",
+       {"<h2>Compared with Li et al. (2020)</h2>",
+        "<th>experiment</th><th>about</th><th>paper</th>",
         "<td>E3 &lt;Path&gt;</td><td>depth</td><td>0.39 mm</td><td>a &lt; b</td>",
         "<td>E4</td><td>depth</td>", "<h2>E3 &lt;Path&gt;</h2>\n<p>Smoother.</p>",
         "<tr><th>mode</th><th>p</th></tr>", "<tr><td>none</td><td>&lt; 0.001</td></tr>",
@@ -117,7 +118,7 @@ TEST(PlainPage, ShowsExperimentsInTablesAndInPicturesThatDoNothing) {
     EXPECT_CONTAINS(page, words) << words;
   }
   EXPECT_LACKS(page, "<script");
-  EXPECT_EQ(page.find("<h2>"), page.find("<h2>Beside the paper"));
+  EXPECT_EQ(page.find("<h2>"), page.find("<h2>Compared with Li et al. (2020)"));
   EXPECT_LACKS(page, "<h2>experiments");
 }
 

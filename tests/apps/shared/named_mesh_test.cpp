@@ -91,7 +91,7 @@ TEST_F(NamedMesh, ANameThatIsNeitherListsThoseThatAreNear) {
       {"cubes", "did you mean 'cube'?"},
       {"scan_of_hips.stl", "did you mean 'scan_of_hip.stl'?"},
       {"./scan_of_hpi.stl", "did you mean './scan_of_hip.stl'?"},
-      {"kidney", "fixtures are skull, skull_1m, "},
+      {"kidney", "sample meshes are skull, skull_1m, "},
   };
   for (const auto& [name, told] : mistakes) {
     const Outcome outcome = run("inspect " + name);

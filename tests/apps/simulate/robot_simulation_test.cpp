@@ -92,7 +92,7 @@ TEST(SimulateRobot, TellsOfMistakes) {
            {"cube --robot psm --speed 0", "--speed"},
            {"cube --robot psm --activation paper", "cannot be given together"},
            {"cube --robot psm --radius 1", "cannot be given together"},
-           {"cube sphere", "MESH: is one, not several, but with --robot"},
+           {"cube sphere", "MESH: must be one mesh; only --robot takes several"},
            {"cub --robot psm", "did you mean 'cube'"}}) {
     folder.expect_refused(std::string("simulate ") + arguments, told);
   }

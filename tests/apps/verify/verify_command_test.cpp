@@ -112,7 +112,7 @@ TEST_F(Verify, WhatDoesNotBelongTogetherIsNotMerged) {
       {"shards.json", "shards"},       {"mesh.json", "meshes"},
       {"version.json", "versions"},    {"format.json", "format 99"},
       {"cut.json", "not a whole"},     {"else.json", "not a whole"},
-      {"none.json", "cannot be read"}, {"1.json", "both hold shard 1/2"}};
+      {"none.json", "cannot be read"}, {"1.json", "both contain shard 1/2"}};
   for (const auto& [file, told] : mistakes) {
     const Outcome outcome = run("--merge 1.json " + file);
     EXPECT_EQ(outcome.status, 1) << file;

@@ -19,28 +19,28 @@ namespace {
 using oracle::Breach;
 using oracle::RobotVerdict;
 
-// An instrument begins anew after so many cycles, sooner if mesh or robot are drawn.
+// An instrument gets a new start after this many cycles, earlier if mesh or robot are drawn.
 constexpr std::uint64_t cycles_of_a_start = 2000;
 constexpr std::uint64_t cycles_of_a_drawn_start = 400;
-constexpr std::size_t block = 500;      // cycles until a margin is raised or lowered
+constexpr std::size_t block = 500;      // cycles until the margin is raised or lowered
 constexpr double raise = 0.5;           // [mm]
-constexpr double blocked_below = 0.05;  // of the commanded motion
-constexpr double useful_above = 0.05;   // of the largest reduction of the cost
-constexpr double movable_above = 0.1;   // of the commanded motion
-constexpr double strayed_above = 1.05;  // of the error of standing still
-// One in so many blocked cycles is searched: a search costs as much as a thousand cycles.
+constexpr double blocked_below = 0.05;  // fraction of the commanded motion
+constexpr double useful_above = 0.05;   // fraction of the largest reduction of the cost
+constexpr double movable_above = 0.1;   // fraction of the commanded motion
+constexpr double strayed_above = 1.05;  // multiple of the error without motion
+// Searches one of this many blocked cycles, because a search costs like a thousand cycles.
 constexpr std::uint64_t sampled = 2000;
 constexpr std::uint64_t sampled_where_drawn = 100;
-constexpr int hopeless_after = 50;     // cycles in a row without a proven motion
-constexpr double skipped = 1.0 / 3.0;  // of all placements of a mesh that moves
+constexpr int hopeless_after = 50;     // consecutive cycles without a proved motion
+constexpr double skipped = 1.0 / 3.0;  // fraction of the placements of a moving mesh
 
 bool is_raised(const Scenario& scenario, std::size_t cycle) noexcept {
   const bool is_odd = (cycle / block) % 2 == 1;
   return scenario.raises_margin && (scenario.begin == Begin::wedged ? !is_odd : is_odd);
 }
 
-/// The distance from the commanded pose that the judge measures for the flange, after the step and
-/// if it had stood still. Both are weighted like the task.
+/// The judge's distance of the flange from the commanded pose, after the step and without a motion.
+/// Both distances are weighted like the task.
 struct Missed {
   double moving, standing;
 };
@@ -70,7 +70,8 @@ oracle::JudgedScene judged_scene(const RobotSetup& setup) {
   return scene;
 }
 
-/// One instrument from its start. It ends early if no motion can be proved for 50 cycles.
+/// One instrument from its start. The attempt ends early after 50 consecutive cycles without a
+/// proved motion.
 class RobotAttempt {
  public:
   RobotAttempt(const Campaign& campaign, RobotSetup setup, Random& random, Attack& attack)
@@ -95,7 +96,7 @@ class RobotAttempt {
                                .margin = setup_.options.margin});
   }
 
-  /// Makes a cycle. Returns false if the attempt ends here.
+  /// Runs a cycle. Returns false if the attempt ends here.
   bool cycle(std::uint64_t number) {
     if (number % block == 0) set_margin(number);
     if (setup_.scenario->moves) place_meshes(number);
@@ -128,10 +129,10 @@ class RobotAttempt {
     }
   }
 
-  /// Places the meshes with the velocities that lead to their poses a cycle later. One in three
-  /// placements is left out, so that the mesh goes on as before; then it catches up, and may do so
-  /// at several times its speed. A mesh that comes on is always placed: the joints can keep up with
-  /// its speed only.
+  /// Places the meshes with the velocities that lead to their poses a cycle later. Omits one in
+  /// three placements, so that the mesh continues as before and later catches up, maybe at several
+  /// times its speed. An approaching mesh is always placed: the joints can only match its own
+  /// speed.
   void place_meshes(std::uint64_t cycle) {
     for (std::size_t m = 0; m < setup_.meshes.size(); ++m) {
       const MeshMotion& motion = setup_.meshes[m].motion;
@@ -148,7 +149,7 @@ class RobotAttempt {
     }
   }
 
-  /// Returns the commanded motion of the flange, of an operator who looks at the first mesh.
+  /// Returns the commanded motion of the flange. The operator attacks the first mesh.
   Twist wanted(const Vec3& flange) {
     const Pose& mesh = judge_.pose(0);
     Twist twist = attacker_.next(mesh.rotation.transpose() * (flange - mesh.position));
@@ -208,9 +209,9 @@ class RobotAttempt {
         std::max<std::uint64_t>(tally_.most_work_units, subject_->work_units());
   }
 
-  /// Counts cycles that execute almost nothing of the commanded motion, and searches for a better
-  /// motion in some of them. Skips recoveries, which do not follow the command. Does not search
-  /// beside a moving mesh, where standing still need not be allowed.
+  /// Counts cycles that execute almost nothing of the commanded motion, and searches some of them
+  /// for a better motion. Skips recoveries, which do not follow the command. Does not search beside
+  /// a moving mesh, where no motion may be forbidden.
   void count_blocked(const InstrumentStep& step, const RobotTask::Increment& made,
                      const Twist& desired) {
     if (step.status == Status::recovering) return;
@@ -239,13 +240,13 @@ class RobotAttempt {
   oracle::JudgedRobot judged_;
   Chain chain_;
   std::unique_ptr<RobotSubject> subject_;
-  std::optional<MotionConstraint> point_;  // of a ball at the tip alone: timed beside it
+  std::optional<MotionConstraint> point_;  // a ball at the tip alone, timed for comparison
   oracle::RobotJudge judge_;
   Attacker attacker_;
   std::vector<double> positions_;
-  double margin_ = 0.0;                  // at present [mm]
-  std::optional<std::uint64_t> waited_;  // for a margin that is not kept yet [cycles]
-  int failures_ = 0;                     // cycles in a row without a motion
+  double margin_ = 0.0;                  // current [mm]
+  std::optional<std::uint64_t> waited_;  // since the start of a recovery [cycles]
+  int failures_ = 0;                     // consecutive cycles without a motion
 };
 
 class RobotAttack final : public Attack {
@@ -271,7 +272,7 @@ class RobotAttack final : public Attack {
     }
     if (*loaded_) row.triangles = (*loaded_)->mesh()->triangle_count();
     const auto number = static_cast<std::uint64_t>(&scenario_ - scenarios().data());
-    const int most_misses = is_drawn_ ? 20 : 1;  // the next draw may have a start
+    const int most_misses = is_drawn_ ? 20 : 1;  // another draw may have a start
     const auto draw_mesh = [&](Random& random) {
       return *loaded_ ? *loaded_ : arena_.draw(random);
     };
@@ -300,10 +301,10 @@ class RobotAttack final : public Attack {
   const Campaign& campaign_;
   const Arena& arena_;
   const Scenario& scenario_;
-  const RobotUnderTest* robot_;  // null: one is drawn for each start
-  bool is_drawn_;                // mesh or robot are others in the next setup
+  const RobotUnderTest* robot_;  // null: drawn for each start
+  bool is_drawn_;                // mesh or robot change with each setup
   std::shared_ptr<std::shared_ptr<Scene>>
-      loaded_;  // for all rows on the mesh; null until the first
+      loaded_;  // shared by all rows of the mesh; null until the first one
   std::uint64_t draws_ = 0;
   Random random_{0};
   std::optional<RobotAttempt> attempt_;

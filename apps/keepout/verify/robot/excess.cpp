@@ -18,7 +18,8 @@ RobotTask::RobotTask(const Chain& chain, std::span<const double> positions, cons
                      const InstrumentOptions& options)
     : jacobian_(6, chain.size()), desired_(6), damping_(chain.size()) {
   const double weight = options.orientation_weight;
-  const double of_slides = weight > 0.0 ? weight : 1.0;  // what a slide's damping is relative to
+  // Reference of the damping of prismatic joints.
+  const double of_slides = weight > 0.0 ? weight : 1.0;
   ChainState state;
   chain.forward_kinematics(positions, state);
   for (int k = 1; k <= chain.size(); ++k) {
@@ -67,7 +68,7 @@ Search search(const RobotTask& task, std::span<const double> positions,
       least = task.cost(trial);
     }
     size *= is_better ? 2.0 : 0.95;
-    if (size < 1e-4) size = 0.5;  // it has settled: once more from afar
+    if (size < 1e-4) size = 0.5;  // it has converged: search again from farther away
   }
   return {(cost - least) / task.largest_reduction(), task.share(best)};
 }

@@ -10,8 +10,9 @@
 
 namespace keepout::app {
 
-/// The cost that a step minimizes, computed independently: |J dq - v|_W^2 + damping |dq|^2, where
-/// turns of the flange and displacements of prismatic joints count in orientation weights.
+/// The cost that a step minimizes, computed independently: |J dq - v|_W^2 + damping |dq|^2.
+/// Rotations of the flange and displacements of prismatic joints are scaled by the orientation
+/// weight.
 class RobotTask {
  public:
   using Increment = Eigen::VectorXd;  // of the joints
@@ -22,13 +23,13 @@ class RobotTask {
   double cost(const Increment& dq) const {
     return (jacobian_ * dq - desired_).squaredNorm() + damping_.dot(dq.cwiseAbs2());
   }
-  /// Returns the fraction of the commanded motion that an increment makes, along that motion.
+  /// Returns the fraction of the commanded motion that an increment executes, along that motion.
   double share(const Increment& dq) const {
     return desired_.dot(jacobian_ * dq) / desired_.squaredNorm();
   }
   /// Returns the reduction of the cost by the unconstrained optimum.
   double largest_reduction() const;
-  /// Returns the increment of each joint that alone moves the flange as far as commanded.
+  /// Returns for each joint the increment that alone moves the flange as far as commanded.
   Increment scales() const;
 
  private:
@@ -37,14 +38,14 @@ class RobotTask {
   Eigen::VectorXd damping_;   // of each joint (n)
 };
 
-/// The result of a search for a better motion than the step made.
+/// The result of a search for a better motion than that of the step.
 struct Search {
-  double saved;  // of its cost, as a fraction of the largest reduction
-  double share;  // of the commanded motion that the best motion found makes
+  double saved;  // reduction of its cost, as a fraction of the largest reduction
+  double share;  // fraction of the commanded motion that the best motion executes
 };
 
 /// Searches at random for a better motion than `made`, among joint increments that the judge would
-/// allow in the coming cycle.
+/// allow in the next cycle.
 Search search(const RobotTask& task, std::span<const double> positions,
               std::span<const double> made, oracle::RobotJudge& judge, Random& random);
 

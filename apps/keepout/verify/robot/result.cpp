@@ -15,7 +15,7 @@ namespace {
 
 using oracle::Breach;
 
-/// Returns null if there is nothing to divide by.
+/// Returns the ratio; null if the divisor is 0.
 template <class Part>
 Json ratio(Part part, std::uint64_t of) {
   return of == 0 ? Json(nullptr) : Json(static_cast<double>(part) / static_cast<double>(of));
@@ -35,7 +35,7 @@ Json cut_share(const Tally& t) {
   return ratio(t.statuses[static_cast<std::size_t>(Status::truncated)], t.cycles);
 }
 
-/// Returns the fraction of cycles that ended without a motion that may be executed.
+/// Returns the fraction of cycles without a motion that may be executed.
 Json unmoved_share(const Tally& t) {
   std::uint64_t unmoved = 0;
   for (std::size_t i = 0; i < status_count; ++i) {
@@ -47,7 +47,7 @@ Json unmoved_share(const Tally& t) {
 std::string percent_text(const Json& value) {
   return value.is_null() ? "-" : formatted("%.2f%%", 100.0 * value.get<double>());
 }
-/// Median, 99 %, 99.9 % and the longest.
+/// Returns median, 99 %, 99.9 % and maximum as text.
 std::string times_text(const Json& us) {
   std::string text;
   for (const auto& [key, value] : us.items()) {
@@ -101,16 +101,17 @@ const Columns<Tally>& robot_columns() {
 }
 
 constexpr const char* robot_legend =
-    R"(below: cycles that came closer than was promised, as an independent judge sees 15 poses of each;
-in mesh: of them, those in which the mesh reached into a body. limits: cycles that broke a joint's.
-guides: cycles that left a guide by more than is promised. strayed: cycles of status free that ended
-farther from what was asked than standing still. least: smallest clearance beyond what was promised,
-in mm and in tolerances, of which 3 are rounding; guide: the same of guides. blocked: cycles that made
-less than 5 % of what was asked; worse: those whose motion was more off than none. cut: to the part that
-was proven; none: nothing was. excess: cost that a search could still save, of all there is, in blocked
-cycles that were searched; useful: more than 5 %; movable: the search made a tenth of what was asked, at
-the full margin. recov.: how often a body was closer than a margin just set; in 500: of them within 500
-cycles. point us: of the certified step of a ball at the tip, beside each. Lengths in mm.
+    R"(below: cycles that came closer than guaranteed; an independent judge examines 15 poses of each
+cycle. in mesh: of these, cycles in which the mesh reached into a body. limits: cycles that broke a
+joint limit. guides: cycles that left a guide by more than guaranteed. strayed: cycles of status
+free that ended farther from the command than without motion. least: smallest clearance beyond the
+guaranteed one, in mm and in tolerances, of which 3 are rounding; guide: the same for guides.
+blocked: cycles that executed less than 5 % of the command; worse: cycles farther from the command
+than without motion. cut: motions shortened to the proved part; none: no motion. excess: fraction
+of the cost that a search could save, in searched blocked cycles; useful: more than 5 %; movable:
+the search executed a tenth of the command with the full margin. recov.: a body was closer than a
+margin just set; in 500: of these, recovered within 500 cycles. point us: time of the certified
+step of a ball at the tip, for comparison. Lengths in mm.
 )";
 
 }  // namespace
@@ -130,22 +131,22 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
     broken += t.broken();
     if (!t.is_out_of_starts) continue;
     account.push_back("On " + t.mesh + ", " + t.scenario + ", only " + counted(t.cycles, "cycle") +
-                      ": no other place was found to begin.");
+                      ": no further start was found.");
   }
   total.update(
       {{"blocked", blocked}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
-  if (!is_actual) account.emplace_back("The linearized motion was certified: unsafe, to compare.");
+  if (!is_actual)
+    account.emplace_back("The linearized motion was certified, for comparison: this is unsafe.");
   const auto count = [&](const char* key) { return total[key].get<std::uint64_t>(); };
   if (!findings.is_complete) {
-    account.push_back("Incomplete: it was interrupted after " + counted(count("cycles"), "cycle") +
-                      ".");
+    account.push_back("Incomplete: interrupted after " + counted(count("cycles"), "cycle") + ".");
   }
   std::string headline = "No breach in ";
   if (broken > 0) {
     headline = counted(count("below"), "cycle") + " too close, " + grouped(count("in_mesh")) +
                " of them in the mesh, " + counted(count("guides_left"), "cycle") +
-               " outside of a guide, " + counted(count("strayed"), "cycle") + " astray, and " +
+               " outside a guide, " + counted(count("strayed"), "cycle") + " astray, and " +
                counted(count("limits_broken"), "joint limit") + " broken, in ";
   }
   std::vector<std::string> speeds;

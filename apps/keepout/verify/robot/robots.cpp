@@ -18,8 +18,8 @@ namespace {
 constexpr double turning_velocity = 1.0;   // [rad/s]
 constexpr double sliding_velocity = 25.0;  // [mm/s]
 
-/// A drawn robot: table and bodies in the terms of the judge, and the limits that the library needs
-/// beside them.
+/// A drawn robot: table and bodies in the form of the judge, and the limits that the library needs
+/// in addition.
 struct Drawn {
   oracle::JudgedRobot judged;
   std::vector<JointLimits> limits;
@@ -58,7 +58,7 @@ RobotUnderTest robot_of(Drawn drawn) {
   return robot;
 }
 
-/// Returns the joints of a chain, whose rotations and axes are normalized.
+/// Returns the joints of a chain, with normalized rotations and axes.
 std::vector<Joint> all_joints(const Chain& chain) {
   std::vector<Joint> joints;
   for (int k = 1; k <= chain.size(); ++k) joints.push_back(chain.joint(k));
@@ -88,7 +88,8 @@ double drawn_radius(Random& random) {
   return random.uniform() < 0.2 ? 0.0 : random.uniform(0.05, 3.0);
 }
 
-/// Points about a place of a link, the place itself last; flat in half of the cases.
+/// Returns a body of points around a place of a link; the last point is the place itself. Half of
+/// the bodies are flat.
 oracle::JudgedBody blade_at(int link, const Vec3& place, double size, Random& random) {
   oracle::JudgedBody blade{.points = {}, .radius = 0.3 * drawn_radius(random)};
   const Vec3 normal = random.direction();
@@ -110,8 +111,8 @@ void add_slides(Drawn& drawn, double range) {
   for (int k = 0; k < 3; ++k) drawn.limits.push_back(sliding(range));
 }
 
-/// Returns a tip that carries `body`, as a robot of three slides. The step of a tip knows no joint
-/// limits, so the slides are longer than any attempt.
+/// Returns a tip that carries `body`, as a robot of three prismatic joints. The step of a tip has
+/// no joint limits, so the joints are longer than any attempt.
 RobotUnderTest tip_with(oracle::JudgedBody body) {
   Drawn drawn;
   add_slides(drawn, 1e5);
@@ -128,7 +129,7 @@ std::span<const RobotUnderTest> robots_under_test() {
       known_robot("psm", "six joints about a port: a da Vinci manipulator with an 8 mm instrument",
                   psm(), oracle::judged_psm(),
                   {{-0.6, 0.6}, {-0.5, 0.5}, {90.0, 125.0}, {-2.0, 2.0}, {-0.6, 0.6}, {-0.6, 0.6}}),
-      known_robot("seven_joint_arm", "seven revolute joints and a straight shaft, held by no port",
+      known_robot("seven_joint_arm", "seven revolute joints and a straight shaft, without a port",
                   seven_joint_arm(), oracle::judged_seven_joint_arm(),
                   {{-1, 1}, {0.2, 0.9}, {-1, 1}, {-1.6, -0.8}, {-1, 1}, {0.3, 1.2}, {-1, 1}})};
   return robots;

@@ -22,8 +22,8 @@ struct RobotUnderTest {
   std::vector<Joint> joints = {};
   Pose flange = {};
   std::vector<Body> bodies = {};
-  oracle::JudgedRobot model = {};  // the same robot in the terms of the judge
-  std::vector<Range> starts = {};  // of each joint, where motions begin [rad or length]
+  oracle::JudgedRobot model = {};  // the same robot in the form of the judge
+  std::vector<Range> starts = {};  // start range of each joint [rad or length]
 
   /// Returns the instrument on a base.
   Instrument make(const Pose& base) const { return {Chain(joints, base, flange), bodies}; }
@@ -31,21 +31,21 @@ struct RobotUnderTest {
 };
 std::span<const RobotUnderTest> robots_under_test();
 
-/// Throws Error if there is no robot of that name.
+/// Returns the robot of this name. Throws Error if it does not exist.
 const RobotUnderTest& robot_named(const std::string& name);
 
-/// Draws a chain of 3 to 7 joints, of any twists and offsets up to 60 mm, with one to three bodies:
-/// balls, capsules and blades, some of radius 0.
+/// Draws a chain of 3 to 7 joints, with any twists and with offsets up to 60 mm. It has one to
+/// three bodies: balls, capsules and blades, some of radius 0.
 RobotUnderTest drawn_robot(Random& random);
 
-/// Draws three joints that slide along orthogonal axes, and the tool: a ball, or the hull of up to
-/// 8 points.
+/// Draw three joints that slide along orthogonal axes, and the tool: a ball, or the hull of up to 8
+/// points.
 RobotUnderTest sliding_ball(Random& random);
 RobotUnderTest sliding_hull(Random& random);
 
-/// Draws four sliding joints. The last three carry the tool, which can give way in every direction.
-/// The first carries a body, and is at its upper limit when a mesh comes on along its axis. One
-/// more body is on the base.
+/// Draws four sliding joints. The last three carry the tool, which can retreat in every direction.
+/// The first carries a body, and is at its upper limit when a mesh approaches along its axis.
+/// Another body is on the base.
 RobotUnderTest robot_with_stuck_bodies(Random& random);
 
 /// Returns the robot with a blade of 3 to 8 points on its last link, as the last body.

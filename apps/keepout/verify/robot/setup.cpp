@@ -13,7 +13,7 @@
 namespace keepout::app {
 namespace {
 
-// The fastest that meshes move at speed 1, in a cycle.
+// The greatest motion of meshes at speed 1, in a cycle.
 constexpr double fastest_mesh = 0.1;         // [mm]
 constexpr double fastest_mesh_turn = 0.002;  // [rad]
 
@@ -36,19 +36,19 @@ Pose inverse(const Pose& pose) {
   return {-(pose.rotation.transpose() * pose.position), pose.rotation.transpose()};
 }
 
-/// Makes the mesh swing about a place.
+/// Sets a swinging motion of the mesh about a place.
 void set_swinging(MeshMotion& motion, double speed, const Vec3& center, Random& random) {
   motion.along = random.direction();
   motion.about = random.direction();
   motion.center = center;
   motion.cycles = random.uniform(30.0, 300.0);
-  // A sine is fastest in its middle.
+  // A sine is fastest at its zero.
   const double longest = motion.cycles / (0.5 * std::numbers::pi);
   motion.way = std::min(random.uniform() * speed * fastest_mesh * longest, 10.0);
   motion.turn = std::min(random.uniform() * speed * fastest_mesh_turn * longest, 0.3);
 }
 
-/// Puts one more mesh beside the tool, clear of all bodies. Returns false if many tries find no
+/// Puts another mesh beside the tool, clear of all bodies. Returns false if many tries find no
 /// place.
 bool put_beside(SetupMesh& mesh, const oracle::JudgedRobot& robot, const RobotStart& start,
                 const Vec3& tool, double margin, Random& random) {
@@ -66,8 +66,7 @@ bool put_beside(SetupMesh& mesh, const oracle::JudgedRobot& robot, const RobotSt
 
 using Links = std::vector<oracle::LinkFrame>;
 
-/// Draws a region about a place. The place is in it or, in one of four cases, out of it by a
-/// little.
+/// Draws a region around a place. The place is in it or, in one of four cases, slightly outside.
 void draw_region(oracle::JudgedGuide& guide, const Vec3& place, Random& random) {
   using Region = oracle::JudgedGuide::Region;
   guide.region = static_cast<Region>(random.below(4));
@@ -95,7 +94,7 @@ oracle::JudgedGuide draw_guide(const oracle::JudgedRobot& robot, const Links& li
   const oracle::JudgedBody& body = robot.bodies[random.below(robot.bodies.size())];
   const double kind = random.uniform();
   if (is_of_tip || kind < 0.5) {
-    // No joint moves a point of the base.
+    // A point of the base would not move.
     const oracle::JudgedPoint& of_body =
         body.points.front().link > 0 ? body.points.front() : body.points.back();
     guide.first = is_of_tip ? robot.bodies.back().points.back() : of_body;
@@ -131,43 +130,44 @@ oracle::JudgedGuide draw_guide(const oracle::JudgedRobot& robot, const Links& li
 
 std::span<const Scenario> scenarios() {
   static const std::array<Scenario, 12> all{{
-      {.name = "approach", .description = "led to the surface, and all about it"},
+      {.name = "approach", .description = "driven to the surface, and around on it"},
       {.name = "raised",
        .description = "approach, while the margin is raised every other 500 cycles",
        .raises_margin = true},
       {.name = "overlapping",
-       .description = "begins with the surface within a body, by up to half its radius",
+       .description = "begins with the surface inside a body, by up to half its radius",
        .begin = Begin::overlapping},
       {.name = "wedged",
-       .description = "begins between two walls, where the margin is raised at once",
+       .description = "begins between two walls, and the margin is raised at once",
        .begin = Begin::wedged,
        .raises_margin = true},
       {.name = "guides",
-       .description = "one to three guides of points, axes and shafts, which may contradict",
+       .description =
+           "one to three guides of points, axes and shafts, which may contradict each other",
        .has_guides = true},
       {.name = "blade",
        .description = "a convex blade of 3 to 8 points on the last link",
        .has_blade = true},
       {.name = "moving", .description = "the mesh swings and turns", .moves = true},
       {.name = "meshes",
-       .description = "up to three meshes that swing and turn, each with a margin of its own",
+       .description = "up to three meshes that swing and turn, each with its own margin",
        .meshes = 3,
        .moves = true},
       {.name = "stuck",
-       .description = "a mesh comes on; two bodies cannot give way, and the tool must",
+       .description = "a mesh approaches; two bodies cannot retreat, and the tool must",
        .moves = true,
        .has_stuck_bodies = true,
        .carrier = Carrier::slides},
       {.name = "unlimited",
-       .description = "joints without limits of velocity",
+       .description = "joints without velocity limits",
        .has_velocity_limits = false},
       {.name = "tip_guides",
-       .description = "a tip's ball, within one to three guides of its own",
+       .description = "a ball at a tip, with one to three guides",
        .has_guides = true,
        .attacked = Attacked::tip,
        .carrier = Carrier::slides},
       {.name = "convex_tool",
-       .description = "a convex tool that keeps its orientation",
+       .description = "a convex tool that does not turn",
        .attacked = Attacked::convex_tool,
        .carrier = Carrier::slides},
   }};
@@ -203,7 +203,7 @@ std::optional<RobotSetup> draw_setup(
                    .speed = speed};
   setup.options = options(setup.robot.make({}).chain());
   const bool is_of_slides = scenario.carrier == Carrier::slides;
-  // Joints that only slide cannot turn the flange.
+  // Prismatic joints cannot rotate the flange.
   if (is_of_slides || (named == nullptr && random.uniform() < 0.5)) {
     setup.options.orientation_weight = 0.0;
   }
@@ -214,7 +214,7 @@ std::optional<RobotSetup> draw_setup(
   setup.start = *start;
   const oracle::JudgedRobot judged = setup.robot.judged();
   if (scenario.moves) {
-    // Anywhere, so that no two frames are equal.
+    // A random frame of the world, so that no two frames are equal.
     const Pose world{random.uniform(0.0, 50.0) * random.direction(), drawn_rotation(random)};
     setup.meshes[0].motion.first = world;
     setup.start.base = world * setup.start.base;
@@ -238,13 +238,13 @@ std::optional<RobotSetup> draw_setup(
     const Hit hit = setup.meshes[0].scene->nearest(seen * tool);
     motion.along = motion.first.rotation * -hit.closest.offset.normalized();
     motion.way = 20.0;
-    // Less than half of what the joints can do in a cycle.
+    // At most half of what the joints can do in a cycle.
     motion.cycles = motion.way / (speed * random.uniform(0.01, 1.0));
     motion.comes_on = true;
     setup.must_keep = judged.bodies.size() - 1;
   } else if (scenario.moves) {
     for (std::size_t m = 0; m < setup.meshes.size(); ++m) {
-      if (m > 0 && random.uniform() < 0.25) continue;  // stands still
+      if (m > 0 && random.uniform() < 0.25) continue;  // this mesh does not move
       set_swinging(setup.meshes[m].motion, speed, tool, random);
     }
   }

@@ -26,45 +26,45 @@ enum class Attacked : std::uint8_t {
 
 /// The robot that carries the bodies.
 enum class Carrier : std::uint8_t {
-  named,  // the one that the user names; without a name, a chain drawn for each start
-  slides  // the scenario's own: joints that slide along three axes
+  named,  // the robot that the user names, or else a chain drawn for each start
+  slides  // prismatic joints along three axes, the scenario's own
 };
 
-/// One kind of attack: the differences from an instrument that is led against one mesh. The same
+/// One kind of attack: the differences from an instrument that is driven against one mesh. The same
 /// code draws, runs and judges all scenarios.
 struct Scenario {
   std::string_view name;
   std::string_view description;
   Begin begin = Begin::apart;
-  bool raises_margin = false;       // every other 500 cycles
-  std::size_t meshes = 1;           // at most
-  bool moves = false;               // the meshes do
-  bool has_guides = false;          // one to three
-  bool has_blade = false;           // one more body, of 3 to 8 points
-  bool has_stuck_bodies = false;    // on the base and at a joint's limit, where a mesh comes on
+  bool raises_margin = false;     // every other 500 cycles
+  std::size_t meshes = 1;         // largest number
+  bool moves = false;             // the meshes move
+  bool has_guides = false;        // one to three
+  bool has_blade = false;         // another body, of 3 to 8 points
+  bool has_stuck_bodies = false;  // on the base and at a joint's limit, before an approaching mesh
   bool has_velocity_limits = true;  // of the joints
   Attacked attacked = Attacked::instrument;
   Carrier carrier = Carrier::named;
 };
 
-/// All scenarios. The first four are those of a campaign that names none.
+/// Returns all scenarios. A campaign that names no scenario runs the first four.
 std::span<const Scenario> scenarios();
 inline constexpr std::size_t usual_scenarios = 4;
 
-/// Throws Error if there is no scenario of that name.
+/// Returns the scenario of this name. Throws Error if it does not exist.
 const Scenario& scenario_named(const std::string& name);
 
 /// The motion of a mesh: it swings along one axis and about another, or approaches along one axis
 /// and returns.
 struct MeshMotion {
-  Pose first = {};             // its pose in cycle 0
+  Pose first = {};             // pose in cycle 0
   Vec3 along = Vec3::UnitX();  // unit
-  Vec3 about = Vec3::UnitX();  // unit, through the world's origin of `center`
+  Vec3 about = Vec3::UnitX();  // unit; passes through `center`
   Vec3 center = Vec3::Zero();  // of the turn [length]
-  double way = 0.0;            // the farthest along [length]
-  double turn = 0.0;           // the farthest about [rad]
-  double cycles = 1.0;         // of a quarter of a swing, or until it has come on all its way
-  bool comes_on = false;       // steadily, instead of swinging
+  double way = 0.0;            // largest displacement [length]
+  double turn = 0.0;           // largest rotation [rad]
+  double cycles = 1.0;         // of a quarter of a swing, or of a complete approach
+  bool comes_on = false;       // approaches steadily instead of swinging
 
   bool is_still() const noexcept { return way == 0.0 && turn == 0.0; }
   Pose at(double cycle) const;
@@ -73,7 +73,7 @@ struct MeshMotion {
 /// A mesh of a setup.
 struct SetupMesh {
   std::shared_ptr<Scene> scene;
-  double margin = 0.0;  // of its own; 0: that of the options [length]
+  double margin = 0.0;  // own margin; 0: the margin of the options [length]
   MeshMotion motion = {};
 };
 
@@ -86,14 +86,14 @@ struct RobotSetup {
   std::vector<oracle::JudgedGuide> guides = {};
   InstrumentOptions options = {};
   double speed = 1.0;
-  bool is_drawn = true;  // mesh or robot are others in the next setup
-  /// A body that keeps the whole certified distance in every cycle, with or without a motion: the
-  /// setup leaves it room and time to give way.
+  bool is_drawn = true;  // mesh or robot change with each setup
+  /// A body that must maintain all of its certified clearance in every cycle, even without a
+  /// motion: the setup gives it enough space and time to retreat.
   std::optional<std::size_t> must_keep = std::nullopt;
 };
 
-/// Draws a setup of a scenario: empty if many tries find no start. `draw_mesh` returns the mesh of
-/// the row, or one more of its kind. `options`: of the robot that was drawn.
+/// Draws a setup of a scenario; empty if many tries find no start. `draw_mesh` returns the mesh of
+/// the row, or another one of its kind. `options`: for the drawn robot.
 std::optional<RobotSetup> draw_setup(
     const Scenario& scenario, const RobotUnderTest* named, double speed, Random& random,
     const std::function<std::shared_ptr<Scene>(Random&)>& draw_mesh,

@@ -24,8 +24,8 @@ Target before_surface(const SurfacePoint& on, double ahead, Random& random) {
   return {on.point - random.uniform(0.25, 1.0) * ahead * way, way};
 }
 
-/// Returns a place on the normal that is as far from another wall, where a tool that keeps `least`
-/// from both walls has a millimeter of room at most.
+/// Returns a place on the normal that is equally far from another wall. A tool that keeps `least`
+/// from both walls has at most a millimeter of free space there.
 std::optional<Target> between_walls(Scene& scene, const SurfacePoint& on, double least,
                                     Random& random) {
   for (double way = least; way < least + 1.2; way += 0.1) {
@@ -54,7 +54,7 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
   const double tool = judged.bodies.back().radius;
   for (int i = 0; i < tries; ++i) {
     SurfacePoint on = on_face(*scene.mesh(), random);
-    // A surface without sides is approached from either.
+    // A surface without sides is approached from either side.
     if (!scene.has_sides() && random.uniform() < 0.5) on.normal = -on.normal;
     const std::optional<Target> target = begin == Begin::wedged
                                              ? between_walls(scene, on, tool + margin, random)
@@ -64,7 +64,7 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
     for (const auto& [low, high] : robot.starts) {
       start.positions.push_back(random.uniform(low, high));
     }
-    // The base follows from the place of the tool. It is turned about the tool at random.
+    // The base follows from the place of the tool, with a random rotation about the tool.
     const oracle::Segment axis =
         axis_of(judged.bodies.back(), oracle::place(judged, {}, start.positions));
     const bool has_length = axis.from != axis.to;
@@ -76,7 +76,7 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
     start.base.position = target->tip - start.base.rotation * axis.to;
     if (clearance(judged, start, scene, margin) < margin) continue;
     if (begin != Begin::overlapping) return start;
-    // Push on until the tool, or a thicker body, overlaps as far.
+    // Advance until the tool, or a thicker body, overlaps enough.
     const double wanted = -random.uniform(0.05, 0.45) * tool;
     double overlap = 0.0;
     for (double gone = 0.0; gone < 40.0 && overlap > wanted; gone += 0.05) {

@@ -13,7 +13,7 @@ namespace keepout::app {
 /// The position of an instrument relative to the surface when a run begins.
 enum class Begin : std::uint8_t {
   apart,        // before the surface, all bodies clear
-  overlapping,  // with the surface within a body, by up to half its radius
+  overlapping,  // with the surface inside a body, by up to half its radius
   wedged        // between two walls
 };
 
@@ -27,8 +27,8 @@ struct RobotStart {
 double clearance(const oracle::JudgedRobot& robot, const RobotStart& start, const Scene& scene,
                  double reach);
 
-/// Draws a start whose bodies keep the margin, unless they are to overlap; empty if many tries find
-/// none. `ahead`: the largest distance of the tool from the surface, along the tool. [mm]
+/// Draws a start whose bodies maintain the margin, unless they must overlap; empty if many tries
+/// find no start. `ahead`: the largest distance of the tool from the surface, along the tool. [mm]
 std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, Begin begin,
                                      double margin, Random& random, double ahead = 20.0);
 
@@ -38,7 +38,7 @@ struct RobotScene {
   double margin;  // [mm]
   const RobotUnderTest& robot = robots_under_test().front();
 
-  /// Draws a start apart from the mesh by more than so many margins; empty if it finds none.
+  /// Draws a start farther from the mesh than `margins` margins; empty if no start is found.
   std::optional<RobotStart> start(Random& random, double margins = 1.0) {
     return find_start(scene, robot, Begin::apart, margins * margin, random);
   }

@@ -75,8 +75,8 @@ class InstrumentSubject final : public RobotSubject {
   InstrumentConstraint constraint_;
 };
 
-/// A tip on joints that slide along orthogonal axes: the step of the tip, as a motion of the
-/// joints.
+/// A tip on joints that slide along orthogonal axes: converts the step of the tip into a motion of
+/// the joints.
 class TipSubject final : public RobotSubject {
  public:
   explicit TipSubject(const RobotSetup& setup)

@@ -11,19 +11,19 @@
 
 namespace keepout::app {
 
-/// The step of an instrument under test: the one that users get, as a scenario requires it. Tests
-/// replace it by sabotaged ones.
+/// The step of an instrument under test: the step that users get, as a scenario requires it. Tests
+/// replace it by sabotaged steps.
 class RobotSubject {
  public:
   virtual ~RobotSubject() = default;
 
   virtual void set_options(const InstrumentOptions& options) = 0;
   virtual void place(std::size_t mesh, const Pose& pose, const Twist& velocity) = 0;
-  /// Views in the result stay valid until the next step.
+  /// Returns the step. Its views stay valid until the next step.
   virtual InstrumentStep step(std::span<const double> positions, const Twist& desired) = 0;
-  /// The work of the last step.
+  /// Returns the work of the last step.
   virtual std::size_t work_units() const { return 0; }
-  /// The tolerance that the step claims for itself. [length]
+  /// Returns the tolerance that the step guarantees. [length]
   virtual double tolerance() const = 0;
 };
 
