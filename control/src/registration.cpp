@@ -36,7 +36,7 @@ std::string text_of(double value) {
 /// Throws Error, which states why the matrix is not a rotation.
 [[noreturn]] void refuse(const Mat3& matrix) {
   const Vec3 scales = Eigen::JacobiSVD<Mat3>(matrix).singularValues();  // the largest first
-  const std::string start = "registration: the matrix is no rotation: ";
+  const std::string start = "registration: the matrix is not a rotation: ";
   if (scales[0] == 0.0) throw Error(start + "it is all zeros; has it been filled in?");
   if (scales[2] < 1e-3 * scales[0]) {
     throw Error(start + "it flattens space; check its nine elements");
@@ -58,8 +58,8 @@ std::string text_of(double value) {
                 "more");
   }
   throw Error(start + "it scales by " + text_of(scales[0]) +
-              "; leave the scale out of it: what is meters and what is millimeters is told by "
-              "RegistrationUnits");
+              "; remove the scale from it: RegistrationUnits states which lengths are meters and "
+              "which are millimeters");
 }
 
 Mat3 rotation_of(const Mat3& matrix) {

@@ -144,7 +144,7 @@ RigidFit fit_rigid(std::span<const Vec3> measured, std::span<const Vec3> model,
            " of the model; each needs the other of its pair");
   }
   if (count < 3) {
-    refuse(std::to_string(count) + " pairs; three fix a rotation, more tell how good it is");
+    refuse(std::to_string(count) + " pairs; three determine a rotation, more show how good it is");
   }
   check_points(measured, "measured");
   check_points(model, "model");
