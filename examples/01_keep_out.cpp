@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole of it: a mesh, a motion constraint, and one step each control cycle.
+// The minimal program: a mesh, a motion constraint, and one step in each control cycle.
 #include <cstdio>
 
 #include "keepout/keepout.h"
@@ -15,7 +15,7 @@ int main(int argc, char** argv) try {
                                              .activation = "certified",
                                              .options = {.tool_radius = 0.3, .margin = 0.2}});
 
-  // A hand that comes from above and wants to go straight through to below.
+  // The commanded motion starts above the mesh and goes straight down through it.
   const keepout::Box& box = mesh->bounds();
   keepout::Vec3 tip(box.center().x(), box.center().y(), box.high.z() + 5.0);
   const keepout::Vec3 goal(tip.x(), tip.y(), box.low.z());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An arm of seven joints that moves the tip: keepout gives the increments of the joints. With more
-// than three of them there are many that move the tip alike; damping above 0 picks the smallest.
+// An arm of seven joints that moves the tip: keepout returns the increments of the joints. With
+// more than three joints, many increments move the tip in the same way; damping above 0 selects the
+// smallest.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstdio>
@@ -10,12 +11,12 @@
 namespace {
 
 using Joints = Eigen::Matrix<double, 7, 1>;    // [rad]
-using Jacobian = Eigen::Matrix<double, 6, 7>;  // motion of the tip above, its turning below
+using Jacobian = Eigen::Matrix<double, 6, 7>;  // translation of the tip above, rotation below
 
-/// Joints that turn about x and y in turn, 60 mm from one to the next.
+/// Joints that turn about x and y alternately, 60 mm apart.
 class Arm {
  public:
-  /// Where the tip is, from the arm's base; and how it moves with each joint.
+  /// The position of the tip from the arm's base, and the Jacobian.
   keepout::Vec3 tip(const Joints& q, Jacobian& jacobian) const {
     Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
     keepout::Vec3 at = keepout::Vec3::Zero();
@@ -42,16 +43,16 @@ int main(int argc, char** argv) try {
     return 2;
   }
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
-  auto guard =
-      keepout::make_motion_constraint(mesh, {.options = {.tool_radius = 0.3,
-                                                         .margin = 0.2,
-                                                         .damping = 1e-2,  // of 60 mm/rad and more
-                                                         .distances = keepout::Distances::always}});
+  auto guard = keepout::make_motion_constraint(
+      mesh, {.options = {.tool_radius = 0.3,
+                         .margin = 0.2,
+                         .damping = 1e-2,  // for columns of 60 mm/rad and more
+                         .distances = keepout::Distances::always}});
 
   const Arm arm;
   Joints q(0.5, 0.3, -0.8, 0.4, 0.9, -0.3, 0.2);
   Jacobian jacobian;
-  // The arm stands so that its tip is 5 mm above the mesh; the hand wants to go straight through.
+  // The tip starts 5 mm above the mesh; the commanded motion goes straight through the mesh.
   const keepout::Box& box = mesh->bounds();
   const keepout::Vec3 start(box.center().x(), box.center().y(), box.high.z() + 5.0);
   const keepout::Vec3 base = start - arm.tip(q, jacobian);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An index of your own: a uniform grid, in a motion constraint, and held to brute force.
+// An index of your own: a uniform grid in a motion constraint, checked against brute force.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,8 +11,8 @@
 #include "keepout/keepout.h"
 #include "keepout/solvers/registry.h"
 
-/// Each triangle is in the one cell that holds the center of its box, so that none is given twice;
-/// a query looks farther by half of the largest box, so that none is missed.
+/// Each triangle is only in the cell that contains the center of its box, so no triangle is
+/// returned twice. A query region grows by half of the largest box, so no triangle is missed.
 class UniformGrid final : public keepout::SpatialIndex {
  public:
   explicit UniformGrid(std::shared_ptr<const keepout::Mesh> on)
@@ -51,7 +51,7 @@ class UniformGrid final : public keepout::SpatialIndex {
  private:
   static constexpr int side = 48;  // cells along each axis
 
-  /// Along an axis, the cell that a point is in; beyond the grid the last one.
+  /// Returns the cell of a point along an axis; beyond the grid, the last cell.
   int place(const keepout::Vec3& point, int axis) const {
     const double size = box_.high[axis] - box_.low[axis];
     const double share = size > 0.0 ? (point[axis] - box_.low[axis]) / size : 0.0;
@@ -62,7 +62,7 @@ class UniformGrid final : public keepout::SpatialIndex {
   }
 
   keepout::Box box_;
-  keepout::Vec3 half_ = keepout::Vec3::Zero();  // of the largest box of a triangle
+  keepout::Vec3 half_ = keepout::Vec3::Zero();  // half of the largest box of a triangle
   std::vector<std::vector<keepout::TriangleId>> cells_;
 };
 
@@ -84,7 +84,8 @@ int main(int argc, char** argv) try {
   auto with_grid = guard_with(std::make_unique<UniformGrid>(mesh), mesh);
   auto with_brute_force = guard_with(std::make_unique<keepout::BruteForce>(mesh), mesh);
 
-  // From above straight down, then along the surface; with either index the same, bit for bit.
+  // Straight down from above, then along the surface. The motion is bitwise identical with both
+  // indices.
   keepout::Vec3 tip(mesh->bounds().center());
   tip.z() = mesh->bounds().high.z() + 2.0;
   int different = 0, held = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tool that is more than a tip: a burr and its shaft, kept out of a mesh.
+// A convex tool: a burr and its shaft are kept out of a mesh.
 #include <cstdio>
 
 #include "keepout/keepout.h"
@@ -15,7 +15,7 @@ int main(int argc, char** argv) try {
   const auto shaft = keepout::ConvexTool::capsule({0, 0, 0}, {8.5, 0, 8.5}, 1.5);
   auto guard = keepout::make_motion_constraint(mesh, {.options = {.margin = 0.2}, .tool = shaft});
 
-  // A hand that comes from above and wants to go straight through to below.
+  // The commanded motion starts above the mesh and goes straight down through it.
   const keepout::Box& box = mesh->bounds();
   keepout::Vec3 tip(box.center().x(), box.center().y(), box.high.z() + 5.0);
   const keepout::Vec3 goal(tip.x(), tip.y(), box.low.z());

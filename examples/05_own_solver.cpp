@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A solver of your own: Hildreth's method, in a motion constraint, and held to the conditions of
-// Karush, Kuhn and Tucker and to active_set.
+// A solver of your own: Hildreth's method in a motion constraint, checked against the conditions of
+// Karush, Kuhn and Tucker and against active_set.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,10 +17,10 @@
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
 
-/// The point nearest to d that satisfies all rows, by coordinate ascent on the dual: each sweep
-/// corrects one multiplier after another. Short, and slow where planes are nearly parallel. For the
-/// tip's own motion only. Source: Hildreth, "A quadratic programming procedure", Naval Research
-/// Logistics Quarterly 4, 1957.
+/// Finds the point nearest to d that satisfies all rows, by coordinate ascent on the dual: each
+/// sweep corrects one multiplier after another. The code is short, but slow if planes are nearly
+/// parallel. For the motion of the tip only, without joints. Source: Hildreth, "A quadratic
+/// programming procedure", Naval Research Logistics Quarterly 4, 1957.
 class Hildreth final : public keepout::Solver {
  public:
   void reserve(int /*variables*/, int rows) override {
@@ -58,7 +58,7 @@ class Hildreth final : public keepout::Solver {
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(rows); ++i) {
       if (forces_[i] == 0.0) continue;
       active_.push_back(i);
-      multipliers_.push_back(2.0 * forces_[i]);  // of |u - d|^2, not of its half
+      multipliers_.push_back(2.0 * forces_[i]);  // for |u - d|^2, not for half of it
     }
     solution = {{u_.data(), 3}, multipliers_, active_, sweeps};
     return keepout::SolveStatus::optimal;
@@ -93,8 +93,8 @@ int main(int argc, char** argv) try {
       std::make_unique<keepout::RecordingSolver>(std::make_unique<Hildreth>(), problems), mesh);
   auto ours = guard_with(keepout::make_solver("active_set"), mesh);
 
-  // From above straight down, then along the surface. No solver is taken at its word: had this one
-  // gone wrong, the step would say so and not move.
+  // Straight down from above, then along the surface. The step checks the solution: if the solver
+  // were wrong, the step would report it and not move.
   keepout::Vec3 tip(mesh->bounds().center());
   tip.z() = mesh->bounds().high.z() + 2.0;
   double apart = 0.0;  // [length]

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The free space around the tip in a quadratic program of your own: a controller that plans some
-// cycles ahead, smoothly, within the polytope. Every motion within it keeps the margin.
+// The free polytope around the tip in a quadratic program of your own: a controller that plans some
+// cycles ahead, smoothly, within the polytope. Every motion within it maintains the required
+// clearance.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,12 +14,12 @@
 
 using Vector = Eigen::VectorXd;
 
-/// Model predictive control of a point. With p_k = d_1 + ... + d_k, the place after k moves:
+/// Model predictive control of a point. With p_k = d_1 + ... + d_k, the position after k moves:
 ///
 ///   min  sum over k of  |p_k - k wish|^2 + smoothness |d_k - d_(k-1)|^2
 ///   subject to  normal . p_k >= offset for all planes, |each coordinate of p_k| <= side
 ///
-/// Any solver of convex quadratic programs would do. This takes ours.
+/// Any solver of convex quadratic programs is suitable. This example uses keepout's own.
 class Planner {
  public:
   static constexpr int horizon = 5;  // moves
@@ -33,7 +34,7 @@ class Planner {
     solver_.reserve(3 * horizon, static_cast<int>(rows_.rows()));
   }
 
-  /// The first move of the best plan; none where there is no plan.
+  /// Returns the first move of the best plan, or nothing if there is no plan.
   keepout::Vec3 move(const keepout::Polytope& free, double side, const keepout::Vec3& wish,
                      const keepout::Vec3& last) {
     if (free.planes.size() > most_planes) return keepout::Vec3::Zero();
@@ -90,8 +91,8 @@ int main(int argc, char** argv) try {
       keepout::make_motion_constraint(mesh, {.options = {.radius = radius, .margin = margin}});
   Planner planner(4.0);
 
-  // A hand that comes from above and wants to go straight through to below; how close it comes is
-  // measured from outside.
+  // The commanded motion starts above the mesh and goes straight down through it. The clearance is
+  // measured independently.
   const keepout::WideBvh index(mesh);
   keepout::NearestTriangle nearest(*mesh, index);
   const keepout::Box& box = mesh->bounds();
@@ -101,7 +102,7 @@ int main(int argc, char** argv) try {
   double closest = 1e9, jerk = 0.0;  // [length]
   constexpr int cycles = 500;
   for (int cycle = 0; cycle < cycles; ++cycle) {
-    // The largest cube in the ball that the polytope holds for.
+    // The largest cube in the ball in which the polytope is valid.
     const keepout::Vec3 move =
         planner.move(guard.free_polytope(tip, radius), radius / std::sqrt(3.0),
                      0.2 * (goal - tip).normalized(), last);

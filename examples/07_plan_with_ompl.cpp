@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A planner of OMPL around a mesh: two lines make every motion of its tree a proven one.
+// An OMPL planner near a mesh: with two lines, every motion of its tree is proved.
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/SimpleSetup.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
@@ -19,7 +19,7 @@ int main(int argc, char** argv) try {
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
   const keepout::Box& box = mesh->bounds();
 
-  // The space of the tip, in the frame of the mesh, with some room around it.
+  // The space of the tip, in the frame of the mesh, with some free space around it.
   auto space = std::make_shared<ompl::base::RealVectorStateSpace>(3);
   ompl::base::RealVectorBounds bounds(3);
   for (unsigned int i = 0; i < 3; ++i) {
@@ -30,7 +30,7 @@ int main(int argc, char** argv) try {
   ompl::msg::setLogLevel(ompl::msg::LOG_WARN);
   ompl::geometric::SimpleSetup setup(space);
 
-  // A guard for each thread that asks, made as they are needed, all on one index.
+  // Makes one guard for each thread when it is needed; all use one index.
   const std::shared_ptr<const keepout::SpatialIndex> index = keepout::make_index("wide_bvh", mesh);
   const auto guards = std::make_shared<keepout::GuardPool>([mesh, index] {
     return keepout::make_motion_constraint(mesh, index,
@@ -44,7 +44,7 @@ int main(int argc, char** argv) try {
   goal = std::vector<double>{box.center().x(), box.center().y(), box.low.z() - 10.0};
   setup.setStartAndGoalStates(start, goal);
 
-  // Any planner will do; keepout::make_sliding_connect makes one that slides along the mesh.
+  // Any planner is suitable; keepout::make_sliding_connect makes one that slides along the mesh.
   setup.setPlanner(std::make_shared<ompl::geometric::RRTConnect>(setup.getSpaceInformation()));
   if (setup.solve(5.0) != ompl::base::PlannerStatus::EXACT_SOLUTION) {
     std::printf("no path was found in 5 s\n");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A teleoperation loop at 1 kHz under the names of CRTK, with a simulated hand and robot: where a
-// dVRK has topics, here are two structs. docs/controllers.md says what goes where.
+// A teleoperation loop at 1 kHz with the names of CRTK, and a simulated operator and robot. Two
+// structs replace the topics of a dVRK. docs/controllers.md describes the connections.
 #include <algorithm>
 #include <cstdio>
 
@@ -9,7 +9,7 @@
 #include "keepout/index/wide_bvh.h"
 #include "keepout/keepout.h"
 
-/// In place of a PSM: follows what it is sent, a little late. In meters, in its own frame.
+/// Replaces a PSM: follows its setpoint with a small delay. In meters, in its own frame.
 struct Robot {
   keepout::Pose pose;
   keepout::Pose measured_cp() const { return pose; }  // subscribe: /PSM1/measured_cp
@@ -20,8 +20,8 @@ struct Robot {
   }
 };
 
-/// In place of an MTM and the teleoperation: dives into the anatomy, slides along in it, and comes
-/// back, in four seconds. Distances are those of the goal for the robot, from where it started. [m]
+/// Replaces an MTM and the teleoperation: moves into the anatomy, along in it, and back, in four
+/// seconds. Distances are those of the robot's goal from its start. [m]
 struct Hand {
   double largest_force = 0.0;
   keepout::Vec3 way(double seconds) const {
@@ -42,8 +42,9 @@ int main(int argc, char** argv) try {
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
   constexpr double margin = 0.5, tool_radius = 0.5;  // [mm]
 
-  // Where the mesh is in the robot's frame: in earnest, the result of a registration. Here the
-  // robot's origin is 150 mm above the middle of the mesh, and its axes are those of the mesh.
+  // The pose of the mesh in the robot's frame. In an application it is the result of a
+  // registration. Here the robot's origin is 150 mm above the middle of the mesh, and both have the
+  // same axes.
   const keepout::Vec3 middle = mesh->bounds().center();
   Eigen::Matrix4d mesh_from_robot = Eigen::Matrix4d::Identity();
   mesh_from_robot.topRightCorner<3, 1>() = middle + keepout::Vec3(0, 0, 150);
@@ -61,7 +62,8 @@ int main(int argc, char** argv) try {
                   .largest_brake = 0.01},
        .motion_scale = 0.5});
 
-  // The robot waits 5 mm above the highest vertex, so that the hand pushes the tool into the mesh.
+  // The robot starts 5 mm above the highest vertex, so that the operator pushes the tool into the
+  // mesh.
   const keepout::Vec3 highest = *std::ranges::max_element(
       mesh->vertices(), {}, [](const keepout::Vec3& vertex) { return vertex.z(); });
   const keepout::Vec3 start = highest + keepout::Vec3(0, 0, 5);
@@ -87,7 +89,7 @@ int main(int argc, char** argv) try {
       guard.servo_cp({begin.position + hand.way(0.001 * cycle), begin.rotation});
     }
     robot.servo_cp(*guard.setpoint_cp());  // after a failed cycle, the last one
-    hand.servo_cf(guard.servo_cf());       // then it fades out
+    hand.servo_cf(guard.servo_cf());       // after a failed cycle, it fades out
 
     if (!guard.cycle().ok() && stopped++ == 0) std::printf("%s\n", guard.reason().data());
     held += guard.cycle().step == keepout::Status::limited;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A whole instrument of six joints: shaft, wrist and jaws are kept out, each on the curve that the
-// joints really lead it along. A planner asks how much of a motion of its own is clear.
+// A whole instrument of six joints: shaft, wrist and jaws are kept out, on the curves that the
+// joints really make. A planner also queries how much of its own motion is clear.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -17,8 +17,9 @@ using keepout::DenavitHartenberg;
 using keepout::LinkPoint;
 using keepout::Vec3;
 
-/// The da Vinci research kit's patient-side manipulator with a large needle driver, whose port is
-/// at `port`: the kit's table and its limits of position; velocities such as its users set.
+/// Returns the patient-side manipulator of the da Vinci Research Kit with a large needle driver,
+/// with its port at `port`. Table and position limits are those of the kit; velocity limits are
+/// similar to those that users set.
 keepout::Instrument patient_side_manipulator(const Vec3& port) {
   constexpr double right = std::numbers::pi / 2.0;
   const std::array<DenavitHartenberg, 6> table{{
@@ -48,7 +49,7 @@ int main(int argc, char** argv) try {
   }
   const auto mesh = keepout::load_mesh(argv[1]).mesh;
   const keepout::Box& box = mesh->bounds();
-  // The port is 120 mm above the mesh, and the tip hangs straight below it, 10 mm above the mesh.
+  // The port is 120 mm above the mesh. The tip is straight below it, 10 mm above the mesh.
   const Vec3 port(box.center().x(), box.center().y(), box.high.z() + 120.0);
   constexpr double margin = 0.5, period = 0.001;  // [mm], [s]
   const keepout::Instrument instrument = patient_side_manipulator(port);
@@ -64,12 +65,12 @@ int main(int argc, char** argv) try {
   instrument.chain().forward_kinematics(q, chain);
   q[2] = chain.flange().position.z() - (box.high.z() + 10.0);
 
-  // A planner's question: 20 mm straight down, through the surface. Nothing moves.
+  // A planner's query: 20 mm straight down, through the surface. Nothing moves.
   const std::vector<double> down{0, 0, 20.0, 0, 0, 0};
   const keepout::MotionProof proof = guard.prove(q, down);
   std::printf("clear are %.4f mm of 20 (%s)\n", 20.0 * proof.fraction, name(proof.status).data());
 
-  // Teleoperation: the hand presses down, and draws aside and back.
+  // Teleoperation: the operator presses down, and moves aside and back.
   int held = 0, stopped = 0, nearest_body = -1;
   double nearest = 10.0;
   constexpr int cycles = 3000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A planner of OMPL in the joint space of a whole instrument: shaft and tip are proven clear on the
+// An OMPL planner in the joint space of a whole instrument: shaft and tip are proved clear on the
 // motions that the joints really make.
 #include <ompl/base/spaces/RealVectorStateSpace.h>
 #include <ompl/geometric/SimpleSetup.h>
@@ -18,8 +18,8 @@ namespace {
 
 using keepout::Vec3;
 
-/// A shaft that turns about its port in two directions, and slides through it: yaw, pitch and
-/// insertion. With all joints at 0 it hangs down, and its tip is in the port.
+/// Returns a shaft that turns about its port in two directions, and slides through it: yaw, pitch
+/// and insertion. With all joints at 0 it points down, and its tip is in the port.
 keepout::Instrument shaft_through(const Vec3& port, double longest) {
   const keepout::JointLimits turn{.lower = -1.2, .upper = 1.2};
   const keepout::Chain chain({{.name = "yaw", .axis = Vec3::UnitY(), .limits = turn},
@@ -55,8 +55,8 @@ int main(int argc, char** argv) try {
   });
   keepout::set_certified_checkers(setup.getSpaceInformation(), guards);
 
-  // From beside the mesh on the one side to beside it on the other; straight on, the shaft would
-  // sweep through it.
+  // From one side of the mesh to the other; a straight motion would sweep the shaft through the
+  // mesh.
   const double aside = std::atan2(0.5 * box.size().x() + 10.0, above);
   ompl::base::ScopedState<> start(setup.getStateSpace()), goal(setup.getStateSpace());
   start = std::vector<double>{-aside, 0.0, 1.5 * above};

@@ -29,7 +29,8 @@ CrtkGuard::CrtkGuard(MotionConstraint guard, const Registration& registration,
     : proxy_(std::move(guard), options.haptic),
       registration_(registration),
       options_(checked(options)) {
-  options_.hand_from_robot = nearest_rotation(options_.hand_from_robot);  // forces keep their size
+  options_.hand_from_robot =
+      nearest_rotation(options_.hand_from_robot);  // preserves the size of forces
 }
 
 CycleStatus CrtkGuard::engage(const Pose& setpoint) noexcept {
@@ -75,7 +76,7 @@ CycleStatus CrtkGuard::await_cp() noexcept {
 
 CycleStatus CrtkGuard::go() noexcept {
   const std::optional<Pose> measured = std::exchange(measured_, std::nullopt);
-  // To within a rounding of the sum.
+  // The factor allows for the rounding of the sum.
   if (silence_ > options_.longest_silence * (1.0 + 1e-9)) {
     return take(proxy_.stand(CycleStatus::stale));
   }

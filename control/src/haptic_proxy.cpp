@@ -10,15 +10,15 @@
 namespace keepout {
 namespace {
 
-/// In the order of CycleStatus: name and reason.
+/// Name and reason of each CycleStatus, in its order.
 constexpr std::array<std::array<std::string_view, 2>, 8> outcomes{{
     {"guarded", "the proxy followed as far as the mesh allows"},
-    {"not_engaged", "not engaged; call engage() with where the robot is"},
+    {"not_engaged", "not engaged; call engage() with the position of the robot's tip"},
     {"invalid_pose",
-     "a pose is not finite, or its rotation is none; check the message that it came from"},
+     "a pose is not finite, or not a rotation; check the message that it came from"},
     {"too_far", "the goal is too far from the proxy; check its unit, or engage anew after a jump"},
     {"stale", "no goal came for too long; check the connection and the rate of the sender"},
-    {"lagging", "the robot is not where it was sent; wait for it, or look at what holds it"},
+    {"lagging", "the robot is too far from the setpoint; wait for it, or check what blocks it"},
     {"far_from_mesh",
      "the tip is implausibly far from the mesh; check the registration and its units"},
     {"stopped", "the engine refused the step; see its status"},
@@ -32,7 +32,7 @@ std::string_view text_of(CycleStatus status, std::size_t column) noexcept {
 constexpr double longest_length = 1e30;  // as for the engine's lengths
 
 bool is_place(const Vec3& point) noexcept {
-  // What is not a number is not below.
+  // A NaN fails the comparison or allFinite().
   return point.cwiseAbs().maxCoeff() <= longest_length && point.allFinite();
 }
 
@@ -99,11 +99,11 @@ HapticCycle HapticProxy::cycle(const Vec3& hand) noexcept {
     stood.step = step.status;
     return stood;
   }
-  // The top speed shortens the motion that was found, and not the one that was asked for: an
-  // operator who presses into the surface and slides would be slowed down by that. Any part of a
-  // proved motion is proved as well. A motion that leads out from inside is not proved, and is no
-  // longer than the recovery, which the constructor limits to `longest_`.
-  const double fraction = std::min(1.0, longest_ / step.motion.norm());  // 1 where nothing moves
+  // The top speed shortens the motion that was found, not the desired one: that would slow down an
+  // operator who presses into the surface and slides. Any part of a proved motion is proved as
+  // well. An escape from inside is not proved, but is no longer than the recovery, which the
+  // constructor limits to `longest_`.
+  const double fraction = std::min(1.0, longest_ / step.motion.norm());  // 1 for zero motion
   // A free motion ends exactly at the goal: no force is left in free space.
   const bool arrives = !is_cut && fraction == 1.0 && step.motion == motion.desired;
   const Vec3 before = proxy_;

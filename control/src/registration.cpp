@@ -33,15 +33,16 @@ std::string text_of(double value) {
   return text;
 }
 
-/// Says what a matrix is instead of a rotation.
+/// Throws Error, which states why the matrix is not a rotation.
 [[noreturn]] void refuse(const Mat3& matrix) {
   const Vec3 scales = Eigen::JacobiSVD<Mat3>(matrix).singularValues();  // the largest first
-  const std::string start = "registration: the matrix is no rotation: ";
+  const std::string start = "registration: the matrix is not a rotation: ";
   if (scales[0] == 0.0) throw Error(start + "it is all zeros; has it been filled in?");
   if (scales[2] < 1e-3 * scales[0]) {
     throw Error(start + "it flattens space; check its nine elements");
   }
-  // Below the tolerance as well, where neither alone is at fault: what is larger is told.
+  // Both errors may be below the tolerance, and only their sum above it. The message names the
+  // larger one.
   const double spread = scales[0] - scales[2];
   const double off = std::abs(scales[0] - 1.0);
   const bool is_rigid = spread <= rotation_tolerance * scales[0] && off <= rotation_tolerance;
@@ -57,8 +58,8 @@ std::string text_of(double value) {
                 "more");
   }
   throw Error(start + "it scales by " + text_of(scales[0]) +
-              "; leave the scale out of it: what is meters and what is millimeters is told by "
-              "RegistrationUnits");
+              "; remove the scale from it: RegistrationUnits states which lengths are meters and "
+              "which are millimeters");
 }
 
 Mat3 rotation_of(const Mat3& matrix) {
@@ -83,7 +84,7 @@ void check_matrix(const Eigen::Matrix4d& matrix) {
 bool is_rotation(const Mat3& matrix) noexcept {
   if (!matrix.allFinite()) return false;
   const Mat3 off = matrix.transpose() * matrix - Mat3::Identity();
-  // Of a finite matrix the product may still overflow: what is not a number is not below.
+  // The product of a finite matrix may overflow, so allFinite() rejects NaN.
   return off.cwiseAbs().maxCoeff() <= rotation_tolerance && off.allFinite() &&
          matrix.determinant() > 0.0;
 }

@@ -14,10 +14,10 @@
 namespace keepout {
 namespace {
 
-// Of lengths of the points' spread.
-constexpr double narrowest = 1e-3;         // a tracker cannot tell a turn about what is narrower
-constexpr double widest_residual = 0.1;    // of fiducials in the right order, at most
-constexpr double largest_scale_off = 0.1;  // of fiducials in the right unit, at most
+// As fractions of the points' spread.
+constexpr double narrowest = 1e-3;         // a tracker cannot measure a turn about a narrower set
+constexpr double widest_residual = 0.1;    // the largest for fiducials in the right order
+constexpr double largest_scale_off = 0.1;  // the largest for fiducials in the right unit
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(what); }
 
@@ -33,7 +33,8 @@ void check_points(std::span<const Vec3> points, const char* name) {
   }
 }
 
-/// With a mean of 1.
+/// Returns the weights, scaled to a mean of 1. Throws Error for a weight that is not above 0 and
+/// finite.
 std::vector<double> normalised(std::span<const double> weights, std::size_t count) {
   if (weights.empty()) return std::vector<double>(count, 1.0);
   if (weights.size() != count) {
@@ -46,7 +47,7 @@ std::vector<double> normalised(std::span<const double> weights, std::size_t coun
              "; leave out a pair that must not count");
     }
   }
-  const double largest = std::ranges::max(weights);  // first: no sum overflows then
+  const double largest = std::ranges::max(weights);  // divides first, so that no sum overflows
   double sum = 0.0;
   for (const double w : weights) sum += w / largest;
   std::vector<double> relative;
@@ -92,7 +93,8 @@ std::string text_of(double value) {
   return text;
 }
 
-/// `mirrored_fre`: what it would be if a reflection were allowed.
+/// Returns the reason to doubt a fit, or an empty text. `mirrored_fre`: the FRE if a reflection
+/// were allowed.
 std::string doubt_of(const RigidFit& fit, double mirrored_fre, double spread) {
   if (std::abs(fit.scale - 1.0) > largest_scale_off) {
     return "the model's points are spread " + text_of(fit.scale) +

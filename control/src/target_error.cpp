@@ -15,9 +15,9 @@ namespace {
 
 constexpr double known = std::numeric_limits<double>::infinity();  // degrees of freedom
 
-/// How likely `dimensions` normal numbers of one variance have a root of the sum of their squares
-/// of at most `radius` deviations, where that deviation is estimated with `freedom` degrees of
-/// freedom, or known. By Simpson's rule over the density of that root.
+/// Returns the probability that the norm of `dimensions` normal numbers of equal variance is at
+/// most `radius` standard deviations. The deviation is estimated with `freedom` degrees of freedom,
+/// or known. Integrates the density of the norm by Simpson's rule.
 double chance_within(double radius, double dimensions, double freedom) {
   const double half = 0.5 * dimensions;
   const double log_scale = freedom == known
@@ -36,7 +36,7 @@ double chance_within(double radius, double dimensions, double freedom) {
   return sum * width / 3.0;
 }
 
-/// The radius within which it is as likely as `confidence`. [deviations]
+/// Returns the radius for which chance_within() equals `confidence`. [standard deviations]
 double radius_of(double confidence, double dimensions, double freedom) {
   double low = 0.0;
   double high = 1.0;

@@ -18,7 +18,7 @@ except keepout.Error as error:
     sys.exit(str(error))
 guard = keepout.MotionConstraint(mesh, tool_radius=0.3, margin=0.2)
 
-# A hand that comes from above and wants to go straight through to below.
+# The commanded motion starts above the mesh and goes straight down through it.
 low, high = mesh.bounds
 tip = np.array([*(0.5 * (low + high))[:2], high[2] + 5.0])
 goal = np.array([tip[0], tip[1], low[2]])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""An arm of seven joints that moves the tip: keepout gives the increments of the joints. With more
-than three of them there are many that move the tip alike; damping above 0 picks the smallest.
+"""An arm of seven joints that moves the tip: keepout returns the increments of the joints.
+With more than three joints, many increments move the tip in the same way; damping above 0 selects
+the smallest.
 
 python3 examples/python/joints.py MESH
 """
@@ -13,14 +14,16 @@ import keepout
 
 
 def turn(axis, angle):
-    """The rotation about x (0) or y (1) by an angle [rad]."""
+    """Returns the rotation about x (0) or y (1) by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[1, 0, 0], [0, c, -s], [0, s, c]] if axis == 0 else [[c, 0, s], [0, 1, 0], [-s, 0, c]])
 
 
 def arm(q):
-    """Where the tip is, from the arm's base, and how it moves with each joint, (3, 7): joints that
-    turn about x and y in turn, 60 mm from one to the next."""
+    """Returns the tip's position from the arm's base, and its Jacobian (3, 7).
+
+    The joints turn about x and y alternately, 60 mm apart.
+    """
     turned, at, joints, axes = np.eye(3), np.zeros(3), [], []
     for i, angle in enumerate(q):
         joints.append(at)
@@ -36,12 +39,12 @@ try:
     mesh = keepout.load_mesh(sys.argv[1])
 except keepout.Error as error:
     sys.exit(str(error))
-# Damping beside columns of 60 mm/rad and more.
+# The damping is for columns of 60 mm/rad and more.
 guard = keepout.MotionConstraint(
     mesh, tool_radius=0.3, margin=0.2, damping=1e-2, distances="always"
 )
 
-# The arm stands so that its tip is 5 mm above the mesh; the hand wants to go straight through.
+# The tip starts 5 mm above the mesh; the commanded motion goes straight through the mesh.
 low, high = mesh.bounds
 start = np.array([*(0.5 * (low + high))[:2], high[2] + 5.0])
 goal = np.array([start[0], start[1], low[2]])

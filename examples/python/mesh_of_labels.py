@@ -4,9 +4,9 @@
 python3 examples/python/mesh_of_labels.py LABELS.nii.gz MESH.ply
 python3 examples/python/mesh_of_labels.py LABELS.nrrd MESH.ply --label 2 --smooth 0
 
-Reads NIfTI by nibabel, and NRRD, whose data may be in one other file (.nhdr); takes the surface by marching cubes of
-scikit-image. Needs python3-nibabel and python3-skimage. Spacing, origin and direction of the image are applied, and the mesh states its space (SPACE=LPS or
-SPACE=RAS). Its normals point out of the label.
+Reads NIfTI with nibabel, and NRRD, whose data may be in one other file (.nhdr). Extracts the surface with the marching
+cubes of scikit-image. Needs python3-nibabel and python3-skimage. Applies spacing, origin and direction of the image,
+and writes the space of the mesh (SPACE=LPS or SPACE=RAS). The normals point out of the label.
 """
 
 import argparse
@@ -41,7 +41,7 @@ MILLIMETERS = {"meter": 1000.0, "mm": 1.0, "micron": 0.001, "unknown": 1.0}
 
 
 class Unreadable(Exception):
-    """What is wrong with a file, and what to do."""
+    """A file cannot be read; the message states the cause and what to do."""
 
 
 def read_nifti(path):
@@ -49,7 +49,7 @@ def read_nifti(path):
     import nibabel
 
     if path.suffix.lower() == ".gz":
-        gzip.decompress(path.read_bytes())  # nibabel reads the voxels, but not the checksum behind them
+        gzip.decompress(path.read_bytes())  # nibabel ignores the checksum after the voxels
     try:
         image = nibabel.load(path)
     except (nibabel.filebasedimages.ImageFileError, nibabel.spatialimages.HeaderDataError):

@@ -2,14 +2,14 @@
 # %% [markdown]
 # # A path over the skull
 #
-# A hand that knows nothing of the bone draws a tip across a CT skull and presses down all the while.
-# The tip glides over the bone, 0.5 mm off, and never enters it. The picture shows where it went.
+# A commanded motion that ignores the bone draws a tip across a CT skull and presses down all the time.
+# The tip slides over the bone at 0.5 mm, and never enters it. The picture shows its path.
 #
 #     python3 examples/python/path_over_the_skull.py .cache/fixtures/skull.stl --out path.png
 #
 # The cells (`# %%`) run one by one in VS Code, Spyder or Jupytext.
 
-# %% What to load and how long to draw
+# %% The mesh and the number of cycles
 import argparse
 
 import matplotlib
@@ -34,13 +34,14 @@ centre, size = 0.5 * (low + high), high - low
 print(mesh, "-", mesh.inspect())
 
 # %% Two hands: from side to side, and from front to back
-# Each swings over an arc and waves as it goes, deep in the head: half way from its centre to the
-# bone. Its tip starts outside, above where the hand is.
+#
+# Each swings over an arc with a small wave, deep in the head: halfway from its center to the
+# bone. Its tip starts outside, above the hand.
 turn = np.linspace(0.0, 1.0, options.cycles)
 
 
 def hand(across, along, reach):
-    """Where a hand is in each cycle, (cycles, 3): an arc in the plane of `across` and up."""
+    """Returns the position of a hand in each cycle, (cycles, 3): an arc in the plane of `across` and up."""
     angle = np.radians(-65.0 + 130.0 * turn)[:, None]
     up = np.array([0.0, 0.0, 1.0])
     wave = 0.07 * np.sin(2 * np.pi * 5 * turn)[:, None]
@@ -50,11 +51,11 @@ def hand(across, along, reach):
 x, y = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
 hands = np.stack([hand(x, y, 0.3), hand(y, x, 0.3)])
 starts = centre + 2.2 * (hands[:, 0] - centre)
-# Outside for certain: as far from the head as it takes.
+# Moves the starts away from the head until they are certainly outside.
 while not np.all(guard.index.distances(starts) > 2.0):
     starts = centre + 1.1 * (starts - centre)
 
-# %% Both paths at once, one a processor
+# %% Both paths at once, one on each processor
 ran = guard.simulate(starts, hands, max_step=0.5)
 counts = {status.name: count for status, count in ran.counts().items()}
 distances = guard.index.distances(ran.tips.reshape(-1, 3)).reshape(ran.tips.shape[:2])

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A tip that is pressed towards the middle of a mesh and stays outside, by 'keepout serve'.
+"""A tip that presses towards the middle of a mesh and stays outside, with 'keepout serve'.
 
 Usage: serve_client.py KEEPOUT MESH        (the command, and a mesh file in mm)
 Needs nothing but Python 3 itself.
@@ -11,7 +11,7 @@ import sys
 
 
 class Guard:
-    """The keepout command as a process of ours: one request, one answer."""
+    """The keepout command as a child process: one answer for each request."""
 
     def __init__(self, keepout, mesh, *options):
         self.process = subprocess.Popen([keepout, "serve", mesh, *options], text=True, bufsize=1,
@@ -35,7 +35,7 @@ tip = [goal[0], goal[1], box["high"][2] + 3]
 for cycle in range(100):
     desired = [0.1 * (g - t) for g, t in zip(goal, tip)]
     length = sum(d * d for d in desired) ** 0.5
-    desired = [d * min(1, 0.5 / length) for d in desired]  # [mm], as fast as it may go
+    desired = [d * min(1, 0.5 / length) for d in desired]  # [mm], at most 0.5
     step = guard.ask(id=cycle, do="step", tip=tip, desired=desired)
     if not step["ok"]:
         sys.exit(step["reason"])

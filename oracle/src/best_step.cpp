@@ -13,22 +13,24 @@
 namespace keepout::oracle {
 namespace {
 
-// Inside, lengths are in units of |desired| and relative to the tip, so the desired motion is a
-// unit vector and a motion is the segment from the origin to it.
+// In this file, lengths are in units of |desired| and positions are relative to the tip. So the
+// desired motion is a unit vector, and a motion is the segment from the origin to its end.
 
-constexpr double proven_gap = 1e-4;        // between the cost and its bound, when to stop
-constexpr std::size_t most_cells = 20000;  // of the branch and bound, when to give up
+constexpr double proven_gap = 1e-4;        // between the cost and its bound: the search stops there
+constexpr std::size_t most_cells = 20000;  // of the branch and bound
 constexpr std::size_t first_cells = 64;
 constexpr std::size_t first_descents = 4;
-constexpr double parallel = 1e-9;  // planes whose normals span less make no line
+constexpr double parallel =
+    1e-9;  // planes with a smaller sine between their normals do not intersect
 
 struct ClosestPoint {
-  Vec3 offset;  // from the point asked about
+  Vec3 offset;  // from the given point
   double distance;
 };
 
-/// Where a triangle, which may be a segment or a point, is nearest to a point: at the foot of the
-/// perpendicular if that is in it, and otherwise on one of its sides.
+/// Returns the point of a triangle that is nearest to a point: the foot of the perpendicular if
+/// that is within the triangle, otherwise a point on a side. The triangle may be a segment or a
+/// point.
 ClosestPoint closest_point(const Triangle& t, const Vec3& point) {
   Vec3 best = t[0] - point;
   for (int i = 0; i < 3; ++i) {
@@ -50,19 +52,19 @@ ClosestPoint closest_point(const Triangle& t, const Vec3& point) {
   return {best, best.norm()};
 }
 
-/// A triangle to keep away from. The motions that it leaves are all but a convex set, its shadow.
+/// A triangle that limits motions. It excludes the motions in a convex set, its shadow.
 struct Obstacle {
   Triangle triangle;
   double margin;
   Vec3 center;   // of a sphere around the triangle
-  double reach;  // that sphere's radius, and the margin
+  double reach;  // that sphere's radius plus the margin
   Vec3 normal;   // from the triangle to the tip
-  double room;   // distance from the tip, less the margin
+  double room;   // distance from the tip minus the margin
 };
 
 struct Contact {
-  double length;             // of the way to it
-  const Obstacle* obstacle;  // none: the way is free
+  double length;             // of the motion to the contact
+  const Obstacle* obstacle;  // null: the motion is free
 };
 
 /// {z : normal . z >= offset}.
@@ -77,7 +79,8 @@ double distance_to_segment(const Vec3& point, const Vec3& end) {
   return (point - std::clamp(point.dot(end) / length2, 0.0, 1.0) * end).norm();
 }
 
-/// Shortest way from the segment [a, b] to the segment [0, end], whichever are points.
+/// Returns the shortest vector from the segment [a, b] to the segment [0, end]. Either may be a
+/// point.
 Vec3 between_segments(const Vec3& a, const Vec3& b, const Vec3& end) {
   const Vec3 along = b - a;
   const double aa = along.squaredNorm(), ee = end.squaredNorm(), ae = along.dot(end);
@@ -94,8 +97,8 @@ Vec3 between_segments(const Vec3& a, const Vec3& b, const Vec3& end) {
   return on_end(r) * end - (a + r * along);
 }
 
-/// Shortest way from a triangle to the segment [0, end], which does not cross it: it starts or ends
-/// at an end of the segment or on a side of the triangle.
+/// Returns the shortest vector from a triangle to the segment [0, end], which does not cross it.
+/// The vector ends at an end of the segment, or starts on a side of the triangle.
 Vec3 way_to_segment(const Triangle& t, const Vec3& end) {
   Vec3 best = -closest_point(t, Vec3::Zero()).offset;
   const auto consider = [&](const Vec3& way) {
@@ -106,8 +109,8 @@ Vec3 way_to_segment(const Triangle& t, const Vec3& end) {
   return best;
 }
 
-/// Whether the segment [0, end] passes through the inside of the triangle. Near its sides rounding
-/// decides, but there the way to them is short.
+/// Returns true if the segment [0, end] passes through the interior of the triangle. Near its sides
+/// rounding decides, but there the distance from them is small.
 bool crosses(const Triangle& t, const Vec3& end) {
   const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
   if (normal.dot(t[0]) * normal.dot(t[0] - end) > 0.0) return false;
@@ -117,9 +120,10 @@ bool crosses(const Triangle& t, const Vec3& end) {
   return (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
 }
 
-/// Projection of `target` on the intersection of the planes; nothing if rounding leaves it empty.
-/// Incremental: a plane that the projection on the earlier ones violates is active, which leaves
-/// the same problem in one dimension less. (Seidel, "Small-dimensional linear programming", 1991.)
+/// The projection of `target` on the intersection of half-spaces; empty if rounding makes the
+/// intersection empty. Incremental: if the projection on the earlier planes violates a plane, that
+/// plane is active, and the problem loses one dimension (Seidel, "Small-dimensional linear
+/// programming", 1991).
 class Projection {
  public:
   explicit Projection(const Vec3& target) : target_(target) {}
@@ -143,7 +147,7 @@ class Projection {
     Vec3 z = foot;
     for (std::size_t i = 0; i < planes.size(); ++i) {
       if (allows(planes[i], z)) continue;
-      // Within the plane, the other one's normal and how far along it to go.
+      // The normal of the other plane within this plane, and the distance along it.
       const Vec3 within = planes[i].normal - planes[i].normal.dot(p.normal) * p.normal;
       const double sine = within.norm();
       if (sine < parallel) continue;
@@ -156,7 +160,7 @@ class Projection {
     return z;
   }
 
-  /// `foot` is the target's projection on the line.
+  /// `foot`: the target's projection on the line.
   static std::optional<Vec3> on_line_of(const Vec3& foot, const Vec3& along,
                                         std::span<const Plane> planes) {
     double low = -std::numeric_limits<double>::infinity(), high = -low;
@@ -173,12 +177,14 @@ class Projection {
   Vec3 target_;
 };
 
-/// Some of the directions: those between three of them. The bound is that of their motions' costs.
+/// A cone of directions: those between three directions. `bound` bounds the costs of their motions.
 struct Cell {
   std::array<Vec3, 3> corner;  // unit
   double bound;
 
-  bool operator<(const Cell& other) const { return bound > other.bound; }  // the least is on top
+  bool operator<(const Cell& other) const {
+    return bound > other.bound;
+  }  // the least bound is on top
 };
 
 std::array<Cell, 2> halves(const Cell& cell) {
@@ -196,7 +202,7 @@ std::array<Cell, 2> halves(const Cell& cell) {
   return out;
 }
 
-/// Distance from a point to the tetrahedron of the origin and three points.
+/// Returns the distance from a point to the tetrahedron of the origin and three points.
 double distance_to_tetrahedron(const Triangle& t, const Vec3& point) {
   const double volume = t[0].dot(t[1].cross(t[2]));
   bool inside = volume != 0.0;
@@ -240,7 +246,7 @@ class Search {
         if (cost(end) < cost_ - 1e-6) improve(end);
       }
     }
-    // What was left out, or is still open, costs no less.
+    // Cells that were dropped or are still open cost no less.
     const double proven = cost_ - proven_gap;
     const double bound = open_.empty() ? proven : std::min(proven, open_.top().bound);
     return {best_, cost_, std::max(0.0, bound)};
@@ -249,7 +255,7 @@ class Search {
  private:
   double cost(const Vec3& z) const { return (z - target_).norm(); }
 
-  /// A first, even partition; the most promising of its cells are where the descents begin.
+  /// Makes a first, even partition. Descents begin in its most promising cells.
   void start() {
     const Vec3 side = target_.unitOrthogonal();
     const Vec3 other = target_.cross(side);
@@ -274,13 +280,14 @@ class Search {
     for (std::size_t i = 0; i < first_descents; ++i) improve(ends[i]);
   }
 
-  /// Raises the bound of a cell to what can be proven, and returns the best motion in the direction
-  /// of its center.
+  /// Raises the bound of a cell to the highest value that it can prove, and returns the best motion
+  /// in the direction of its center.
   Vec3 examine(Cell& cell) const {
     const auto& [a, b, c] = cell.corner;
     const Vec3 u = (a + b + c).normalized();
     const double spread = std::max({(a - u).norm(), (b - u).norm(), (c - u).norm()});
-    // No motion is longer than this; and so it ends before a plane through the corners' directions.
+    // No motion is longer than `longest`, so each ends before a plane through the corners'
+    // directions.
     const double longest = free_length(u, spread, 1.0).length;
     const double far = longest / (b - a).cross(c - a).normalized().dot(a);
     raise(cell, {far * a, far * b, far * c});
@@ -289,13 +296,14 @@ class Search {
     return first.length * u;
   }
 
-  /// `reach`: motions in the cell's directions stay in the tetrahedron of these and the origin.
+  /// Raises the bound. `reach`: motions in the cell's directions stay in the tetrahedron of these
+  /// points and the origin.
   void raise(Cell& cell, const Triangle& reach) const {
     cell.bound = std::max(cell.bound, distance_to_tetrahedron(reach, target_));
   }
 
-  /// Where the three corners' directions run into one obstacle, so does the triangle between: what
-  /// is within the margin of a triangle is convex.
+  /// Raises the bound if one obstacle blocks the directions of all three corners. It then blocks
+  /// the triangle between them, because the set within the margin of a triangle is convex.
   void raise_behind(const Obstacle& o, Cell& cell) const {
     constexpr double never = 8.0;
     Triangle reach;
@@ -307,21 +315,23 @@ class Search {
     raise(cell, reach);
   }
 
-  /// How far one can go along u, at most `limit`, until an obstacle is in the way of all directions
-  /// that are within `spread` of u: at s u, they are within s spread.
+  /// Returns the length along u, at most `limit`, at which an obstacle blocks all directions within
+  /// `spread` of u. At s u, these are within s * spread.
   Contact free_length(const Vec3& u, double spread, double limit) const {
     Contact first{limit, nullptr};
     for (const Obstacle& o : obstacles_) {
       if (distance_to_segment(o.center, first.length * u) >= o.reach) continue;
-      if (o.room + first.length * (o.normal.dot(u) + spread) > 0.0) continue;  // in front of it
+      if (o.room + first.length * (o.normal.dot(u) + spread) > 0.0)
+        continue;  // in front of the obstacle
       const double length = contact(o, u, spread, first.length);
       if (length < first.length) first = {length, &o};
     }
     return first;
   }
 
-  /// The distance is a convex function of the way along u, so Newton's method from the left ends at
-  /// the contact or, where there is none, on the far side of the minimum.
+  /// Returns the length along u to the contact with an obstacle, or `limit`. The distance is a
+  /// convex function of the length. So Newton's method from the left ends at the contact, or beyond
+  /// the minimum if there is no contact.
   double contact(const Obstacle& o, const Vec3& u, double spread, double limit) const {
     double s = 0.0, room = o.room, slope = spread + u.dot(o.normal);
     for (int i = 0; i < 100 && s < limit; ++i) {
@@ -346,7 +356,8 @@ class Search {
                         [&](const Obstacle& o) { return blocks(o, end); });
   }
 
-  /// The plane across the shortest way from an obstacle to a safe motion, at the obstacle's margin.
+  /// Returns the plane across the shortest vector from an obstacle to a safe motion, at the
+  /// obstacle's margin.
   static Plane separating(const Obstacle& o, const Vec3& end) {
     const Vec3 normal = way_to_segment(o.triangle, end).normalized();
     double offset = -std::numeric_limits<double>::infinity();
@@ -354,9 +365,9 @@ class Search {
     return {normal, std::min(offset, std::min(0.0, normal.dot(end)))};
   }
 
-  /// From a safe motion down to a local optimum, through safe motions: the best one on the free
-  /// side of planes that separate the last from the obstacles, again and again. At a fixed point
-  /// the active planes touch both the motion and the obstacle's margin: an optimum of first order.
+  /// Descends from a safe motion to a local optimum, through safe motions. Each is the best on the
+  /// free side of planes that separate the last motion from the obstacles. At a fixed point the
+  /// active planes touch both the motion and the obstacle's margin: a first-order optimum.
   void improve(Vec3 z) {
     for (int round = 0; round < 100; ++round) {
       const std::optional<Vec3> next = improved(z);
@@ -377,7 +388,7 @@ class Search {
       bool blocked = false;
       for (std::size_t i = 0; i < obstacles_.size(); ++i) {
         if (!blocks(obstacles_[i], *next)) continue;
-        if (has_plane_[i]) return std::nullopt;  // by rounding
+        if (has_plane_[i]) return std::nullopt;  // a result of rounding
         planes_.push_back(separating(obstacles_[i], z));
         has_plane_[i] = true;
         blocked = true;
@@ -397,8 +408,8 @@ class Search {
   std::vector<bool> has_plane_;
 };
 
-/// What can be in the way: the best motion z is in the ball about [0, desired] as its diameter, as
-/// otherwise a shorter one in its direction would be better.
+/// Returns the triangles that can limit the best motion. It is in the ball with the diameter [0,
+/// desired], because otherwise a shorter motion in its direction would be better.
 std::vector<Obstacle> obstacles(const Mesh& mesh, std::span<const TriangleId> near, const Vec3& tip,
                                 const Vec3& target, double unit, double margin) {
   std::vector<Obstacle> out;

@@ -11,21 +11,22 @@
 namespace keepout::oracle {
 namespace {
 
-// Everything is relative to the segment's start: an offset of the world costs one rounding of each
-// coordinate difference, and nothing after that. With u = 2^-53, S the size, and a coordinate
-// difference good to u relative (a subtraction does not underflow):
+// All positions are relative to the segment's start, so an offset of the world costs one rounding
+// of each coordinate difference. Let u = 2^-53 and S the size. A coordinate difference has a
+// relative error of u (a subtraction does not underflow).
 //
-// high = |x - y|, x = s d, y = w0 x0 + w1 x1 + w2 x2, weights >= 0 that sum to 1 within 2 u (they
-// are one or two subtractions from 1). x is off by 2 u S (difference, product), y by 4 u S
-// (difference, product, two sums), and by 2 u S for lying off the triangle. |x - y| <= 2 S gets 2 u
-// S from the subtraction, and up to 3 u relative, 6 u S, from squares, sums and root: 16 u S.
+// high = |x - y| with x = s d and y = w0 x0 + w1 x1 + w2 x2. The weights are >= 0 and sum to 1
+// within 2 u (they are one or two subtractions from 1). Point x is off by 2 u S (difference,
+// product). Point y is off by 4 u S (difference, product, two sums), and by 2 u S because it may be
+// off the triangle. The length |x - y| <= 2 S gets 2 u S from the subtraction, and up to 3 u
+// relative, 6 u S, from squares, sums and root. The sum is 16 u S.
 //
-// low = (min(0, n . d) - max n . x_i) / |n|: each product n . x is off by 4 u |n| S (difference,
-// product, two sums); of those there are two; their difference, at most 2 |n| S, is rounded: 2 u
-// |n| S; |n| is good to 3 u and the quotient to 1 u: 8 u S. Together 18 u S.
+// low = (min(0, n . d) - max n . x_i) / |n|. Each of the two products n . x is off by 4 u |n| S
+// (difference, product, two sums). The rounding of their difference, at most 2 |n| S, is 2 u |n| S.
+// |n| is accurate to 3 u and the quotient to 1 u: 8 u S. The sum is 18 u S.
 //
-// 2^-48 = 32 u leaves room for the terms in u^2, and for S being rounded itself. Underflow adds at
-// most some 2^-1074 to a product. It does not count: S >= 1e-70, and n^2 >= 1e-290 is demanded.
+// 2^-48 = 32 u also covers the terms in u^2 and the rounding of S. Underflow adds at most about
+// 2^-1074 to a product, which is negligible because S >= 1e-70 and n^2 >= 1e-290 are required.
 constexpr double rounding = 0x1p-48;
 constexpr double least_size = 1e-70;
 constexpr double largest_size = 1e70;
@@ -43,16 +44,17 @@ struct Pair {
   }
 };
 
-/// Where on the line from the origin along `way` the foot of `point` is, kept to the segment 0
-/// .. 1. 0 for a segment without a length.
+/// Returns the parameter of the foot of `point` on the line from the origin along `way`, clamped to
+/// 0 .. 1. Returns 0 for a segment of length 0.
 double foot(const Vec3& point, const Vec3& way, double squared_way) noexcept {
   const double along = point.dot(way);
   if (!(along > 0.0)) return 0.0;
   return along < squared_way ? along / squared_way : 1.0;
 }
 
-/// `offset` is at a right angle to `way` but for rounding, which is large where the offset is
-/// short: a second projection leaves a rounding of the offset only. (Kahan: twice is enough.)
+/// Returns `offset` after a second projection. The offset is perpendicular to `way` up to rounding,
+/// which is large if the offset is short. The second projection leaves only the rounding of the
+/// offset itself (Kahan: twice is enough).
 Vec3 straightened(const Vec3& offset, const Vec3& way, double squared_way, double parameter) {
   if (parameter == 0.0 || parameter == 1.0) return offset;
   return offset - offset.dot(way) / squared_way * way;
@@ -65,7 +67,7 @@ Vec3 edge_weights(int edge, double along) noexcept {
   return weights;
 }
 
-/// The triangle relative to the segment's start, and the segment's way.
+/// The triangle relative to the segment's start, and the vector along the segment.
 struct Scene {
   std::array<Vec3, 3> corners;
   Vec3 way;
@@ -77,7 +79,8 @@ struct Scene {
     return {offset.squaredNorm(), s, Vec3::Unit(i), offset};
   }
 
-  /// The ends of the segment, and the common perpendicular, against edge i.
+  /// Returns the nearest pair of the segment and edge i: at an end of the segment, or at the common
+  /// perpendicular.
   Pair edge_to_way(int i) const noexcept {
     const Vec3& corner = corners[i];
     const Vec3 side = corners[(i + 1) % 3] - corner;
@@ -103,7 +106,8 @@ struct Scene {
     return best;
   }
 
-  /// The ends of the segment against the face, and where it pierces the plane.
+  /// Returns the nearest pair of the face and an end of the segment, or the point where the segment
+  /// pierces the face.
   Pair face_to_way() const noexcept {
     const Vec3 u = corners[1] - corners[0];
     const Vec3 v = corners[2] - corners[0];
@@ -130,7 +134,8 @@ struct Scene {
 
 double one_norm(const Vec3& v) noexcept { return v.lpNorm<1>(); }
 
-/// How far the direction keeps the two apart, or 0.
+/// Returns the separation of segment and triangle along the direction, or 0 for an unusable
+/// direction.
 double separation(const Scene& scene, const Vec3& normal) noexcept {
   const double squared = normal.squaredNorm();
   if (!(squared >= least_squared_normal && squared <= 1.0 / least_squared_normal)) return 0.0;
@@ -149,7 +154,7 @@ Bracket bracket_distance(const Segment& segment, const Triangle& triangle) noexc
   scene.squared_way = scene.way.squaredNorm();
   const double size = std::max({one_norm(scene.corners[0]), one_norm(scene.corners[1]),
                                 one_norm(scene.corners[2]), one_norm(scene.way)});
-  if (size == 0.0) return {0.0, 0.0, 0.0};  // doubles differ by 0 only where they are equal
+  if (size == 0.0) return {0.0, 0.0, 0.0};  // doubles differ by 0 only if they are equal
   if (!(size >= least_size && size <= largest_size)) {
     return {0.0, size, std::numeric_limits<double>::infinity()};
   }

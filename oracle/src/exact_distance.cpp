@@ -11,8 +11,8 @@
 namespace keepout::oracle {
 namespace {
 
-/// A rational number >= 0, as a plain fraction: it is only ever compared, and to reduce it would
-/// cost more than to compare it. The denominator is > 0.
+/// A rational number >= 0. It is not reduced, because that would cost more than the comparisons.
+/// The denominator is > 0.
 struct Fraction {
   Integer numerator;
   Integer denominator;
@@ -28,7 +28,7 @@ void keep_smaller(Fraction& best, Fraction other) {
 
 Fraction squared_length(const IntegerVec& v) { return {dot(v, v), 1}; }
 
-/// Squared distance of `point` from the segment that starts at `start` and runs along `way`.
+/// Returns the squared distance of `point` from the segment from `start` to `start` + `way`.
 Fraction to_segment(const IntegerVec& point, const IntegerVec& start, const IntegerVec& way) {
   const IntegerVec offset = point - start;
   const Integer along = dot(offset, way);
@@ -39,9 +39,9 @@ Fraction to_segment(const IntegerVec& point, const IntegerVec& start, const Inte
   return {dot(moment, moment), std::move(way2)};
 }
 
-/// Squared distance of the segment from the origin along `way`, from the edge along `side`. It is
-/// convex in the two parameters: the least is where both derivatives vanish, if that lies within
-/// the two, and on the border, which is to say at one of the four ends, if not.
+/// Returns the squared distance of the segment from the origin along `way`, from the edge along
+/// `side`. It is convex in the two parameters. The least value is where both derivatives vanish, if
+/// that is within both segments, otherwise at one of the four ends.
 Fraction to_edge(const IntegerVec& way, const IntegerVec& corner, const IntegerVec& side) {
   const IntegerVec common = cross(way, side);
   Integer common2 = dot(common, common);
@@ -62,7 +62,7 @@ Fraction to_edge(const IntegerVec& way, const IntegerVec& corner, const IntegerV
   return best;
 }
 
-/// Whether the foot of `point` in the triangle's plane lies on the triangle.
+/// Returns true if the foot of `point` in the triangle's plane is on the triangle.
 bool above_face(const IntegerVec& point, const std::array<IntegerVec, 3>& corners,
                 const IntegerVec& normal) {
   for (int i = 0; i < 3; ++i) {
@@ -72,8 +72,8 @@ bool above_face(const IntegerVec& point, const std::array<IntegerVec, 3>& corner
   return true;
 }
 
-/// Whether the line along `way` through the origin, not in the triangle's plane, meets the
-/// triangle.
+/// Returns true if the line along `way` through the origin meets the triangle. Precondition: the
+/// line is not in the triangle's plane.
 bool line_meets_face(const IntegerVec& way, const std::array<IntegerVec, 3>& corners) {
   int left = 0, right = 0;
   for (int i = 0; i < 3; ++i) {
@@ -84,10 +84,9 @@ bool line_meets_face(const IntegerVec& way, const std::array<IntegerVec, 3>& cor
   return left == 0 || right == 0;
 }
 
-/// Squared distance of the segment from the origin along `way`, from the triangle. Where it is not
-/// zero it is attained at an edge of the triangle, or at an end of the segment above the face;
-/// where it is zero the segment pierces the face, or the same holds (it lies in the triangle's
-/// plane).
+/// Returns the squared distance of the segment from the origin along `way`, from the triangle. It
+/// is attained at an edge of the triangle, or at an end of the segment above the face, or it is
+/// zero because the segment pierces the face.
 Fraction to_triangle(const IntegerVec& way, const std::array<IntegerVec, 3>& corners) {
   const IntegerVec sides[3]{corners[1] - corners[0], corners[2] - corners[1],
                             corners[0] - corners[2]};
@@ -112,8 +111,8 @@ Fraction to_triangle(const IntegerVec& way, const std::array<IntegerVec, 3>& cor
   return best;
 }
 
-/// The root of fraction * 4^exponent, for numbers far beyond the range of a double, too; at least
-/// the smallest double above 0. Precondition: the fraction is > 0.
+/// Returns the root of fraction * 4^exponent, also for numbers far beyond the range of a double. It
+/// is at least the smallest double above 0. Precondition: the fraction is > 0.
 double root(const Fraction& fraction, int exponent) {
   long numerator_exponent = 0, denominator_exponent = 0;
   const double numerator = mpz_get_d_2exp(&numerator_exponent, fraction.numerator.get_mpz_t());

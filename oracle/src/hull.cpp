@@ -23,7 +23,8 @@ double distance_of(const Vec3& point, const Vec3& from, const Vec3& to) noexcept
   return (offset - along * way).norm();
 }
 
-/// The least and the largest volume, times six, that points span with a triangle.
+/// Returns the least and the largest signed volume, times six, of the tetrahedra of points and a
+/// triangle.
 std::array<double, 2> volumes(std::span<const Vec3> points, const Vec3& a, const Vec3& b,
                               const Vec3& c) noexcept {
   const Vec3 normal = (b - a).cross(c - a);
@@ -53,7 +54,7 @@ Hull::Hull(std::span<const Vec3> points) {
     for (std::uint8_t j = i + 1; j < n; ++j) {
       for (std::uint8_t k = j + 1; k < n; ++k) {
         const auto [least, most] = volumes(points_, points_[i], points_[j], points_[k]);
-        if (least < -nothing && most > nothing) continue;  // on both sides
+        if (least < -nothing && most > nothing) continue;  // points are on both sides
         faces_.push_back({i, j, k});
         is_edge[i][j] = is_edge[j][k] = is_edge[i][k] = true;
       }
@@ -90,7 +91,7 @@ bool Hull::contains(const Vec3& point) const noexcept {
   for (const auto& [i, j, k] : faces_) {
     const Vec3& a = points_[i];
     const auto [least, most] = volumes(points_, a, points_[j], points_[k]);
-    if (least >= -nothing && most <= nothing) continue;  // flat, or no face at all
+    if (least >= -nothing && most <= nothing) continue;  // flat, or not a face
     is_solid = true;
     const double volume = (points_[j] - a).cross(points_[k] - a).dot(point - a);
     const bool is_beyond = most > nothing ? volume <= 0.0 : volume >= 0.0;
@@ -99,8 +100,8 @@ bool Hull::contains(const Vec3& point) const noexcept {
   return is_solid;
 }
 
-/// A way from triangle to hull that is about the shortest: a few steps towards the point of least
-/// norm of all differences. Source: Frank, Wolfe, "An algorithm for quadratic programming", 1956.
+/// Returns a vector from triangle to hull that is about the shortest, by a few steps towards the
+/// difference of least norm. Source: Frank, Wolfe, "An algorithm for quadratic programming", 1956.
 Vec3 Hull::direction_from(const Triangle& triangle) const noexcept {
   constexpr int steps = 12;
   Vec3 way = points_[0] - triangle[0];
@@ -121,7 +122,7 @@ Bracket Hull::distance(const Triangle& triangle, double enough) const {
   Vec3 along = direction_from(triangle);
   const double length = along.norm();
   along = length > 0.0 ? Vec3(along / length) : Vec3::Zero();
-  // Heights over the hull's center are rounded by some ten roundings of the lengths.
+  // Heights over the hull's center have an error of about ten roundings of the lengths.
   std::array<double, most_points> heights{};
   std::array<double, 3> of_corners{};
   double size = radius_;

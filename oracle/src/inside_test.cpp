@@ -15,11 +15,11 @@
 namespace keepout::oracle {
 namespace {
 
-// Six products of three differences, each difference off by u = 2^-53, two more roundings in the
-// products, one of the inner difference and two of the sums: 8 u relative to the sum of the
-// products' magnitudes. 16 u leaves room for the terms in u^2 and for the magnitude being rounded
-// itself; underflow (some 2^-1074 times a factor below 1e30) is far below 16 u times the least
-// magnitude.
+// The determinant is a sum of six products of three differences. Each difference is off by u =
+// 2^-53. The products have two more roundings, the inner difference one, and the sums two. That is
+// 8 u relative to the sum of the products' magnitudes. 16 u also covers the terms in u^2 and the
+// rounding of the magnitude. Underflow (about 2^-1074 times a factor below 1e30) is far below 16 u
+// times the least magnitude.
 constexpr double rounding = 0x1p-49;
 constexpr double least_magnitude = 1e-250;
 constexpr double largest_factor = 1e30;
@@ -31,7 +31,8 @@ int exact_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return sgn(dot(frame.integer(b) - apex, cross(frame.integer(c) - apex, frame.integer(d) - apex)));
 }
 
-/// For each vertex one of those at the same place, and for all of these the same. (-0 equals 0.)
+/// Returns one representative for each vertex: the same for all vertices at the same position. (-0
+/// equals 0.)
 std::vector<VertexId> places(const Mesh& mesh) {
   std::vector<VertexId> order(mesh.vertex_count());
   std::iota(order.begin(), order.end(), VertexId{0});
@@ -69,8 +70,9 @@ bool every_edge_is_even(const Mesh& mesh) {
 
 enum class Piercing { no, yes, unclear };
 
-/// `unclear` when the line meets the border of the triangle, or the segment starts on the triangle.
-/// Precondition: `to` is not in the triangle's plane, or the line misses the triangle.
+/// Decides if a segment pierces a triangle. Returns `unclear` if the line meets the border of the
+/// triangle, or the segment starts on the triangle. Precondition: `to` is not in the triangle's
+/// plane, or the line misses the triangle.
 Piercing piercing(const Segment& segment, const Triangle& t) {
   int left = 0, right = 0;
   for (int i = 0; i < 3; ++i) {
@@ -117,7 +119,7 @@ std::optional<bool> InsideTest::inside(const Vec3& point) const {
 
   std::mt19937_64 random(20261120);
   std::uniform_real_distribution<double> share(0.25, 1.0);
-  // Beyond the farthest corner: outside of the bounds, and so of the plane of a triangle it
+  // Beyond the farthest corner: outside the bounds, so not in the plane of a triangle that the ray
   // pierces.
   const double far =
       8.0 * (bounds.high - bounds.low).maxCoeff() + 0x1p-40 * bounds.low.lpNorm<1>() + 1e-200;

@@ -10,18 +10,18 @@
 namespace keepout::oracle {
 namespace {
 
-// What is fetched at once: neither so much that it takes long, nor so little that it is soon again.
+// The number of triangles to fetch at once. More would take long, fewer would soon be too few.
 constexpr std::size_t few = 64;
 constexpr std::size_t many = 256;
 constexpr double least_slack = 1.0 / 64.0;
 constexpr double largest_slack = 16.0;
 
-/// More than rounding can do to a distance between such places. [length]
+/// Returns a bound of the rounding error of a distance between a core and a point. [length]
 double rounding_of(const Hull& core, const Vec3& point) noexcept {
   return 0x1p-46 * (core.center().lpNorm<1>() + core.radius() + point.lpNorm<1>());
 }
 
-/// The farthest that any point of a core has moved: one of its corners. [length]
+/// Returns the largest displacement of all points of a core, which is that of a corner. [length]
 double moved(std::span<const Vec3> from, std::span<const Vec3> to) noexcept {
   double most = 0.0;
   for (std::size_t i = 0; i < from.size(); ++i) most = std::max(most, (to[i] - from[i]).norm());
@@ -94,14 +94,14 @@ double InstrumentOracle::clearance(std::size_t body, double reach) {
   double nearest = reach + radius;
   bool found = false;
   Surroundings& around = surroundings_[body];
-  // No point of the core has moved farther than a corner, nor has any distance changed more.
+  // No point of the core has moved farther than a corner, and no distance has changed by more.
   if (around.last.empty()) around.last.assign(core.points().begin(), core.points().end());
   around.travelled += moved(around.last, core.points()) + rounding_of(core, around.last.front());
   around.last.assign(core.points().begin(), core.points().end());
   if (!(nearest + around.travelled < around.known)) look_around(around, core, nearest);
   std::vector<Entry>& heap = around.heap;
-  auto end = heap.end();  // of the heap; behind it is what was looked at by now
-  // A distance that is smaller by less than a billionth makes no difference.
+  auto end = heap.end();  // of the heap; the entries behind it were examined
+  // A distance that is smaller by less than a billionth does not matter.
   const auto matters = [&](double low) { return low < nearest * (1.0 - 0.5e-9); };
   while (end != heap.begin() && matters(heap.front().key - around.travelled)) {
     std::ranges::pop_heap(heap.begin(), end, std::greater(), &Entry::key);

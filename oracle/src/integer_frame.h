@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Internal: the only place where GMP comes in.
+// Internal: the only file that includes GMP.
 #pragma once
 
 #include <gmpxx.h>
@@ -30,7 +30,7 @@ inline IntegerVec cross(const IntegerVec& a, const IntegerVec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// value = digits * 2^exponent, the digits odd.
+/// value = digits * 2^exponent, with odd digits.
 struct Binary {
   std::int64_t digits;
   int exponent;
@@ -43,7 +43,7 @@ inline Binary binary(double value) {
   return {digits / (std::int64_t{1} << zeros), exponent - 53 + zeros};
 }
 
-/// A unit of length, a power of two, in which each of the included doubles is a whole number.
+/// A unit of length, a power of two, in which each included double is an integer.
 class IntegerFrame {
  public:
   void include(double value) {
@@ -53,7 +53,7 @@ class IntegerFrame {
     for (int i = 0; i < 3; ++i) include(v[i]);
   }
 
-  /// Exact. Precondition: `value` was included.
+  /// Returns the exact integer of a value. Precondition: `value` was included.
   Integer integer(double value) const {
     if (value == 0.0) return 0;
     const Binary b = binary(value);
@@ -62,7 +62,7 @@ class IntegerFrame {
   }
   IntegerVec integer(const Vec3& v) const { return {integer(v[0]), integer(v[1]), integer(v[2])}; }
 
-  /// The unit is 2 to this power.
+  /// Returns the exponent: the unit is 2 to this power.
   int exponent() const noexcept { return exponent_; }
 
  private:

@@ -10,7 +10,7 @@ namespace {
 
 using Real = LinkFrame::Real;
 
-/// Turns and moves a frame about one of its own axes, and along it.
+/// Rotates a frame about one of its own axes, and moves it along that axis.
 void screw(LinkFrame& frame, int axis, Real angle, Real way) {
   frame.origin += way * frame.axes.col(axis);
   if (angle == 0) return;

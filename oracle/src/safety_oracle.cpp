@@ -13,8 +13,8 @@ namespace {
 const Bounds nowhere{Vec3::Constant(std::numeric_limits<double>::infinity()),
                      Vec3::Constant(-std::numeric_limits<double>::infinity())};
 
-// To look through a neighbor takes some 2 ns, to fetch one some 50. Between these numbers the two
-// costs are about even for steps along a fine mesh.
+// Examining a neighbor takes about 2 ns, fetching one about 50 ns. Between these numbers, both
+// costs are about equal for steps along a fine mesh.
 constexpr std::size_t few = 24;
 constexpr std::size_t many = 96;
 constexpr std::size_t group_size = 8;
@@ -51,7 +51,7 @@ void Neighborhood::fetch(const Bounds& box) {
     for (const Neighbor& neighbor : group) bounds = united(bounds, neighbor.bounds);
     groups_.push_back({bounds, group});
   }
-  // For the next time: neither too much to look through, nor too soon too little.
+  // Adapts the margin of the next fetch: not too many to examine, and not too soon too few.
   if (found_.size() > many) margin_ = std::max(least_margin, 0.5 * margin_);
   if (found_.size() < few) margin_ = std::min(largest_margin, 2.0 * margin_);
 }
@@ -62,7 +62,8 @@ SafetyOracle::SafetyOracle(std::shared_ptr<const Mesh> mesh)
       neighborhood_(tree_) {}
 
 bool SafetyOracle::is_clear(const Segment& segment, double reach) const noexcept {
-  // The ball is convex: with its ends the segment is in it. Less than 8 roundings in all.
+  // The ball is convex, so it contains the segment if it contains both ends. Fewer than 8 roundings
+  // in all.
   const double farthest = std::sqrt(std::max((segment.from - clear_ball_.center).squaredNorm(),
                                              (segment.to - clear_ball_.center).squaredNorm()));
   return (farthest + reach) * (1.0 + 0x1p-48) < clear_ball_.radius;
@@ -72,7 +73,7 @@ Finding SafetyOracle::check(const Vec3& from, const Vec3& to, double threshold, 
   if (!from.allFinite() || !to.allFinite() || !std::isfinite(threshold) || threshold < 0.0 ||
       !std::isfinite(reach)) {
     throw std::invalid_argument(
-        "the oracle judges finite ways, thresholds >= 0 and finite reaches");
+        "the oracle judges finite segments, thresholds >= 0 and finite reaches");
   }
   reach = std::max(reach, threshold);
   const Segment segment{from, to};
@@ -104,7 +105,7 @@ Finding SafetyOracle::check(const Vec3& from, const Vec3& to, double threshold, 
     const bool below = exact.against_threshold < 0;
     finding.crosses = finding.crosses || exact.against_zero == 0;
     finding.below = finding.below || below;
-    // The root is rounded: not across the threshold.
+    // The root is rounded, but not across the threshold.
     const double distance =
         below ? std::min(exact.distance, threshold) : std::max(exact.distance, threshold);
     if (distance <= reach) keep_nearer(finding, distance, neighbor->id);

@@ -10,16 +10,16 @@ namespace keepout::oracle {
 namespace {
 
 constexpr std::size_t leaf_size = 4;
-// Halved at each level, 2^32 triangles make 32 levels; one entry waits at each.
+// Each level halves the triangles, so 2^32 triangles make 32 levels, with one waiting entry each.
 constexpr std::size_t largest_depth = 40;
 
-/// The distance of a point from a box; rounded, by less than 2^-50 of itself.
+/// Returns the distance of a point from a box, with a relative error below 2^-50.
 double distance_from(const Bounds& box, const Vec3& point) noexcept {
   return (box.low - point).cwiseMax(point - box.high).cwiseMax(Vec3::Zero()).norm();
 }
 
-/// Whether a segment touches a box: the stretches of it between the three pairs of planes, as
-/// shares of its length, have one in common.
+/// True if a segment touches a box: its intervals between the three pairs of planes, as fractions
+/// of its length, have a common value.
 class TouchedBy {
  public:
   explicit TouchedBy(const Segment& segment)
@@ -30,7 +30,7 @@ class TouchedBy {
     const Vec3 other = (box.high - from_).cwiseProduct(inverse_);
     const double enter = std::max(0.0, one.cwiseMin(other).maxCoeff());
     const double leave = std::min(1.0, one.cwiseMax(other).minCoeff());
-    // Each share has the right sign and is off by at most four roundings of itself: 2^-51.
+    // Each fraction has the right sign, and a relative error of at most four roundings: 2^-51.
     return enter <= leave * (1.0 + 0x1p-48);
   }
 
@@ -39,7 +39,7 @@ class TouchedBy {
   Vec3 inverse_;
 };
 
-/// Whether the ball around a box comes within some reach of a segment.
+/// True if the ball around a box comes within `reach` of a segment.
 class WithinOf {
  public:
   WithinOf(double reach, const Segment& segment)
@@ -53,7 +53,7 @@ class WithinOf {
     const Vec3 offset = center - from_;
     const double along = std::clamp(offset.dot(way_) * inverse_, 0.0, 1.0);
     const double distance = (offset - along * way_).norm();
-    // Some ten roundings of the coordinates, and of the lengths: 2^-48 is more than both.
+    // About ten roundings of the coordinates, and of the lengths: 2^-48 covers both.
     const double rounding = 0x1p-48 * (center.lpNorm<1>() + from_.lpNorm<1>() + way_.lpNorm<1>());
     return distance <= reach_ + 0.5 * (box.high - box.low).norm() + 4.0 * rounding;
   }
@@ -150,7 +150,7 @@ TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
 
 void TriangleTree::visit_nearest(std::uint32_t index, const Segment& point, Nearest& best,
                                  double& low) const {
-  // What is left out is farther than something that has been seen, and so than `low`.
+  // Skipped triangles are farther than an examined one, and so farther than `low`.
   const auto may_be_nearer = [&best](double distance) {
     return distance * (1.0 - 0x1p-48) <= best.distance.high;
   };

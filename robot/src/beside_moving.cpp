@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The search beside meshes that move. To stop is not safe there, so all of a motion is proved or
-// nothing; and what cannot be proved for one body must not keep the others from retreating.
+// The search beside meshes that move. Stopping is not safe there, so a cycle proves a whole motion
+// or none. A body without a proof must not keep the others from retreating.
 #include <algorithm>
 #include <bitset>
 
@@ -14,11 +14,11 @@ constexpr int most_degradations = 32;  // of a cycle
 
 }  // namespace
 
-/// Searches for less and less of the task, down to a mere retreat. Then stands still, if that is
-/// proved. Then drops guides that contradict the clearance, and then lowers the level of pairs by
-/// quarters, until a motion is proved for all other pairs. Returns the outcome.
+/// Searches for the task, then a quarter of it, then only a retreat. If these fail, calls degrade()
+/// and searches for a retreat again, until a motion is proved for all pairs that are not dropped.
+/// Returns the outcome.
 Status JointCycle::search_beside_moving(const JointTask& task, Trial& best) noexcept {
-  // Neither bodies that cannot give way nor the task may spend the work that the retreat needs.
+  // Bodies that no joint moves, and the task, must not spend the work that the retreat needs.
   memory_.budget.halved([&] { return settle_immovable(), true; });
   double asked = 1.0;
   const auto search_for = [&](double fraction) {
@@ -26,8 +26,7 @@ Status JointCycle::search_beside_moving(const JointTask& task, Trial& best) noex
     search_fraction(task, fraction, best);
     return best.is_proved();
   };
-  // Beside a body that touches or is inside, or that is not known, nothing but a retreat is made;
-  // bodies that no joint moves apart.
+  // If a pair was dropped whose body a joint moves, only a retreat is allowed.
   const bool may_serve_task = pairs_.dropped_for() == Status::free;
   bool found =
       may_serve_task && memory_.budget.halved([&] { return search_for(1.0) || search_for(0.25); });
@@ -41,12 +40,12 @@ Status JointCycle::search_beside_moving(const JointTask& task, Trial& best) noex
   }
   const bool stands_still =
       std::all_of(best.increment.begin(), best.increment.end(), [](double x) { return x == 0.0; });
-  // No body retreats, and a body that could not be certified allows no other motion.
+  // This is no retreat, and a dropped pair allows no other motion.
   if (stands_still && !is_ok(pairs_.dropped_for())) return pairs_.dropped_for();
   return pairs_.is_degraded() ? Status::degraded : outcome(best, asked);
 }
 
-/// Judges the bodies that no joint moves on the motion of the meshes alone. Lowers or drops the
+/// Judges the bodies that no joint moves, for the motion of the meshes alone. Degrades or drops the
 /// pairs that cannot maintain their clearance. Trials do not judge these pairs again.
 void JointCycle::settle_immovable() noexcept {
   bool is_ready = false;
@@ -68,7 +67,8 @@ void JointCycle::settle_immovable() noexcept {
   }
 }
 
-/// Stands still if that is proved beside the meshes that move.
+/// Sets `best` to zero motion if that is proved beside the moving meshes. Returns true if it is
+/// proved.
 bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
   Trial trial;
   trial.fraction = 1.0;
@@ -80,13 +80,13 @@ bool JointCycle::stand_still(const JointTask& task, Trial& best) noexcept {
   return true;
 }
 
-/// Gives way where the last attempt failed: guides stop pulling, then the instrument stands still,
-/// then a guide is dropped, and last the level of pairs is lowered. (After an infeasible search
-/// guides have stopped pulling already.) Returns false if nothing is left to try: also if the
-/// solver did not converge before it proposed a motion. If this sets `best`, the instrument stands
-/// still, and no search is needed.
+/// Relaxes the constraints for which the last attempt failed. In this order: guides stop pulling,
+/// the instrument stands still, a guide is dropped, clearance fractions are lowered. (After an
+/// infeasible search, guides have stopped pulling already.) Returns false if nothing is left to
+/// try, or if the solver did not converge before it proposed a motion. If this sets `best`, the
+/// instrument stands still, and no search is needed.
 bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
-  // Copied, as stand_still() judges another motion.
+  // A copy, because stand_still() judges another motion.
   const std::size_t guide = judgement_.guide.guide;
   const bool guide_failed =
       judgement_.guide.knot < PointMotion::last_knot && !guides_.is_dropped(guide);
@@ -112,8 +112,8 @@ bool JointCycle::degrade(const JointTask& task, Trial& best) noexcept {
   return failed.any();
 }
 
-/// Removes the pairs at level 1 from a set that has others: few pairs give way, and those entirely,
-/// before more do.
+/// Removes the pairs with clearance fraction 1 from a set that has others. So few pairs lose all of
+/// their clearance before more pairs lose some.
 void JointCycle::prefer_degraded(std::bitset<most_pairs>& pairs) const noexcept {
   std::bitset<most_pairs> lowered;
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
@@ -122,8 +122,8 @@ void JointCycle::prefer_degraded(std::bitset<most_pairs>& pairs) const noexcept 
   if (lowered.any()) pairs = lowered;
 }
 
-/// Degrades a minimal set of pairs and guides whose rows contradict each other: its guides are
-/// dropped, or if it has none, the level of its pairs is lowered. Returns true if any changed.
+/// Finds a minimal set of pairs and guides whose rows contradict each other. Drops its guides, or
+/// if it has no guides, degrades its pairs. Returns true if any changed.
 bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
   const OwnerSet conflict = problem_.conflict(task, rows_.view());
   bool changed = false;
@@ -144,8 +144,8 @@ bool JointCycle::degrade_conflict(const JointTask& task) noexcept {
   return pairs.any();
 }
 
-/// Lowers the level of a pair, or drops the pair, as PairWatch::lower_clearance_fraction(). A
-/// dropped pair has no obstacle and no rows. `most`: 1 for no bound.
+/// Lowers the clearance fraction of a pair, or drops the pair: see
+/// PairWatch::lower_clearance_fraction(). A dropped pair has no obstacle and no rows.
 void JointCycle::give_way(std::size_t p, double most, Status reason) noexcept {
   pairs_.lower_clearance_fraction(p, most, reason);
   if (pairs_.is_watched(p)) return;
@@ -153,10 +153,10 @@ void JointCycle::give_way(std::size_t p, double most, Status reason) noexcept {
   rows_.remove(p);
 }
 
-/// Returns the largest level of a pair at which each of its rows, taken alone, can be satisfied
-/// within the joint limits: a row demands g . dq >= min(bound, 0) - drift - degradation.
-/// Corrections are left out, as they belong to earlier trials. `surplus`: by how much the largest g
-/// . dq within the limits exceeds that without a degradation.
+/// Returns the largest clearance fraction of a pair for which each of its rows alone can be
+/// satisfied within the joint limits. A row demands g . dq >= min(bound, 0) - drift - degradation,
+/// without corrections, which belong to earlier trials. `surplus`: the largest g . dq within the
+/// limits minus the demand without degradation.
 double JointCycle::reachable_level(std::size_t p) const noexcept {
   const double full_demand = pairs_.full_demand(p);
   double degradation = 0.0;

@@ -43,9 +43,9 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
     if (is_covered(triangle)) continue;
     near_.measure(triangle, budget_);
     if (triangle.at_start.distance >= out_of_reach) continue;
-    // The demand, or the present distance if rounding has left less. Then the motion must end a
-    // little farther away, and a body that does not move passes, so that rounding does not
-    // accumulate.
+    // The due clearance is the demand, or the present clearance if that is less (a deficit). With a
+    // deficit the motion must end a little farther away, so that rounding does not accumulate. An
+    // exempt pair (displacement 0) skips the triangle.
     const double distance = triangle.at_start.distance - radius_;
     due_plus_rounding_ = std::min(demand_, distance + plane_rounding * tolerance_);
     const bool owes = due_plus_rounding_ < demand_;
@@ -119,7 +119,7 @@ int Certificate::proved_until(const NearTriangle& triangle, int lo, const Gap& a
   for (const std::uint8_t p : points_) {
     reach = std::max(reach, (to[p] - from[p]).norm() + motion_.bend(p) * span * span / 8.0);
   }
-  // No plane whose rounding is counted: the 2 tolerances stay.
+  // This proof uses no plane, so it demands the 2 tolerances for rounding in full.
   if (at_lo.distance - reach >= radius_ + due_plus_rounding_) return hi;
   if (at_lo.distance > 0.0 && separates(at_lo.normal, triangle, lo, hi)) return hi;
   if (at_lo.distance > 0.0 && at_hi.distance > 0.0) {

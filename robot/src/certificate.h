@@ -14,14 +14,15 @@ namespace keepout {
 
 /// The proof that one body maintains its clearance from triangles on a motion that is not straight
 /// (docs/joint-space-step.md). On a sub-interval of the motion, a point's height over a plane is at
-/// least that of a parabola through both ends, whose curvature is the bound of the point's second
-/// derivative. A plane proves the body clear on a sub-interval if the triangle, grown by the
-/// required clearance, is behind it and the parabolas of all points of the body are before it.
-/// Sub-intervals without such a plane are halved, down to the grid of PointMotion.
+/// least that of a parabola through both ends. The bound of the point's second derivative gives the
+/// curvature of the parabola. A plane proves the body clear on a sub-interval under two conditions.
+/// The triangle, grown by the due clearance, is behind the plane. The parabolas of all points of
+/// the body are in front of it. A sub-interval is also proved if the distance at its start exceeds
+/// the largest displacement. Other sub-intervals are halved, down to the grid of PointMotion.
 class Certificate {
  public:
-  /// The obstacle to a proof; by default, there is none. Knot 0 without a triangle: the budget
-  /// ended, or the triangles nearby are not known.
+  /// The obstacle to a proof. By default there is no obstacle. Knot 0 without a triangle: the
+  /// budget ended, or the triangles nearby are not known.
   struct Obstacle {
     int knot = PointMotion::last_knot;  // the motion is proved up to here
     /// The triangle that limits the proof; or null. Valid until the pair's triangles are gathered
@@ -29,19 +30,20 @@ class Certificate {
     NearTriangle* triangle = nullptr;
   };
 
-  /// For the motion of a body beside a mesh, and the triangles near it. `demand`: the clearance to
-  /// be certified, from the body's surface. All must outlive it. [length]
+  /// Prepares the proof for the motion of a body beside a mesh, and the triangles near it.
+  /// `demand`: the clearance to certify, from the body's surface [length]. All arguments must
+  /// outlive the certificate.
   Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion, NearSet& near,
               double demand, double tolerance, Budget& budget) noexcept;
 
-  /// Tries planes with this normal, of a row on the body, before others.
+  /// Adds a normal, that of a row on the body, whose planes judge() tries before others.
   void try_first(const Vec3& normal) noexcept;
 
-  /// Returns the first obstacle to the motion, of equals the first triangle by number.
-  /// `displacement`: RelativeMotion::largest_displacement. [length]
+  /// Returns the first obstacle to the motion; if several are at the same knot, the triangle with
+  /// the lowest number. `displacement`: RelativeMotion::largest_displacement [length].
   Obstacle judge(std::span<NearTriangle> triangles, double displacement) noexcept;
-  /// Returns true if a triangle that was judged owes: rounding has left less than the demand, so
-  /// the end of the motion must be farther from it than the start (docs/joint-space-step.md, Due).
+  /// Returns true if a judged triangle has a deficit: its clearance is below the demand, so the
+  /// motion must end farther from it than it starts (docs/joint-space-step.md, "Due clearance").
   bool owes() const noexcept { return owes_; }
 
  private:
@@ -68,8 +70,8 @@ class Certificate {
   double tolerance_;
   Budget& budget_;
   bool owes_ = false;
-  /// The clearance due from the triangle at hand, plus the 2 tolerances that a plane may lose to
-  /// rounding: proofs by a plane demand 2 tolerances less. [length]
+  /// The due clearance from the current triangle, plus 2 tolerances. Proofs by a plane demand 2
+  /// tolerances less, for rounding. [length]
   double due_plus_rounding_ = 0.0;
   int latest_ = PointMotion::last_knot;  // a proof beyond this knot makes no difference
   std::array<Plane, most_planes> planes_;

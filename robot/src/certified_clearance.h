@@ -7,10 +7,11 @@
 
 namespace keepout {
 
-/// Returns the clearance that a cycle certifies for a body at `distance` from a mesh, or for a
-/// guide that is `distance` inside its region. That is `target` if the distance reaches it.
-/// Otherwise it is at least `certified`, the clearance of the last cycle, and leaves `room` to a
-/// motion. If something else has moved the body or the mesh, it is the distance less the room.
+/// Returns the certified clearance F of a cycle (docs/joint-space-step.md, "Certified clearance"),
+/// for a body at `distance` from a mesh, or for a guide that is `distance` inside its region. F is
+/// `target` if the distance reaches it. Otherwise F is the larger of `certified`, the F of the last
+/// cycle, and distance - room, but at most `target`. If something other than a step has moved the
+/// body or the mesh, F is distance - room.
 inline double certified_clearance(double distance, double certified, double target, double room,
                                   double tolerance) noexcept {
   if (distance >= target - lost_below * tolerance) return target;

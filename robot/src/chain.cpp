@@ -12,7 +12,7 @@
 namespace keepout {
 namespace {
 
-// What is passed on with six digits is a unit vector, or a rotation; what is farther off is not.
+// Unit vectors and rotations are accepted if they are exact to six digits.
 constexpr double digits = 1e-6;
 
 bool is_rotation(const Mat3& r) noexcept {
@@ -20,8 +20,8 @@ bool is_rotation(const Mat3& r) noexcept {
          r.determinant() > 0.0;
 }
 
-/// Returns what a . b misses of a number near it, as if computed with twice the digits (Ogita, Rump
-/// and Oishi 2005).
+/// Returns target - a . b, as if computed with twice the digits (Ogita, Rump and Oishi 2005).
+/// Precondition: a . b is near the target.
 double missing_of(double target, const Vec3& a, const Vec3& b) {
   double sum = target;
   double error = 0.0;
@@ -35,12 +35,12 @@ double missing_of(double target, const Vec3& a, const Vec3& b) {
   return sum + error;
 }
 
-/// Returns the rotation nearest to a matrix that is a rotation to six digits, rounded once, because
-/// errors of rotations add up along a chain. Newton's method for the polar factor (Higham 1986)
-/// doubles the digits in each step.
+/// Returns the rotation nearest to a matrix that is a rotation to six digits. The result is rounded
+/// only once, because errors of rotations add up along a chain. Newton's method for the polar
+/// factor (Higham 1986) doubles the digits in each step.
 Mat3 nearest_rotation(Mat3 r) {
   for (int step = 0; step < 3; ++step) {
-    Mat3 missing;  // of r^T r, to the identity
+    Mat3 missing;  // identity - r^T r
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j)
         missing(i, j) = missing_of(i == j ? 1.0 : 0.0, r.col(i), r.col(j));
@@ -50,8 +50,8 @@ Mat3 nearest_rotation(Mat3 r) {
   return r;
 }
 
-/// Returns the rotation that turns z, or -z if that is nearer, to an axis on the shortest way; with
-/// -z after half a turn about x, so that z is turned to the axis.
+/// Returns the shortest rotation from z to an axis. If -z is nearer to the axis, returns half a
+/// turn about x, followed by the shortest rotation from -z.
 Mat3 to_axis(const Vec3& axis) {
   const double side = std::copysign(1.0, axis.z());
   const double x = axis.x();
@@ -69,8 +69,9 @@ void require_pose(const Pose& pose, const std::string& whose) {
       is_rotation(pose.rotation)) {
     return;
   }
-  throw Error(whose +
-              " is no pose: its position must be finite, and its matrix a rotation to six digits");
+  throw Error(
+      whose +
+      " is not a pose: its position must be finite, and its matrix a rotation to six digits");
 }
 
 void require_usable(const Joint& joint, const std::string& which) {

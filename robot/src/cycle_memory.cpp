@@ -29,7 +29,7 @@ double distance_beyond_axis(const Instrument& instrument, std::size_t body) {
   return most * (1.0 + 1e-12);
 }
 
-/// Returns the distance from the origin within which the mesh is. [length]
+/// Returns a distance from the origin that no point of the mesh exceeds. [length]
 double extent_of(const Mesh& mesh) {
   const Box bounds = mesh.bounds();
   return bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).norm();

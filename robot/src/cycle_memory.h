@@ -17,10 +17,10 @@
 
 namespace keepout {
 
-/// A guide, and what the cycles remember of it.
+/// A guide, and its memory from cycle to cycle.
 struct GuideMemory {
   Guide guide;
-  /// By how much inside its region the last cycle certified it; below 0: outside. [length or rad]
+  /// The depth inside its region that the last cycle certified; negative outside. [length or rad]
   double certified;
 };
 
@@ -39,13 +39,13 @@ struct CycleConstants {
 
 /// The memory of the cycles of one instrument, shared by the parts of a cycle. Made once.
 struct CycleMemory {
-  /// Makes all memory; there is no mesh yet.
+  /// Makes all memory, without a mesh.
   CycleMemory(const Instrument& instrument, Solver& solver, const InstrumentCapacity& capacity);
 
   const Instrument& instrument;
   Budget budget;          // of a cycle, for all meshes
-  double largest_length;  // of a prismatic joint's position or a mesh's; larger ones are rejected
-  double tolerance;       // distances are equal within this [length]
+  double largest_length;  // the largest accepted position of a prismatic joint or a mesh [length]
+  double tolerance;       // tau: distances are equal within this [length]
   PointMotion trial_motion;  // from the start of the cycle, by the increment on trial
   // PairWatch: all bodies with the first mesh, all with the second, and so on.
   std::vector<MeshMemory> meshes;
@@ -65,23 +65,22 @@ struct CycleMemory {
   std::vector<double> bounds;
   JointVector increment;  // the result
 
-  /// Makes the memory of the pairs of a body and a mesh, and forgets all. Allocates. Precondition:
-  /// measure() after the meshes have changed.
+  /// Makes the memory of all pairs of a body and a mesh, and forgets the last cycle. Allocates.
+  /// Precondition: measure() after the meshes have changed.
   void prepare();
   /// Computes the tolerance and the largest length. The latter does not depend on the poses of the
   /// meshes, so repeated placing cannot raise it.
   void measure() noexcept;
   /// Returns the least margin beside any mesh. [length]
   double least_margin(const InstrumentOptions& options) const noexcept;
-  /// Returns true if rounding hides the band, a guide's band, or what the least margin is beyond
-  /// the band.
+  /// Returns true if rounding hides the band, a guide's band, or the least margin minus the band.
   bool is_lost_in_rounding(const InstrumentOptions& options) const noexcept;
-  /// Throws Error unless all options are in range and rounding leaves something of the margins.
+  /// Throws Error if an option is out of range, if the band is not below each margin, or if
+  /// is_lost_in_rounding().
   void require_usable(const InstrumentOptions& options) const;
   /// Throws Error if rounding hides the band of a guide.
   void require_not_lost(const Guide& guide) const;
-  /// Replaces the guides. Throws Error, and changes nothing, as InstrumentConstraint::set_guides
-  /// does.
+  /// Replaces the guides. Throws Error, and changes nothing: see InstrumentConstraint::set_guides.
   void set_guides(std::vector<Guide> all);
   /// Returns true if any mesh moves.
   bool is_moving() const noexcept {
@@ -89,24 +88,24 @@ struct CycleMemory {
       return !mesh.velocity.linear.isZero(0.0) || !mesh.velocity.angular.isZero(0.0);
     });
   }
-  /// Forgets all. Allocates nothing.
+  /// Forgets all that cycles remember. Allocates nothing.
   void forget() noexcept;
-  /// The clearances that were certified last, of pairs and guides.
+  /// The certified clearances of the last cycle, of pairs and guides.
   using Certified = std::array<double, most_pairs + Guide::most>;
-  /// Returns them.
+  /// Returns the certified clearances.
   Certified certified() const noexcept;
-  /// Sets them.
+  /// Sets the certified clearances.
   void set_certified(const Certified& all) noexcept;
-  /// Forgets them.
+  /// Forgets the certified clearances.
   void forget_certified() noexcept;
   /// Forgets where the last step ended and the rows of its last problem, but not the triangles
   /// nearby.
   void forget_motion() noexcept;
 };
 
-/// Returns the tolerance of a guide's excess, if distances are equal within `tolerance`. A
-/// direction is rounded by some 1e-15, and joint positions by some 1e-14 rad, whatever the lengths.
-/// [length or rad]
+/// Returns the tolerance of a guide's excess, if distances are equal within `tolerance`. Directions
+/// have rounding errors of about 1e-15, and joint positions of about 1e-14 rad, independent of the
+/// lengths. [length or rad]
 inline double tolerance_of(const Guide& guide, double tolerance) noexcept {
   return guide.is_angular() ? 1e-12 : tolerance;
 }

@@ -10,7 +10,8 @@
 namespace keepout {
 namespace {
 
-/// By an angle about an axis of the frame, and along the same axis.
+/// Returns the pose after a turn by `angle` about an axis of the frame, and a displacement by `way`
+/// along it.
 Pose screw(const Vec3& axis, double angle, double way) {
   return {way * axis, Eigen::AngleAxisd(angle, axis).toRotationMatrix()};
 }
@@ -19,7 +20,7 @@ Pose screw(const Vec3& axis, double angle, double way) {
 
 DhChain joints_of(std::span<const DenavitHartenberg> table, DhConvention convention) {
   DhChain chain;
-  Pose before;  // what is fixed between the joint before and the row
+  Pose before;  // the fixed transform from the previous joint to this row
   for (const DenavitHartenberg& row : table) {
     for (const double number : {row.a, row.alpha, row.d, row.theta}) {
       if (std::isfinite(number)) continue;

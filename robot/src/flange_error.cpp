@@ -8,13 +8,13 @@
 namespace keepout {
 namespace {
 
-constexpr double slack = 0.01;  // of what zero motion misses
+constexpr double slack = 0.01;  // a fraction of the miss of zero motion
 
 /// Returns a bound of the distance between the ends of the true and the linear motion of the
 /// flange, in the units of the task: M/2 + orientation_weight a^2. M bounds |p''|
-/// (motion_bounds.h); its levers are columns of the Jacobian, whose lengths |x| + |y| + |z| bounds.
-/// a is the sum of the turns of all joints: an axis is off by at most a, so the turn of the flange
-/// is off by at most a^2. Infinite for an a above 1 rad.
+/// (motion_bounds.h). Its levers are the columns of the Jacobian, whose lengths are at most |x| +
+/// |y| + |z|. a is the sum of the turns of all joints. An axis is off by at most a, so the turn of
+/// the flange is off by at most a^2. Infinite if a is above 1 rad.
 double most_deviation(const Chain& chain, const JointTask& task,
                       const JointVector& increment) noexcept {
   MotionBounds bounds;
@@ -43,8 +43,8 @@ FlangeError flange_error(const JointTask& task, const Trial& trial, const Chain&
   const double predicted = task.linear_miss(trial.increment, trial.fraction);
   const double missed =
       task.true_miss(motion.chain_at_start().flange(), motion.flange_at(trial.fraction));
-  // The miss may be the predicted one or leave half of the predicted gain, plus 1 % of the task: in
-  // contact the predicted gain is about 0.
+  // The miss may be the predicted one, or larger by half of the predicted gain. It may be larger by
+  // another 1 % of the task, because the predicted gain is about 0 in contact.
   const double most = std::max(predicted, 0.5 * (miss_at_rest + predicted)) + slack * miss_at_rest;
   return {missed, missed > most};
 }

@@ -6,11 +6,12 @@
 
 namespace keepout {
 
-/// What the true motion of the flange misses. The certificate proves a motion clear; it does not
-/// say that the flange moves as the linear task predicts.
+/// The distance by which the true motion of the flange misses its task. The certificate proves a
+/// motion clear, but not that the flange moves as the linear task predicts.
 struct FlangeError {
-  double missed;  // of the task, or a bound of it if the motion is certain to make half of it
-  bool strays;    // the motion makes less than half of the predicted gain, or ends farther off
+  double missed;  // the miss, or a bound of it that is at most half of the task
+  bool strays;    // the motion makes less than half of the predicted gain, or ends farther from the
+                  // target than it starts
 };
 
 /// Returns the error of the flange for a trial motion. `motion`: that motion. Precondition: the
@@ -18,8 +19,9 @@ struct FlangeError {
 FlangeError flange_error(const JointTask& task, const Trial& trial, const Chain& chain,
                          PointMotion& motion) noexcept;
 
-/// Returns a trial cut to the fraction, of halves, that costs least for the true flange; to zero if
-/// all of them cost more than zero motion. `motion`: the trial's.
+/// Returns a trial whose fraction is halved until its cost, for the true motion of the flange, is
+/// lowest. The fraction is zero if none of 13 costs less than zero motion. `motion`: that of the
+/// trial.
 Trial cut_for_flange(const JointTask& task, Trial trial, PointMotion& motion) noexcept;
 
 }  // namespace keepout

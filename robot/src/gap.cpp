@@ -14,7 +14,7 @@ namespace keepout {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// The squares of shorter vectors are rounded to few digits, so that they have no direction.
+// The squares of shorter vectors have few digits, so their direction is unknown.
 constexpr double least_length2 = 1e-280;
 
 /// The best pair of points found so far, and the directions that may prove its distance.
@@ -22,7 +22,7 @@ struct Candidate {
   double distance2 = infinity;
   Vec3 on_core = Vec3::Zero();
   Vec3 away = Vec3::Zero();     // from the triangle to the core
-  Vec3 sharper = Vec3::Zero();  // a direction that the features know better; zero if none
+  Vec3 sharper = Vec3::Zero();  // a more accurate direction, from the features; zero if unknown
 };
 
 void consider_end(const Vec3& end, const Triangle& triangle, const Vec3& face,
@@ -34,9 +34,9 @@ void consider_end(const Vec3& end, const Triangle& triangle, const Vec3& face,
   if (is_face(closest.feature)) best.sharper = face;
 }
 
-/// Considers the nearest points of the core's segment and an edge, if both are inside of them
-/// (Ericson, "Real-Time Collision Detection", 2005, 5.1.9). The ends of the segment are left to
-/// `consider_end`, and those of the edge to the other edges.
+/// Considers the nearest points of the core's segment and an edge (Ericson, "Real-Time Collision
+/// Detection", 2005, 5.1.9). If neither point is an end, the cross product of the two segments is a
+/// more accurate direction.
 void consider_edge(const Vec3& a, const Vec3& along, double length2, const Vec3& from,
                    const Vec3& to, Candidate& best) noexcept {
   const Vec3 edge = to - from;
@@ -51,7 +51,7 @@ void consider_edge(const Vec3& a, const Vec3& along, double length2, const Vec3&
   };
   double u = area2 > 0.0 ? std::clamp((lean * at_from - at_a * edge2) / area2, 0.0, 1.0) : 0.0;
   const double t = edge2 > 0.0 ? std::clamp((lean * u + at_from) / edge2, 0.0, 1.0) : 0.0;
-  u = on_core_at(t);  // also where both are all but parallel, and the first u is rounding
+  u = on_core_at(t);  // also if both are nearly parallel, and rounding dominates the first u
   const Vec3 on_core = a + u * along;
   const Vec3 away = on_core - (from + t * edge);
   const double distance2 = away.squaredNorm();
@@ -60,7 +60,7 @@ void consider_edge(const Vec3& a, const Vec3& along, double length2, const Vec3&
   if (u > 0.0 && u < 1.0 && t > 0.0 && t < 1.0) best.sharper = along.cross(edge);
 }
 
-/// Returns true if a segment goes through a triangle's inside.
+/// Returns true if a segment passes through the interior of a triangle.
 bool goes_through(const Vec3& a, const Vec3& b, const Triangle& triangle,
                   const Vec3& face) noexcept {
   const double at_a = face.dot(a - triangle[0]);
@@ -77,7 +77,7 @@ bool goes_through(const Vec3& a, const Vec3& b, const Triangle& triangle,
   return (s0 >= 0.0 && s1 >= 0.0 && s2 >= 0.0) || (s0 <= 0.0 && s1 <= 0.0 && s2 <= 0.0);
 }
 
-/// Returns the gap by the direction of the two that proves more.
+/// Returns the gap along that of the two directions which proves the larger distance.
 Gap proved(const Candidate& nearest, std::span<const Vec3> core,
            const Triangle& triangle) noexcept {
   Gap best;
@@ -125,7 +125,7 @@ Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
     }
   }
   Gap best = proved(nearest, core, triangle);
-  // Where the features' directions are rounding, the search may know a better one.
+  // If rounding dominates the features' directions, the search may find a better one.
   const double distance = std::sqrt(nearest.distance2);
   if (best.distance < distance * (1.0 - 1e-11)) {
     const NearestPoints searched = nearest_points(core, triangle);

@@ -8,24 +8,24 @@
 
 namespace keepout {
 
-/// The gap between the core of a body, the hull of its points, and a triangle, as a plane between
-/// them proves it.
+/// The gap between a triangle and the core of a body (the hull of its points), proved by a plane
+/// between them.
 struct Gap {
-  double distance = 0.0;        // the true one but for rounding; 0: they touch [length]
+  double distance = 0.0;        // exact up to rounding; 0 if they touch [length]
   Vec3 normal = Vec3::Zero();   // from the triangle to the core: unit; zero if they touch
   Vec3 contact = Vec3::Zero();  // the nearest point of the core; zero if they touch [length]
 };
 
-/// Returns the work units of a gap of a core with so many points: see Budget.
+/// Returns the work units of a gap, for a core with `points` points: see Budget.
 constexpr std::size_t work_of_gap(std::size_t points) noexcept { return points > 2 ? 12 : 3; }
 
 /// Returns the least height of a core over a triangle along a normal. [length]
 double height_along(const Vec3& normal, std::span<const Vec3> core,
                     const Triangle& triangle) noexcept;
 
-/// Returns the gap by the exact kernel and the nearest points of two segments, for a core of one or
-/// two points; by the search of Gilbert, Johnson and Keerthi for others. Precondition: there is a
-/// point.
+/// Returns the gap. Uses the exact kernel and the nearest points of two segments for a core of one
+/// or two points, and the search of Gilbert, Johnson and Keerthi (1988) for others. Precondition:
+/// the core has a point.
 Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept;
 
 }  // namespace keepout

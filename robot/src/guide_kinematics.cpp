@@ -10,7 +10,8 @@
 namespace keepout {
 
 Vec3 guided_point(const Guide& guide, const ChainState& state) noexcept {
-  // Not the difference of two places, whose rounding would grow with the distance from the origin.
+  // A difference of two positions would have a rounding error that grows with the distance from the
+  // origin.
   if (guide.kind() == Guide::Kind::axis)
     return state.link(guide.first().link).rotation * guide.first().position;
   const Vec3 from = state.at(guide.first().link, guide.first().position);
@@ -57,9 +58,9 @@ double guided_bend(const Guide& guide, const ChainState& state, std::span<const 
   };
   const MotionBounds first = of(guide.first());
   if (guide.kind() == Guide::Kind::point) return first.bend;
-  // p = (1 - u) a + u b, u linear between the fractions of the guided point at both ends: another
-  // point of the shaft, which is no nearer to the center than the guided one (docs/guides.md).
-  // p'' = (1 - u) a'' + u b'' + 2 u' (b' - a').
+  // Bounds another point of the shaft, p = (1 - u) a + u b, with u linear between the fractions of
+  // the guided point at both ends. It is never nearer to the center than the guided point
+  // (docs/guides.md). Its second derivative is (1 - u) a'' + u b'' + 2 u' (b' - a').
   const MotionBounds second = of(guide.second());
   return std::max(first.bend, second.bend) + 2.0 * slide * (first.path + second.path);
 }

@@ -23,8 +23,8 @@ void GuideWatch::open() noexcept {
     const double tolerance = tolerance_of(guide, memory_.tolerance);
     double& certified = memory_.guides[g].certified;
     certified = certified_clearance(-excess, certified, -guide.band(), guide.band(), tolerance);
-    // The certified excess, or the present one if rounding has added to it. Then the motion must
-    // end a little farther in, so that rounding does not accumulate.
+    // Allows the certified excess, or the present one if that is larger (a deficit). With a deficit
+    // the motion must end a little farther in, so that rounding does not accumulate.
     const double due = -certified + plane_rounding * tolerance;
     allowed_[g] = std::max(due, excess);
     const bool owes = excess > due;
@@ -54,7 +54,7 @@ GuideWatch::Obstacle GuideWatch::judge() noexcept {
   Obstacle obstacle;
   const JointVector& increment = memory_.trial_motion.increment();
   if (std::all_of(increment.begin(), increment.end(), [](double x) { return x == 0.0; })) {
-    return obstacle;  // guides do not move
+    return obstacle;  // zero motion changes no excess
   }
   for (std::size_t g = 0; g < size() && obstacle.knot > 0; ++g) {
     if (is_dropped_[g]) continue;
@@ -103,7 +103,8 @@ std::optional<Row> GuideWatch::row(std::size_t g, int knot) noexcept {
   row.normal = -outward;
   row.offset = row.normal.dot(region.origin()) - region.radius();
   row.start_height = row.normal.dot(guided_point(guide, chain)) - row.offset;
-  // Guides return to their regions as fast as bodies retreat; rotations by orientation_weight.
+  // Guides return to their regions as fast as bodies retreat; orientation_weight converts
+  // rotations.
   const double per_length =
       guide.is_angular() ? std::max(cycle_.options.orientation_weight, 1.0) : 1.0;
   row.bound = std::min(-row.start_height, cycle_.options.recovery / per_length);

@@ -33,8 +33,8 @@ bool IncrementBox::clip(JointVector& increment) const noexcept {
     const double there = q_[i] + step;
     if (lower <= there && there <= upper) continue;
     is_too_far = is_too_far || (step > 0.0 && there > most) || (step < 0.0 && there < -most);
-    // The sum rounds to beyond a limit. The excess is exact, so the step is shortened by it, or by
-    // one last digit if the excess is lost in rounding.
+    // The rounded sum is beyond a limit. The excess is exact, so it shortens the step; if the
+    // excess is lost in rounding, one ulp does.
     for (int again = 0; again < 4; ++again) {
       const double beyond = std::max(q_[i] + step - upper, lower - (q_[i] + step));
       const bool is_towards = step > 0.0 ? q_[i] + step > upper : q_[i] + step < lower;

@@ -11,8 +11,8 @@
 
 namespace keepout {
 
-/// The bounds of the joints' positions and increments in a cycle: low <= dq <= high, and q + dq
-/// within the position limits, bitwise.
+/// The bounds of the joints' positions and increments in a cycle: low <= dq <= high, and the
+/// computed q + dq is within the position limits.
 class IncrementBox {
  public:
   /// Returns the largest distance of joint k (1..n) from 0 that a cycle accepts, so that rounding
@@ -21,7 +21,8 @@ class IncrementBox {
     return chain.joint(k).kind == JointKind::prismatic ? largest_length : 100.0;
   }
 
-  /// From q (n), in a cycle of `period` seconds. Chain and q must outlive it.
+  /// Makes the bounds of a cycle of `period` seconds that starts at q (n). Chain and q must outlive
+  /// this object.
   IncrementBox(const Chain& chain, double largest_length, double period,
                std::span<const double> q) noexcept;
 
@@ -30,7 +31,7 @@ class IncrementBox {
   /// Returns the largest increments (n), at least 0.
   const JointVector& high() const noexcept { return high_; }
 
-  /// Returns which limit of joint k (1..n) bounds its increment upwards or downwards.
+  /// Returns the kind of limit that bounds the increment of joint k (1..n), upwards or downwards.
   Limit limit(int k, bool upwards) const noexcept {
     const auto& is_position = upwards ? is_high_a_position_ : is_low_a_position_;
     return is_position[static_cast<std::size_t>(k - 1)] ? Limit::joint_position

@@ -65,8 +65,8 @@ struct InstrumentConstraint::State {
         memory(instrument, required(solver), capacity),
         options(options_) {}
 
-  /// Replaces the mesh of a number, or adds one. Throws Error, and changes nothing, if the options
-  /// cannot be used with it.
+  /// Replaces the mesh with that number, or adds it. Throws Error, and changes nothing, if the
+  /// options cannot be used with it.
   void put(MeshMemory mesh, std::size_t number) {
     const std::vector<MeshMemory>::iterator at =
         memory.meshes.begin() + static_cast<std::ptrdiff_t>(number);
@@ -89,12 +89,13 @@ struct InstrumentConstraint::State {
     }
   }
 
-  /// Makes what depends on the meshes, and forgets the last cycle. Throws Error, and forgets
-  /// nothing, if the options cannot be used with the meshes.
+  /// Prepares all memory that depends on the meshes, and forgets the last cycle. Throws Error, and
+  /// forgets nothing, if the options cannot be used with the meshes.
   void prepare() {
     memory.measure();
     memory.require_usable(options);
-    // The default of a tip's step, measured on wide_bvh: that of the slowest index serves all.
+    // The default is that of a tip's step, measured on wide_bvh. The largest default of all indices
+    // is used.
     std::size_t work_units =
         capacity.work_units > 0 ? capacity.work_units : Capacity::work_units_of_traversals;
     for (const MeshMemory& each : memory.meshes) {
@@ -106,15 +107,15 @@ struct InstrumentConstraint::State {
     memory.budget = Budget(work_units);
   }
 
-  /// Renews the work budget. Returns free, or why no cycle may start.
+  /// Renews the work budget. Returns free, or the status that prevents a cycle.
   Status renew_and_check(std::span<const double> q, bool is_input_valid) noexcept {
     memory.budget.renew();
     const Status status = check_start(memory, options, q);
     return is_ok(status) && !is_input_valid ? Status::invalid_input : status;
   }
 
-  /// Runs a cycle for the task that `make_task` makes from the chain at its start, unless it may
-  /// not start. Meshes move in any case.
+  /// Runs a cycle, if it may start, for the task that `make_task` makes from the chain at its
+  /// start. Moves the meshes in any case.
   template <class MakeTask>
   InstrumentStep step(std::span<const double> q, bool is_input_valid, MakeTask make_task) noexcept {
     InstrumentStep result{.status = renew_and_check(q, is_input_valid)};
@@ -215,11 +216,11 @@ std::size_t InstrumentConstraint::add_mesh(std::shared_ptr<const Mesh> mesh,
   State& state = *state_;
   const std::size_t number = state.memory.meshes.size();
   if (number == InstrumentCapacity::most_meshes) {
-    throw Error("an instrument is kept out of at most " +
-                std::to_string(InstrumentCapacity::most_meshes) + " meshes");
+    throw Error("an instrument has at most " + std::to_string(InstrumentCapacity::most_meshes) +
+                " meshes");
   }
   if (!(margin >= 0.0)) {
-    throw Error("margin: expected 0, for that of the options, or a length above, got " +
+    throw Error("margin: expected a length, or 0 for the margin of the options, got " +
                 text_of(margin));
   }
   auto neighborhood =
@@ -237,7 +238,7 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
                                   std::shared_ptr<const SpatialIndex> index, std::size_t number) {
   State& state = *state_;
   if (number >= state.memory.meshes.size()) {
-    throw Error("there is no mesh of number " + std::to_string(number));
+    throw Error("there is no mesh number " + std::to_string(number));
   }
   const MeshMemory& old = state.memory.meshes[number];
   auto neighborhood =

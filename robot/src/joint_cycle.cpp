@@ -9,10 +9,10 @@ namespace keepout {
 namespace {
 
 constexpr int most_rounds = 16;
-constexpr double least_task = 1.0 / 16.0;     // the smallest fraction that is searched for
-constexpr double enough_of_a_motion = 0.5;    // if it is executed, no shorter task is tried
-constexpr double least_improvement = 1e-6;    // by a refinement, a fraction of the cost
-constexpr int most_dampings = 3;              // of a search whose motions stray
+constexpr double least_task = 1.0 / 16.0;   // the smallest fraction of the task that a search tries
+constexpr double enough_of_a_motion = 0.5;  // if it is executed, no shorter task is tried
+constexpr double least_improvement = 1e-6;  // of a refinement, as a fraction of the cost
+constexpr int most_dampings = 3;            // of a search whose motions stray
 constexpr double quarter_squared = 1.0 / 16;  // corrections are quadratic in the motion's length
 
 }  // namespace
@@ -83,7 +83,7 @@ PairWatch::Opening JointCycle::open() noexcept {
 }
 
 /// Searches for the task. If less than half of a motion would be executed, searches for a quarter
-/// of the task: a shorter motion bends less and meets less. The rows that were found stay. Returns
+/// of the task: a shorter motion has less curvature and meets fewer triangles. Rows stay. Returns
 /// the outcome.
 Status JointCycle::search(const JointTask& task, Trial& best) noexcept {
   double asked = 1.0;
@@ -94,8 +94,8 @@ Status JointCycle::search(const JointTask& task, Trial& best) noexcept {
   if (best.is_found()) return outcome(best, asked);
   rows_.remember_all();
   const Status status = search_status_ != Status::free ? search_status_ : Status::unsolved;
-  // A guide that forbids every motion found is no failure: zero motion, which is proved beside
-  // meshes that stand still, is the answer.
+  // If a guide forbids every motion found, the search has not failed: the answer is zero motion,
+  // which is proved beside meshes that stand still.
   const bool is_inconclusive = status == Status::unsolved || status == Status::infeasible;
   return is_inconclusive && stopping_limits_.has(Limit::guide) ? Status::truncated : status;
 }
@@ -110,17 +110,17 @@ Status JointCycle::outcome(const Trial& best, double asked) noexcept {
 /// Searches for a fraction of the task, with half of the work budget that is left. Returns true if
 /// another fraction may succeed.
 ///
-/// A whole motion that strays (measure_flange) is kept, and more damping is tried: the cheaper of
-/// the two stays in `best`. After a second attempt `is_improved` only says if that improved on the
-/// first.
+/// If a motion strays (measure_flange), solves again with more damping, and keeps the cheaper
+/// motion in `best`. After a second attempt, `is_improved` is true only if that attempt improved on
+/// the first.
 bool JointCycle::search_fraction(const JointTask& task, double asked, Trial& best) noexcept {
   search_status_ = Status::free;
   is_shortened_ = asked < 1.0;
   if (is_shortened_) rows_.scale_corrections(quarter_squared);
   bool is_improved = false;
-  const bool was_spent = memory_.budget.halved([&] {  // of this half
+  const bool was_spent = memory_.budget.halved([&] {  // the half of the budget
     JointTask reduced = task.scaled(asked);
-    // A motion is shortened because it bends too much. Damping reduces the largest rotations most.
+    // A shorter motion is needed because of curvature. Damping reduces the largest rotations most.
     if (is_shortened_ && !cycle_.meshes_move && task.is_of_flange()) reduced = reduced.damped();
     for (int dampings = 0;; ++dampings) {
       has_strayed_ = false;
@@ -136,7 +136,7 @@ bool JointCycle::search_fraction(const JointTask& task, double asked, Trial& bes
       rows_.scale_corrections(quarter_squared);
     }
   });
-  // A refinement that the budget or the capacity ends takes nothing from the motion it refines.
+  // If budget or capacity ends a refinement, the motion before it stays valid.
   if (is_improved) return true;
   if (was_spent && search_status_ == Status::free) search_status_ = Status::out_of_budget;
   note_end(search_status_);
@@ -144,9 +144,9 @@ bool JointCycle::search_fraction(const JointTask& task, double asked, Trial& bes
 }
 
 /// Solves, judges and adds rows until all of a motion is proved. Returns true if `best` is now that
-/// motion. If false, beside still meshes `best` is the cheapest motion or part proved so far;
-/// beside meshes that move it is unchanged. A whole motion that is not cheaper than what was found
-/// before counts as false. `reduced`: the task that is solved for; motions are compared by `task`.
+/// motion. Returns false also for a whole motion that is not cheaper than an earlier one. If false,
+/// `best` is the cheapest motion or part proved so far; beside moving meshes it is unchanged.
+/// `reduced`: the task that is solved for; motions are compared by `task`.
 bool JointCycle::solve_and_judge(const JointTask& task, const JointTask& reduced,
                                  Trial& best) noexcept {
   const bool was_found = best.is_found();
@@ -166,9 +166,9 @@ bool JointCycle::solve_and_judge(const JointTask& task, const JointTask& reduced
     trial.knot = judgement_.knot;
     trial.fraction = trial.proved();
     trial.cost = task.cost_of_share(trial.increment, trial.fraction);
-    // A motion may cost more than standing still only by what a return of bodies and guides within
-    // their bands explains: by two bands, taken as a length also for a task of the joints.
-    // Otherwise only the fraction that costs least is executed.
+    // A motion may cost more than standing still if bodies and guides return within their bands.
+    // Two bands are allowed for that (a length, also for a task of the joints). If it costs more,
+    // only the fraction that costs least is executed.
     const double affordable = task.miss_at_rest + 2.0 * cycle_.options.band;
     if (!is_recovering() && !cycle_.meshes_move && trial.cost > affordable * affordable) {
       // Guides within their bands are pulled back only if that does not cost the task too much. If
@@ -182,7 +182,7 @@ bool JointCycle::solve_and_judge(const JointTask& task, const JointTask& reduced
       if (problem_.relax_guides(rows_.view())) continue;
       has_strayed_ = true;
       stopping_limits_.add(Limit::linearization);
-      // Beside meshes that move no motion is cut: only more damping helps.
+      // Beside moving meshes no motion is truncated: only more damping helps.
       if (cycle_.meshes_move && trial.is_proved()) return false;
       trial = cut_for_flange(task, trial, memory_.trial_motion);
     }
@@ -199,7 +199,7 @@ bool JointCycle::solve_and_judge(const JointTask& task, const JointTask& reduced
   return false;
 }
 
-/// Sets the motion that is to be judged or carried out.
+/// Sets the motion to judge or to execute.
 void JointCycle::set_trial(const JointVector& increment) noexcept {
   memory_.trial_motion.set_trial(increment, cycle_.options.certified);
   pairs_.update_bounds();
@@ -231,8 +231,8 @@ void JointCycle::forget_obstacles() noexcept {
   std::fill(memory_.obstacles.begin(), memory_.obstacles.end(), Certificate::Obstacle{});
 }
 
-/// Sets what the true motion of the flange misses of the task. Returns true if it strays from the
-/// task; recoveries and joint tasks never do.
+/// Sets trial.missed, the distance by which the true motion of the flange misses the task. Returns
+/// true if the motion strays. Recoveries and joint tasks never stray.
 bool JointCycle::measure_flange(const JointTask& task, Trial& trial) noexcept {
   const bool is_judged = task.is_of_flange() && !is_recovering() &&
                          cycle_.options.certified == CertifiedMotion::actual;
@@ -252,8 +252,8 @@ bool JointCycle::add_rows() noexcept {
   return (is_by_guide || is_by_body) && !rows_.overflowed();
 }
 
-/// Turns the planes of the rows that limit a proved motion to its end, while that makes a better
-/// motion. Returns free, or why the triangles near the last trial are not known.
+/// Re-linearizes the rows that limit a proved motion, at its end, as long as that gives a better
+/// motion. Returns free, or the status if the triangles near the last trial are not known.
 Status JointCycle::refine(const JointTask& task, const JointTask& reduced, Trial& best) noexcept {
   for (int refinement = 0; refinement < cycle_.options.refinements; ++refinement) {
     if (best.active_rows == 0 || is_spent() || !rows_.turn_planes_to_end()) break;
@@ -279,9 +279,9 @@ Status JointCycle::refine(const JointTask& task, const JointTask& reduced, Trial
   return Status::free;
 }
 
-/// Cuts a motion to the fraction that is executed. If rounding has left less than some clearance,
-/// the end of that part must make up for it, so it is proved as a motion of its own. If the proof
-/// fails, there is no motion.
+/// Truncates a motion to the fraction that is executed. With a deficit its end must gain clearance,
+/// so the truncated motion is proved as a motion of its own. If the proof fails, the increment is
+/// zero.
 void JointCycle::cut(Trial& best) noexcept {
   if (best.fraction == 1.0) return;
   for (double& number : best.increment) number *= best.fraction;
@@ -293,7 +293,7 @@ void JointCycle::cut(Trial& best) noexcept {
   best.increment.fill(0.0);
 }
 
-/// Returns the motion in the result, and remembers its end.
+/// Puts the motion into the result, and remembers its end.
 void JointCycle::carry_out(const Trial& best, InstrumentStep& result) noexcept {
   result.fraction = best.fraction;
   const auto n = static_cast<std::size_t>(memory_.instrument.chain().size());

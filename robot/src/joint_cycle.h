@@ -10,22 +10,25 @@
 
 namespace keepout {
 
-/// One cycle of an instrument: open, then solve, judge and add rows until a motion is proved, or
-/// cut it to the part that is proved; and refine it. Allocates nothing, throws nothing. The calls,
-/// in order:
+/// One cycle of an instrument. It solves, judges and adds rows until a motion is proved, or
+/// truncates the motion to its proved part, and refines it. Allocates nothing and throws nothing.
+/// The calls, in order:
 ///
 ///     run
 ///       open
 ///       WorkingRows::add_first_rows
+///
 ///       search
 ///         search_fraction, of the task, then of less of it
 ///           solve_and_judge: JointProblem::solve, judge, add_rows, and again
 ///           refine
-///       or, beside meshes that move, search_beside_moving
+///
+///       or, beside moving meshes, search_beside_moving
 ///         settle_immovable
-///         search_fraction, of the task, a quarter of it and none of it
+///         search_fraction, of the task, a quarter and none of it
 ///         degrade: relax_guides, stand_still, degrade_conflict, drop a guide, or give_way; and
 ///                  search_fraction again
+///
 ///       cut
 ///       report_guides, report_limits
 ///       carry_out
@@ -35,7 +38,8 @@ class JointCycle {
   /// The velocities of the meshes in a cycle: ignored, as if all stood still, or predicted.
   enum class MeshMotion : bool { ignored, predicted };
 
-  /// From q (n). The indices must be current. All must outlive it.
+  /// Makes a cycle that starts at q (n). Precondition: the indices are current. All arguments must
+  /// outlive the cycle.
   JointCycle(CycleMemory& memory, const InstrumentOptions& options, std::span<const double> q,
              MeshMotion mesh_motion) noexcept;
 
@@ -44,8 +48,8 @@ class JointCycle {
     return memory_.trial_motion.chain_at_start();
   }
 
-  /// Finds the increment for a task. Precondition: the task is finite. Beside a mesh that moves,
-  /// all of a motion is proved or nothing: a part of it would not be safe.
+  /// Finds the increment for a task. Precondition: the task is finite. Beside a moving mesh,
+  /// returns a motion only if all of it is proved: a part of it would not be safe.
   InstrumentStep run(const JointTask& task) noexcept;
 
   /// Returns the fraction of a motion that is proved. Ignores the limits of the joints.
@@ -53,8 +57,8 @@ class JointCycle {
   MotionProof prove(const JointVector& increment) noexcept;
 
  private:
-  /// What the proof of a trial motion found. The obstacles of pairs are in CycleMemory::obstacles
-  /// until the next motion is judged; a pair that was not judged has none.
+  /// The result of the proof of a trial motion. The obstacles of pairs are in
+  /// CycleMemory::obstacles until the next motion is judged; a pair that was not judged has none.
   struct Judgement {
     int knot = 0;                  // the motion is proved up to here
     Status status = Status::free;  // or why the triangles near a pair are not known: knot is 0 then
@@ -101,17 +105,17 @@ class JointCycle {
   WorkingRows rows_;
   JointProblem problem_;
   Judgement judgement_ = {};             // of the last trial
-  Status search_status_ = Status::free;  // why the last search ended without a proof; or free
+  Status search_status_ = Status::free;  // of the last search if it found no proof; or free
   bool is_shortened_ = false;            // the last search was for a fraction of the task
-  bool has_strayed_ = false;             // a trial of the last search did: see measure_flange
+  bool has_strayed_ = false;             // a trial of the last search strayed: see measure_flange
   Limits stopping_limits_ = {};          // the limits that ended searches
   GuideSet stopping_guides_ = {};        // the guides that ended searches
   int rounds_ = 0;
 };
 
-/// Proves a motion of any length, in up to 64 parts if there is more near it than the capacity
-/// holds or the budget of a cycle can examine. Restores what steps have certified, and does not
-/// slow down near the mesh. Precondition: memory and increment (n) are valid.
+/// Proves a motion of any length. Divides it into up to 64 parts if the triangles near it exceed
+/// the capacity, or the work exceeds the budget of a cycle. Restores the certified clearances of
+/// the steps, and ignores slowing_within. Precondition: memory and increment (n) are valid.
 MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options,
                            std::span<const double> q, std::span<const double> increment) noexcept;
 

@@ -12,7 +12,7 @@ constexpr double largest_number = 1e9;    // in a task or a velocity
 constexpr double rotation_digits = 1e-6;  // of each element of R^T R
 constexpr double fastest_turn = 1.0;      // of a mesh in a cycle [rad]
 
-/// Returns false for NaN.
+/// Returns true if no value exceeds `most` in size; false for NaN.
 bool are_within(std::span<const double> values, double most) noexcept {
   return std::all_of(values.begin(), values.end(),
                      [most](double x) { return std::abs(x) <= most; });
@@ -33,7 +33,7 @@ Status check_start(const CycleMemory& memory, const InstrumentOptions& options,
     if (mesh.has_refused_pose || is_too_fast) return Status::invalid_input;
     if (!mesh.neighborhood->is_current()) return Status::mesh_changed;
   }
-  // Meshes move, so rounding may have outgrown the margin since it was set.
+  // Meshes move, so rounding may hide a margin that was valid when it was set.
   if (memory.is_lost_in_rounding(options)) return Status::margin_too_small;
   const JointVector at_rest{};
   const auto n = static_cast<std::size_t>(memory.instrument.chain().size());

@@ -9,20 +9,21 @@
 namespace keepout {
 
 /// Returns free if a cycle may start: poses and speeds of all meshes are valid, indices are
-/// current, and q (n) is within IncrementBox::largest_position. Otherwise returns the cause.
+/// current, margins exceed rounding, and q (n) is within IncrementBox::largest_position. Otherwise
+/// returns the status that states the cause.
 Status check_start(const CycleMemory& memory, const InstrumentOptions& options,
                    std::span<const double> q) noexcept;
 
-/// Returns true if q and `increment` are of n joints, and all joints stay within
-/// IncrementBox::largest_position at q (n), moved by `increment` (n).
+/// Returns true if q and `increment` both have n elements, and no joint is beyond
+/// IncrementBox::largest_position at q + increment.
 bool are_valid_positions(const CycleMemory& memory, std::span<const double> q,
                          std::span<const double> increment) noexcept;
 
 /// Returns true if a task of the flange is finite and within bounds.
 bool is_valid_task(const Twist& displacement) noexcept;
 
-/// Returns true if a task of the joints (n) and its weights (n, or none) are finite and within
-/// bounds, and the weights above 0.
+/// Returns true if a task of the joints (n) and its weights (n, or empty) are finite and within
+/// bounds, and the weights are above 0.
 bool is_valid_task(std::span<const double> desired, std::span<const double> weights,
                    std::size_t joints) noexcept;
 

@@ -11,14 +11,14 @@ namespace keepout {
 /// One stage of the relaxation of rows that pull back.
 struct JointProblem::Stage {
   Relaxation relaxation;
-  double unused;      // the fraction of a guide's band that is left to curvature; 1 stands for no
-                      // relaxation: rows keep their bounds
-  bool pulls_guides;  // towards their regions; false: their rows only hold them
-  double recovery;    // the fraction of a body's retreat that is demanded; 0: no row demands motion
+  double unused;      // the fraction of a guide's band that is left to curvature; 1: no relaxation,
+                      // rows keep their bounds
+  bool pulls_guides;  // rows of guides may demand a motion towards their regions
+  double recovery;    // the fraction of a body's retreat that rows demand; 0: no row demands motion
 
   static const Stage all[7];
-  static constexpr std::size_t holding = 2;     // the first one that only holds guides
-  static constexpr std::size_t whole_band = 3;  // the first one that leaves no band unused
+  static constexpr std::size_t holding = 2;     // the first stage that does not pull guides
+  static constexpr std::size_t whole_band = 3;  // the first stage that uses all of the band
   static constexpr std::size_t softest = 6;     // zero motion satisfies it beside still meshes
 };
 
@@ -47,10 +47,10 @@ Proposal JointProblem::solve(const JointTask& task, std::span<const Row> rows) n
     if (guides_pull && i < first_guide_stage_) continue;
     proposal.status = solve_once(task, rows, stage, {}, solution);
     proposal.relaxation = stage.relaxation;
-    // Where no body is pulled back, only guides are relaxed, if any: the first of these stages lets
-    // a guide that does not pull use its band, too, the second repeats it, and the last one drops
-    // what corrections demand beyond standing still. (Without rows of guides the first repeats
-    // stage 0; after pulling guides, the stage before.)
+    // If no body is pulled back, the recovery stages can relax only guides. The first of them lets
+    // guides that are not pulled use their bands, too. The second repeats the first. The last one
+    // drops demands of corrections for motion. (Without rows of guides, the first repeats stage 0.
+    // If guides are pulled, it repeats the stage before.)
     if (stage.relaxation == Relaxation::recovery && !bodies_pull) {
       proposal.relaxation =
           guides_pull || may_leave_more(rows) ? Relaxation::guides : Relaxation::none;
@@ -101,7 +101,7 @@ OwnerSet JointProblem::conflict(const JointTask& task, std::span<const Row> rows
   return owners & ~left_out;
 }
 
-/// Returns true if a guide's row allows more in the stages of a recovery than in the first stage.
+/// Returns true if any row of a guide allows more in the recovery stages than in the first stage.
 bool JointProblem::may_leave_more(std::span<const Row> rows) const noexcept {
   return std::any_of(rows.begin(), rows.end(), [&](const Row& row) {
     return is_guide(row.owner) &&
@@ -109,7 +109,7 @@ bool JointProblem::may_leave_more(std::span<const Row> rows) const noexcept {
   });
 }
 
-/// Notes the kinds of the rows that limit a solution, and their guides.
+/// Notes the kinds of the active rows of a solution, and their guides.
 void JointProblem::describe_active(std::span<const Row> rows, Proposal& proposal) const noexcept {
   for (const std::uint32_t number : proposal.active) {
     if (number < rows.size()) {
@@ -124,12 +124,12 @@ void JointProblem::describe_active(std::span<const Row> rows, Proposal& proposal
   }
 }
 
-/// Tries a relaxed stage if the motion of the stage `tried` is unreasonably long: it leaves one of
-/// the guides again that it pulls back, and is much longer than to pull them back one by one. (Rows
-/// of guides that miss each other by little are nearly opposite: only a very long motion satisfies
-/// all of them.) Returns true if it is also much longer than the relaxed motion: then the caller
-/// goes on with its next stage, and `solution` means nothing. If false, `solution` is that of
-/// `tried`; it may have been solved again.
+/// Tries the stage `relaxed` if the motion of the stage `tried` is unreasonably long. That motion
+/// may leave a guide again that it pulls back, and is much longer than all single pulls together.
+/// (Rows of guides that almost contradict each other are nearly opposite, so only a very long
+/// motion satisfies all of them.) Returns true if the motion is also much longer than the relaxed
+/// motion. Then `solution` is meaningless, and the caller continues with its next stage. If false,
+/// `solution` is that of `tried`, which may have been solved again.
 bool JointProblem::try_relaxed_instead(const JointTask& task, std::span<const Row> rows,
                                        const Stage& tried, const Stage& relaxed,
                                        Solution& solution) noexcept {
@@ -157,16 +157,17 @@ bool JointProblem::try_relaxed_instead(const JointTask& task, std::span<const Ro
   return is_shorter;
 }
 
-/// Returns the least gradient . dq of a body's row: the change of height that it demands, less what
-/// the mesh's own motion makes, less the degradation. [length]
+/// Returns the least gradient . dq of a body's row: the change of height that the row demands,
+/// minus the drift by the mesh's motion, minus the degradation. [length]
 double JointProblem::body_bound(const Row& row, const Stage& stage) const noexcept {
   const double bound = (row.bound > 0.0 ? stage.recovery * row.bound : row.bound) + row.correction;
   return (stage.recovery > 0.0 ? bound : std::min(bound, 0.0)) - row.drift -
          pairs_.degradation(row.owner);
 }
 
-/// Like body_bound(), but for a guide's row. A relaxed guide outside its region is limited by the
-/// region grown by the excess that this cycle allows, less a fraction of its band. [length or rad]
+/// Like body_bound(), but for a guide's row. A relaxed guide outside its region must stay in a
+/// larger region: the excess that this cycle allows, minus a fraction of the guide's band. [length
+/// or rad]
 double JointProblem::guide_bound(const Row& row, const Stage& stage) const noexcept {
   double bound = row.bound;
   if (stage.unused < 1.0) {

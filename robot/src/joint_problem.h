@@ -24,16 +24,16 @@ struct Proposal {
   JointVector increment{};
   SolveStatus status = SolveStatus::infeasible;
   Limits limits = {};                          // the kinds of active rows and joint limits
-  GuideSet guides = {};                        // whose rows are active
-  std::size_t active_rows = 0;                 // how many, joint limits apart
-  Relaxation relaxation = Relaxation::none;    // what was relaxed
+  GuideSet guides = {};                        // the guides whose rows are active
+  std::size_t active_rows = 0;                 // the number of active rows, without joint limits
+  Relaxation relaxation = Relaxation::none;    // the constraints that were relaxed
   std::span<const std::uint32_t> active = {};  // rows, by number; valid until the next solve
 };
 
-/// The quadratic problem of a joint cycle: its bounds, their relaxation, and its solution.
+/// The quadratic program of a joint cycle: its bounds, their relaxation, and its solution.
 class JointProblem {
  public:
-  /// All must outlive it.
+  /// All arguments must outlive this object.
   JointProblem(CycleMemory& memory, const IncrementBox& box, const PairWatch& pairs,
                const GuideWatch& guides) noexcept
       : memory_(memory), box_(box), pairs_(pairs), guides_(guides) {}
@@ -42,11 +42,11 @@ class JointProblem {
   /// Relaxes rows that pull back if they contradict each other, if the solver does not converge, or
   /// if guides pull unreasonably far.
   Proposal solve(const JointTask& task, std::span<const Row> rows) noexcept;
-  /// Pulls guides back less from now on in this cycle: by one stage, down to none. Returns false if
-  /// no row pulls a guide back, or if guides are not pulled back any more.
+  /// Relaxes the pull on guides by one stage, for the rest of this cycle. Returns false if no row
+  /// pulls a guide back, or if the stage does not pull guides any more.
   bool relax_guides(std::span<const Row> rows) noexcept;
-  /// Returns a minimal set of owners whose rows contradict each other: each is left out in turn,
-  /// and stays out if the others still do.
+  /// Returns a minimal set of owners whose rows contradict each other. Leaves out each owner in
+  /// turn, for good if the other rows still contradict each other.
   OwnerSet conflict(const JointTask& task, std::span<const Row> rows) noexcept;
 
  private:

@@ -8,8 +8,8 @@ namespace keepout {
 
 std::string_view InstrumentStep::reason() const noexcept {
   if (status == Status::free && limits.has(Limit::joints_outside)) {
-    return "the motion is the one asked for, but a joint starts outside its position limits, where "
-           "it may stay or come back: check q";
+    return "the motion is the commanded one, but a joint starts outside its position limits, where "
+           "it may stay or return: check q";
   }
   return keepout::reason(status, Subject::instrument);
 }
@@ -20,8 +20,8 @@ void JointCycle::note_guide(std::size_t guide) noexcept {
   stopping_guides_.set(guide);
 }
 
-/// Notes the kinds of constraints that the last trial of a search could not be proved for. If the
-/// rows contradict each other, notes the kinds of the rows.
+/// Notes the kinds of constraints for which the last trial of a search was not proved. If the rows
+/// contradict each other, notes the kinds of the rows.
 void JointCycle::note_failure() noexcept {
   if (search_status_ == Status::ill_posed) return;
   if (search_status_ == Status::infeasible) {
@@ -34,7 +34,7 @@ void JointCycle::note_failure() noexcept {
     }
     return;
   }
-  // If the budget ended, the obstacle is where the proof stopped, not what is in the way.
+  // If the budget ended, the guide's obstacle marks only the end of the proof.
   if (judgement_.guide.knot < PointMotion::last_knot && !is_spent())
     note_guide(judgement_.guide.guide);
   for (const Certificate::Obstacle& obstacle : memory_.obstacles) {
@@ -48,8 +48,8 @@ void JointCycle::note_end(Status status) noexcept {
   if (status == Status::out_of_budget) stopping_limits_.add(Limit::budget);
 }
 
-/// Reports which guides limit the motion, and which were relaxed. `is_cut`: the motion is not all
-/// of the one that was asked for, or there is none.
+/// Reports the guides that limit the motion, and those that were relaxed. `is_cut`: the motion is
+/// only a part of the commanded one, or there is no motion.
 void JointCycle::report_guides(const Trial& best, bool is_cut, InstrumentStep& result) noexcept {
   result.relaxation = best.relaxation;
   for (std::size_t g = 0; g < guides_.size(); ++g) {

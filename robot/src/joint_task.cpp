@@ -111,7 +111,7 @@ JointTask JointTask::scaled(double fraction) const noexcept {
 JointTask flange_task(const ChainState& chain, const Twist& displacement,
                       const InstrumentOptions& options) noexcept {
   const bool turns = options.orientation_weight > 0.0;
-  // A prismatic joint's unit moves the flange as far as a radian of a turn is worth.
+  // The unit of a prismatic joint moves the flange by the length that has the weight of one radian.
   const double length = turns ? options.orientation_weight : 1.0;
   JointTask task{.equations = turns ? 6 : 3,
                  .joints = chain.size(),

@@ -13,8 +13,8 @@
 
 namespace keepout {
 
-/// What the joints are to achieve: min |J u - v|^2 + damping |u|^2, where u is dq with each joint
-/// in a unit of its own, so that a radian and a length are about as much: dq_k = unit_k u_k.
+/// The task of the joints: minimize |J u - v|^2 + damping |u|^2. Here u is dq with each joint in a
+/// unit of its own, so that a radian and a length count about the same: dq_k = unit_k u_k.
 struct JointTask {
   static constexpr int most_equations = Chain::most_joints;
   static_assert(most_equations >= 6, "a task of the flange has 6");
@@ -26,7 +26,7 @@ struct JointTask {
   int joints = 0;
   double damping = 0.0;
   JointVector unit{};         // [rad or length]
-  double miss_at_rest = 0.0;  // |v|: what zero motion misses, in the unit of v
+  double miss_at_rest = 0.0;  // |v|: the miss of zero motion, in the unit of v
   /// InstrumentOptions::orientation_weight; empty if the task is not one of the flange.
   /// [length/rad]
   std::optional<double> orientation_weight = std::nullopt;
@@ -38,31 +38,32 @@ struct JointTask {
   double cost(const JointVector& increment) const noexcept;
   /// Returns the cost of a fraction of an increment.
   double cost_of_share(const JointVector& increment, double fraction) const noexcept;
-  /// Returns the fraction of an increment, at most `most`, that costs least: 0 if every share costs
-  /// more than zero motion.
+  /// Returns the fraction of an increment, at most `most`, that costs least: 0 if every fraction
+  /// costs more than zero motion.
   double best_share(const JointVector& increment, double most) const noexcept;
   /// Returns a joint's increment in its unit.
   double in_units(const JointVector& increment, int k) const noexcept {
     return increment[static_cast<std::size_t>(k)] / unit[static_cast<std::size_t>(k)];
   }
-  /// Returns the task for a fraction of what is desired.
+  /// Returns the task for a fraction of the desired motion.
   JointTask scaled(double fraction) const noexcept;
   /// Returns the task with 16 times the damping, or with some damping if it has none.
   JointTask damped() const noexcept;
-  /// Returns |J u - v|: what a fraction of an increment misses if the flange moves linearly.
+  /// Returns |J u - v| for a fraction of an increment: the miss if the flange moved linearly.
   double linear_miss(const JointVector& increment, double fraction) const noexcept;
-  /// Returns what a motion of the flange from one pose to another misses, in the metric of v.
+  /// Returns the miss of a motion of the flange from one pose to another, in the metric of v.
   /// Precondition: it is a task of the flange.
   double true_miss(const Pose& from, const Pose& to) const noexcept;
   /// Returns damping |u|^2 of a fraction of an increment.
   double damping_cost(const JointVector& increment, double fraction) const noexcept;
 };
 
-/// Returns the task of moving the flange by a displacement. Turns weigh options.orientation_weight.
+/// Returns the task of moving the flange by a displacement. Weighs rotations by
+/// options.orientation_weight.
 JointTask flange_task(const ChainState& chain, const Twist& displacement,
                       const InstrumentOptions& options) noexcept;
 
-/// Returns the task of moving the joints by dq (n), with weights (n), or with none.
+/// Returns the task of moving the joints by dq (n), with weights (n, or empty).
 JointTask joint_task(std::span<const double> desired, std::span<const double> weights) noexcept;
 
 }  // namespace keepout

@@ -43,7 +43,7 @@ double recommended_band(const Instrument& instrument, double period, double leas
       }
       lever += joint.origin.position.norm();
     }
-    // Without a limit the bend is infinite, or 0 times infinity.
+    // Without limits the second-derivative bound is infinite, or 0 times infinity.
     most = std::isnan(bounds.bend) ? std::numeric_limits<double>::infinity()
                                    : std::max(most, bounds.bend);
     if (std::isinf(most)) break;

@@ -32,7 +32,7 @@ MotionProof prove_in_parts(CycleMemory& memory, const InstrumentOptions& options
       span *= 0.5;
       continue;
     }
-    // A later part that begins too close is certified for less than the first one.
+    // A later part that begins too close would be certified for less than the first one.
     if (proof.fraction > 0.0 && part.status == Status::recovering &&
         proof.status != Status::recovering) {
       break;

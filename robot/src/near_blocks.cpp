@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Let u = 2^-24 be the rounding of a float and S the largest coordinate. For any t, no point of a
-// triangle is nearer to a segment than (min t . v - max t . e) / |t| over its corners v and the
-// segment's ends e. In floats coordinates are off by u S each, and the products and sums of t . v
-// by less than 4 u S |t|: so the quotient by less than 16 u S, whatever t is. The distance is
-// lengthened by four times that.
+// The error bound of the screen. Let u = 2^-24 be the unit roundoff of a float and S the largest
+// coordinate. Let v be the corners of a triangle, e the ends of a segment, and t any vector. Then
+// their distance is at least q = (min t . v - max t . e) / |t|. In single precision, coordinates
+// are off by u S each, and the products and sums of t . v by less than 4 u S |t|. So q is off by
+// less than 16 u S for any t. NearScreen enlarges the distance by four times that.
 #include "near_blocks.h"
 
 #include <algorithm>

@@ -12,7 +12,7 @@ namespace keepout {
 namespace {
 
 /// Returns a lower bound of the distance from a segment to a triangle, by the plane across the
-/// shortest line to the triangle's middle: may_be_near (near_blocks.h) in double precision.
+/// shortest line to the triangle's middle. It is may_be_near() in double precision.
 double least_distance(const Vec3& from, const Vec3& to, const Triangle& corners) noexcept {
   const Vec3 along = to - from;
   const double length2 = along.squaredNorm();
@@ -28,7 +28,7 @@ double least_distance(const Vec3& from, const Vec3& to, const Triangle& corners)
   return apart > 0.0 ? apart / length : 0.0;
 }
 
-/// Prefetches triangles that come soon.
+/// Prefetches the triangles that the loop needs soon.
 void fetch_ahead(const Mesh& mesh, std::span<const TriangleId> ids, std::size_t i) noexcept {
   constexpr std::size_t corners_ahead = 16;
   constexpr std::size_t vertices_ahead = 8;
@@ -65,10 +65,11 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
   candidates.clear();
   near.index().collect_near({from_, to_, radius + beyond_}, candidates);
   budget.spend(16 + candidates.size());
-  // Marks no overflow of the budget: the caller may search again in a smaller region.
+  // Does not call Budget::mark_overflow(), because the caller may search again within a smaller
+  // radius.
   if (candidates.overflowed() || budget.is_spent()) return false;
   const Mesh& mesh = near.mesh();
-  // Everything that matters is within the radius of the core.
+  // All triangles that matter touch the ball of this radius about the core.
   size_ = (to_ - from_).norm() + 2.0 * (radius + beyond_) + mesh.longest_edge();
   const NearScreen screen = screen_within(radius);
   const std::span<const TriangleId> found = candidates.view();
@@ -100,7 +101,7 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
   return true;
 }
 
-/// Returns the query for the triangles near the core of this listing.
+/// Returns the screen for the triangles within `distance` of the core of this listing.
 NearScreen NearSet::screen_within(double distance) const noexcept {
   return {from_ - core_.front(), to_ - core_.front(), distance + beyond_, size_};
 }

@@ -17,25 +17,25 @@ struct NearTriangle {
   TriangleId id;
   double at_least;           // a lower bound of its distance at the start of the cycle [length]
   const Triangle* corners;   // their positions; valid until triangles are gathered again
-  Vec3* normal;              // of the last plane between it and the core; zero if there is none
+  Vec3* normal;              // of the last plane between it and the core; zero if there is no plane
   bool is_measured = false;  // at_start is known
   Gap at_start = {};         // at the start of the cycle
 };
 
-/// The triangles around one body, which stay from cycle to cycle: while no point of the body has
-/// moved farther than the padding of the search, no other triangle is in reach. The engine, not the
-/// index, decides which triangles are listed, so every index gives the same list.
+/// The triangles near one body, kept from cycle to cycle. While no point of the body has moved
+/// farther than the padding of the search, no other triangle can limit the body. The engine, not
+/// the index, decides which triangles are listed, so every index gives the same list.
 ///
-/// A listing holds those that are near the core in one cycle. It is extended on demand; the
-/// triangles listed before keep their place.
+/// A listing holds the triangles near the core in one cycle. It is extended on demand; triangles
+/// listed before keep their place.
 class NearSet {
  public:
-  /// For a body whose core is within `beyond` of the segment of its first two points. Allocates
-  /// memory for `capacity` triangles; nothing else does. [length]
+  /// Makes an empty set for a body whose core is within `beyond` [length] of the segment of its
+  /// first two points. Allocates memory for `capacity` triangles; no other function allocates.
   NearSet(std::size_t capacity, double beyond);
 
-  /// Finds all triangles within `radius` of a core, and starts a listing. Returns false if there
-  /// are too many, or if the budget is spent: then no triangle is known. [length]
+  /// Finds all triangles within `radius` of a core, and starts a listing. Returns false, with no
+  /// triangle known, if there are too many triangles or the budget is spent. [length]
   [[nodiscard]] bool gather(Neighborhood& near, std::span<const Vec3> core, double radius,
                             Budget& budget) noexcept;
 
@@ -46,8 +46,8 @@ class NearSet {
     listed_.clear();
   }
 
-  /// Returns the distance from gathered_core() within which all triangles are known; below 0 if
-  /// none are. [length]
+  /// Returns the distance from gathered_core() within which all triangles are known; below 0 if no
+  /// triangle is known. [length]
   double radius() const noexcept { return radius_; }
   /// Returns the positions of the core's points when triangles were gathered. [length]
   std::span<const Vec3> gathered_core() const noexcept { return core_; }
@@ -57,9 +57,9 @@ class NearSet {
   /// Starts a new listing, with the core at other positions. All listed triangles become invalid.
   void start_listing(std::span<const Vec3> core) noexcept;
   /// Lists the triangles that may be nearer than `distance` to the core at the start of the cycle,
-  /// the nearest first; of equals the first by number. Valid until the next listing. [length]
+  /// sorted by NearTriangle::at_least, then by number. Valid until the next listing. [length]
   std::span<NearTriangle> nearer_than(double distance, Budget& budget) noexcept;
-  /// Measures the gap of a listed triangle, unless it is known.
+  /// Measures the gap of a listed triangle, unless it is measured already.
   void measure(NearTriangle& triangle, Budget& budget) noexcept;
 
  private:

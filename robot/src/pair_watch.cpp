@@ -27,7 +27,7 @@ PairWatch::Opening PairWatch::open() noexcept {
       of_pair = Status::free;
     }
     if (!is_ok(of_pair)) opening.status = of_pair;
-    // A body that touches does not end the opening: the distance is that of all bodies.
+    // A body that touches does not end the loop: the distance must be the least of all bodies.
     if (of_pair == Status::over_capacity || of_pair == Status::out_of_budget) return opening;
   }
   for (std::size_t m = 0; m < memory_.meshes.size() && is_ok(opening.status); ++m) {
@@ -37,7 +37,8 @@ PairWatch::Opening PairWatch::open() noexcept {
   return opening;
 }
 
-/// Measures a pair. Returns free, or why it forbids all motion.
+/// Measures a pair and computes its certified clearance. Returns free, or the status that forbids
+/// all motion.
 Status PairWatch::open_pair(std::size_t p, Opening& opening) noexcept {
   PairMemory& pair = memory_.pairs[p];
   const InstrumentOptions& options = cycle_.options;
@@ -61,8 +62,8 @@ Status PairWatch::open_pair(std::size_t p, Opening& opening) noexcept {
     opening.mesh = static_cast<int>(pair.mesh);
   }
   if (nearest <= core_touching_within * memory_.tolerance) return Status::touching;
-  // A motion gets at most half of the distance; half of the core's distance if the body reaches
-  // through the surface.
+  // A motion may use at most half of the clearance, or half of the core's distance if the body
+  // reaches through the surface.
   const double room = std::min(options.band, 0.5 * (distance > 0.0 ? distance : nearest));
   pair.full_demand =
       certified_clearance(distance, pair.certified, target(p), room, memory_.tolerance);
@@ -71,14 +72,14 @@ Status PairWatch::open_pair(std::size_t p, Opening& opening) noexcept {
   if (is_recovering(p)) {
     is_recovering_ = true;
   } else {
-    slow_down(p, distance);  // raises the demand of this cycle; it is not remembered
+    slow_down(p, distance);  // raises only the demand of this cycle
   }
   return Status::free;
 }
 
-/// Raises the demand of a pair in this cycle, so that the body uses up only a fraction of the way
-/// to its margin (the velocity damper of Faverjon and Tournassoud, ICRA 1987). The approach of a
-/// mesh that moves is not slowed down.
+/// Raises the demand of a pair in this cycle, so that the body may use only a fraction of its
+/// distance to the margin. This is the velocity damper of Faverjon and Tournassoud (1987). Does not
+/// slow down the approach of a moving mesh.
 void PairWatch::slow_down(std::size_t p, double distance) noexcept {
   const InstrumentOptions& options = cycle_.options;
   const double left = distance - margin(p);
@@ -106,7 +107,7 @@ void PairWatch::remember_end() noexcept {
       continue;
     }
     const Vec3* end = mesh.motion.points_in_mesh(PointMotion::last_knot);
-    // Only the end of each path: the path is not straight.
+    // Notes only the end of each path, because the path is not straight.
     for (std::size_t i = 0; i < memory_.instrument.points().size(); ++i) {
       mesh.sides.note(mesh.neighborhood->mesh(), i, end[i], Vec3::Zero());
     }
@@ -181,8 +182,8 @@ bool PairWatch::has_unknown_side(std::size_t m) noexcept {
   const std::size_t bodies = memory_.instrument.bodies().size();
   for (std::size_t p = m * bodies; p < (m + 1) * bodies; ++p) {
     if (memory_.pairs[p].may_have_crossed) return true;
-    // No surface is within twice this distance of the core; the other half is slack. So no surface
-    // is between a point and the end of its last step, if the point is within it of that end.
+    // No surface is within twice `free` of the core; the other half is slack. So if a point is
+    // within `free` of the end of its last step, no surface is between them.
     const double free = 0.5 * (radius(p) + full_demand(p));
     for (const std::uint8_t point : points(p)) {
       if (!mesh.sides.is_near(point, mesh.motion.start_in_mesh()[point], free)) return true;
@@ -191,8 +192,9 @@ bool PairWatch::has_unknown_side(std::size_t m) noexcept {
   return false;
 }
 
-/// Finds the side of each body by one of its points, as no core meets the surface. Drops the bodies
-/// inside a mesh if meshes move. Returns free, or inside, or why the side could not be found.
+/// Classifies each body as inside or outside, by one of its points, because no core meets the
+/// surface. If meshes move, drops the bodies inside a mesh. Returns free, or inside, or the status
+/// if the search for a side fails.
 Status PairWatch::find_sides(std::size_t m) noexcept {
   MeshMemory& mesh = memory_.meshes[m];
   Budget& budget = memory_.budget;
@@ -208,9 +210,9 @@ Status PairWatch::find_sides(std::size_t m) noexcept {
   return Status::free;
 }
 
-/// Returns the distance from a body's core within which triangles may limit it: the margin, and the
-/// largest of band, slowing_within and the displacement of the last trial (at most four margins).
-/// [length]
+/// Returns the distance from a body's core within which triangles may limit it. It is the sum of
+/// radius, margin, and the largest of band, slowing_within and the last trial's displacement (up to
+/// four margins). [length]
 double PairWatch::vicinity(std::size_t p) const noexcept {
   const InstrumentOptions& options = cycle_.options;
   const double moves = std::min(memory_.pairs[p].displacement, 4.0 * margin(p));
@@ -229,8 +231,8 @@ double PairWatch::moved(std::size_t p) noexcept {
   return most;
 }
 
-/// Makes sure that all triangles nearer than `needed` to a body's core are known. Returns free, or
-/// over_capacity or out_of_budget. [length]
+/// Gathers triangles, unless all that are nearer than `needed` to a body's core are known. Returns
+/// free, or over_capacity or out_of_budget. [length]
 Status PairWatch::ensure_known(std::size_t p, double needed) noexcept {
   PairMemory& pair = memory_.pairs[p];
   Budget& budget = memory_.budget;

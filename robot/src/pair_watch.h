@@ -10,30 +10,31 @@
 
 namespace keepout {
 
-/// The pairs of a body and a mesh in a cycle: the clearance that is certified for each, the
-/// triangles near it, and the proof that a motion maintains the clearance. Pairs are numbered (p)
-/// mesh by mesh: all bodies beside the first mesh, and so on.
+/// The pairs of a body and a mesh in a cycle: the certified clearance of each, the triangles near
+/// it, and the proof that a motion maintains the clearance. Pairs are numbered (p) mesh by mesh:
+/// all bodies beside the first mesh, and so on.
 ///
 /// Clearances are distances from the body's surface; the distance from its core is larger by the
 /// radius. In increasing order:
 ///
-///     demand <= full_demand <= target = margin - band    that a motion must be proved to maintain
+///     demand <= full_demand <= target = margin - band    that a proof must maintain
 ///     row_margin = margin                                that rows demand
-///     vicinity - radius                                  within which triangles are listed
+///     vicinity - radius                                  of the listed triangles
 ///
-/// Where bodies are slowed down (slow_down), full_demand and row_margin are larger.
+/// If a body is slowed down (slow_down), full_demand and row_margin are larger.
 class PairWatch {
  public:
-  /// How the pairs stand at the start of a cycle.
+  /// The state of the pairs at the start of a cycle.
   struct Opening {
-    Status status = Status::free;  // or why nothing may move
+    Status status = Status::free;  // or the status that forbids all motion
     /// The distance of the nearest body: see InstrumentStep::distance. [length]
     std::optional<double> distance = std::nullopt;
     int body = -1;  // the number of that body
     int mesh = -1;  // the number of the mesh
   };
 
-  /// All motions must have begun the cycle before open() is called. Both must outlive it.
+  /// Precondition of open(): all motions have begun the cycle. Both arguments must outlive this
+  /// object.
   PairWatch(CycleMemory& memory, const CycleConstants& cycle) noexcept
       : memory_(memory), cycle_(cycle) {}
 
@@ -58,24 +59,23 @@ class PairWatch {
     return memory_.meshes[memory_.pairs[p].mesh].motion;
   }
 
-  /// Returns the clearance that this cycle must certify for a pair: its full demand, less the
+  /// Returns the clearance that this cycle must certify for a pair: its full demand minus the
   /// degradation (F* of docs/joint-space-step.md). [length]
   double demand(std::size_t p) const noexcept { return full_demand(p) - degradation(p); }
-  /// Returns the demand at level 1: margin - band, or what is left of it, plus what
-  /// `slowing_within` adds. [length]
+  /// Returns the demand without degradation: F, plus the part that slowing_within adds. [length]
   double full_demand(std::size_t p) const noexcept { return memory_.pairs[p].full_demand; }
-  /// Returns the margin that rows demand in this cycle, beyond the body's radius. [length]
+  /// Returns the clearance that rows demand in this cycle. [length]
   double row_margin(std::size_t p) const noexcept { return memory_.pairs[p].row_margin; }
   /// Returns the length by which demand and rows of a degraded pair are lowered. [length]
   double degradation(std::size_t p) const noexcept {
     return (1.0 - memory_.pairs[p].clearance_fraction) * std::max(full_demand(p), 0.0);
   }
-  /// Returns true if the level of some pair is below 1.
+  /// Returns true if any pair is degraded: its clearance fraction is below 1.
   bool is_degraded() const noexcept {
     return std::any_of(memory_.pairs.begin(), memory_.pairs.end(),
                        [](const PairMemory& pair) { return pair.clearance_fraction < 1.0; });
   }
-  /// Returns true if the pair's level is.
+  /// Returns true if the pair is degraded.
   bool is_degraded(std::size_t p) const noexcept {
     return memory_.pairs[p].clearance_fraction < 1.0;
   }
@@ -83,48 +83,48 @@ class PairWatch {
   bool is_watched(std::size_t p) const noexcept {
     return !memory_.pairs[p].is_dropped && !memory_.pairs[p].is_settled;
   }
-  /// Lowers the pair's level by at least a quarter, to a multiple of a quarter that is at most
-  /// `most`. If there is none, drops the pair and remembers the reason.
+  /// Lowers the pair's clearance fraction by at least a quarter, to a multiple of a quarter of at
+  /// most `most`. If that is below 0, or the full demand is not above 0, drops the pair and
+  /// remembers the reason.
   void lower_clearance_fraction(std::size_t p, double most, Status reason) noexcept;
   /// Notes that the proof of a pair whose body no joint moves is complete.
   void settle(std::size_t p) noexcept { memory_.pairs[p].is_settled = true; }
   /// Returns true if no joint moves the pair's body.
   bool is_immovable(std::size_t p) const noexcept;
-  /// Returns why a pair whose body a joint moves was dropped last; free if none was.
+  /// Returns the reason for which a pair whose body a joint moves was dropped last, or free.
   Status dropped_for() const noexcept { return dropped_for_; }
-  /// Lists the degraded pairs. Returns the least level of all pairs.
+  /// Lists the degraded pairs. Returns the least clearance fraction of all pairs.
   double list_degraded() noexcept;
-  /// Returns the list.
+  /// Returns the degraded pairs, after list_degraded().
   std::span<const DegradedClearance> degraded() const noexcept { return memory_.degraded.view(); }
 
-  /// Returns true if some body is closer than margin - band.
+  /// Returns true if any body recovers: its certified clearance is below margin - band.
   bool is_recovering() const noexcept { return is_recovering_; }
-  /// Returns true if the pair's body is.
+  /// Returns true if the pair's body recovers.
   bool is_recovering(std::size_t p) const noexcept { return full_demand(p) < target(p); }
 
-  /// Follows the trial motion of the joints. Call it after each PointMotion::set_trial.
+  /// Computes the bounds of the trial motion. Call it after each PointMotion::set_trial.
   void update_bounds() noexcept;
-  /// Proves the trial motion for one pair, as far as possible; the normals of its rows are tried
-  /// first. Sets the obstacle to the proof. Returns free, also if there is an obstacle or if the
-  /// budget ended in the proof (see Certificate::Obstacle). Returns over_capacity or out_of_budget
-  /// if the triangles nearby are not known: the obstacle is then at the start.
+  /// Proves as much of the trial motion as possible for one pair, and sets the obstacle. Tries the
+  /// normals of the pair's rows first. Returns free, also if there is an obstacle or if the budget
+  /// ended in the proof (see Certificate::Obstacle). Returns over_capacity or out_of_budget, with
+  /// the obstacle at the start, if the triangles nearby are not known.
   Status judge(std::size_t p, std::span<const Row> rows, Certificate::Obstacle& obstacle) noexcept;
-  /// Returns true if a pair that was judged in this cycle has a triangle that owes: see
-  /// Certificate::owes.
+  /// Returns true if a pair that was judged in this cycle has a deficit: see Certificate::owes.
   bool owes() const noexcept { return owes_; }
-  /// Returns the number of triangles in reach of one body and one motion, at the most.
+  /// Returns the largest number of triangles in reach of one body on one motion.
   std::size_t triangles_in_reach() const noexcept { return in_reach_; }
 
   /// Returns the triangles that may be nearer than `distance` to the body's core at the start of
-  /// the cycle, nearest first; nothing if they are not known because the budget or the capacity
-  /// ended. Precondition: triangles are known up to `distance`: up to vicinity(), in which the row
-  /// margin of a body that recovers is, after open(); up to the reach of the trial after judge().
-  /// [length]
+  /// the cycle, nearest first. Empty if they are not known because the budget or the capacity
+  /// ended. Precondition: triangles are known up to `distance`. After open() they are known up to
+  /// vicinity(), which includes the row margin of a recovering body; after judge(), up to the reach
+  /// of the trial. [length]
   std::span<NearTriangle> nearer_than(std::size_t p, double distance) noexcept {
     return memory_.pairs[p].triangles.nearer_than(distance, memory_.budget);
   }
-  /// Returns a triangle that may limit the body, its gap measured; null if it is not near any more,
-  /// or if the triangles nearby are not known (then judge() reports why).
+  /// Returns a triangle that may limit the body, with its gap measured. Returns null if it is not
+  /// near any more, or if the triangles nearby are not known (judge() then reports the cause).
   NearTriangle* find(std::size_t p, TriangleId id) noexcept;
 
   /// Remembers the certified clearances for the next cycle: lowers those of degraded pairs.

@@ -6,7 +6,7 @@
 namespace keepout {
 namespace {
 
-constexpr std::size_t work_of_kinematics = 4;  // in work units: a third of a microsecond
+constexpr std::size_t work_of_kinematics = 4;  // in work units: about a third of a microsecond
 
 }  // namespace
 
@@ -68,7 +68,7 @@ const ChainState& PointMotion::chain_at(int knot) noexcept {
   return knot == 0 ? start_ : chain_at_fraction(static_cast<double>(knot) / last_knot);
 }
 
-/// Returns the chain at a fraction of the motion; computes it unless it is the last one computed.
+/// Returns the chain at a fraction of the motion. Computes it unless it is the last one computed.
 const ChainState& PointMotion::chain_at_fraction(double fraction) noexcept {
   if (number_of_state_ == number_ && fraction_of_state_ == fraction) return state_;
   budget_->spend(work_of_kinematics);

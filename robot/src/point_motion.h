@@ -20,8 +20,8 @@ using JointVector = std::array<double, Chain::most_joints>;
 /// The positions of the points of a body's core. [length]
 using CorePositions = std::array<Vec3, Instrument::most_points_of_a_body>;
 
-/// The motion of an instrument's points while the joints move by an increment: their positions at
-/// the knots of a grid, fractions 0, 1/64, ..., 1 of the motion, and bounds of the motion between
+/// The motion of an instrument's points while the joints move by an increment. It has their
+/// positions at the knots of a grid (fractions 0, 1/64, ..., 1), and bounds of the motion between
 /// knots. Positions are computed when they are first needed.
 class PointMotion {
  public:
@@ -31,17 +31,18 @@ class PointMotion {
   /// The positions of all points at a knot.
   struct Positions {
     std::array<Vec3, Instrument::most_points> points;
-    std::uint64_t motion_number = 0;  // of the motion that they are of; 0: not computed yet
+    std::uint64_t motion_number = 0;  // the number of their motion; 0: not computed yet
   };
 
-  /// Both must outlive it.
+  /// Both arguments must outlive this object.
   PointMotion(const Instrument& instrument, Budget& budget);
 
   /// Begins a cycle, with the joints at q (n). Until set_trial() the increment is that of the last
   /// cycle, and positions are known at the start only.
   void begin_cycle(std::span<const double> q) noexcept;
 
-  /// Sets the motion from there: dq.
+  /// Sets the motion of the cycle, which begins at q: dq. `which`: the true motion, or the
+  /// linearized one.
   void set_trial(const JointVector& increment, CertifiedMotion which) noexcept;
 
   /// Returns the motion: dq.
@@ -53,8 +54,7 @@ class PointMotion {
   const Vec3* points_at_start() const noexcept { return positions_[0].points.data(); }
   /// Returns the chain at the start of the cycle.
   const ChainState& chain_at_start() const noexcept { return start_; }
-  /// Returns the chain at a knot. Valid until it is asked for at another one, or a pose or points
-  /// are.
+  /// Returns the chain at a knot. Valid until the next call of chain_at, flange_at or points_at.
   const ChainState& chain_at(int knot) noexcept;
   /// Returns the pose of the flange at a fraction of the motion, in [0, 1].
   Pose flange_at(double fraction) noexcept;

@@ -14,13 +14,13 @@
 namespace keepout {
 
 /// The motion of an instrument's points in the frame of a mesh. The mesh may have any pose, and may
-/// move in the cycle: its frame's origin on a straight line, while it turns about that origin, both
-/// steadily. That is as if two more joints were between the mesh and the instrument's base: one
-/// that turns, and beyond it one that slides (docs/joint-space-step.md, Lemma 3). Positions are in
-/// the frame of the mesh unless the name says otherwise.
+/// move in the cycle. Its frame's origin then moves on a straight line, and the mesh turns about
+/// that origin, both at constant speed. This equals two more joints between the mesh and the
+/// instrument's base: a revolute one, then a prismatic one (docs/joint-space-step.md, Lemma 3).
+/// Positions are in the frame of the mesh unless the name says otherwise.
 class RelativeMotion {
  public:
-  /// `motion`: of the points in the world; it must outlive this one.
+  /// `motion`: that of the points in the world. Both arguments must outlive this object.
   RelativeMotion(const Instrument& instrument, PointMotion& motion);
 
   /// Begins a cycle, after `motion` has begun it, with the pose of the mesh and its displacement in
@@ -48,10 +48,11 @@ class RelativeMotion {
   std::span<const Vec3> core_at(std::size_t body, int knot, CorePositions& core) noexcept;
   /// Returns the positions of all points at the start of the cycle. [length]
   const Vec3* start_in_mesh() noexcept { return points_in_mesh(0); }
-  /// Returns a bound of a point's second derivative by the fraction of the motion. [length]
-  double bend(std::size_t point) const noexcept { return bounds_[point].bend; }
-  /// Returns a bound of the distance from its start of any point of a body, on all of the motion.
+  /// Returns a bound of a point's second derivative with respect to the fraction of the motion.
   /// [length]
+  double bend(std::size_t point) const noexcept { return bounds_[point].bend; }
+  /// Returns a bound of the displacement of all points of a body on the whole motion (rho of
+  /// docs/joint-space-step.md, Lemma 5). [length]
   double largest_displacement(std::size_t body) noexcept;
   /// Returns true if the mesh moves in the cycle.
   bool is_moving() const noexcept { return turn_ > 0.0 || !displacement_.linear.isZero(0.0); }

@@ -28,10 +28,13 @@ struct CorePoint {
 };
 
 /// A linear constraint on the joints' increment that limits a point of a body by a plane with one
-/// triangle behind it, or a guide by a plane that touches its region:
-/// gradient . dq >= bound + correction - drift, less PairWatch::degradation for a body.
-/// JointProblem relaxes bound and correction if need be. A row only proposes; the certificate
-/// decides.
+/// triangle behind it, or a guide by a plane that touches its region. It
+/// demands
+///
+///     gradient . dq >= bound + correction - drift,
+///
+/// for a body minus PairWatch::degradation. JointProblem relaxes bound and correction if need be. A
+/// row only proposes; the certificate decides.
 struct Row {
   std::size_t owner;    // a pair or a guide: see owner_of_guide
   TriangleId triangle;  // no_triangle for a guide

@@ -10,7 +10,7 @@
 namespace keepout {
 namespace {
 
-/// Returns the normal nearest to `wanted`, on the way from `valid`, that is valid.
+/// Returns the valid normal that is nearest to `wanted` on the arc from `valid`.
 template <class IsValid>
 Vec3 turned_back(const Vec3& valid, const Vec3& wanted, const IsValid& is_valid) noexcept {
   if (is_valid(wanted)) return wanted;
@@ -44,7 +44,7 @@ std::optional<Row> RowMaker::at_contact(std::size_t pair, const NearTriangle& tr
   const Vec3 at = position_of(pair, point, 0);
   const ClosestPoint closest = closest_point(corners, at);
   if (!(closest.distance > 0.0)) return std::nullopt;
-  // So that the start satisfies the row, or misses it by no more than its distance does.
+  // With this height, the start satisfies the row unless the body is closer than the row margin.
   const double needed_height =
       std::min(pairs_.radius(pair) + pairs_.row_margin(pair), closest.distance) - memory_.tolerance;
   const Vec3 straight = -closest.offset / closest.distance;
@@ -158,7 +158,7 @@ void RowMaker::finish(Row& row, const Vec3& at, const Triangle& corners) const n
   row.offset =
       support(corners, row.normal) + pairs_.radius(row.owner) + pairs_.row_margin(row.owner);
   row.start_height = row.normal.dot(at) - row.offset;
-  // At least one tolerance: a body that owes it must gain a little.
+  // At least one tolerance: a body with a deficit must gain a little clearance.
   row.bound = std::min(-row.start_height, std::max(cycle_.options.recovery, memory_.tolerance));
   // Exactly 0 beside a still mesh: rounding could demand a motion that no joint can make.
   if (!motion.is_moving()) return;

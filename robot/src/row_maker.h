@@ -12,18 +12,18 @@ namespace keepout {
 /// motion.
 class RowMaker {
  public:
-  /// All must outlive it.
+  /// All arguments must outlive this object.
   RowMaker(CycleMemory& memory, const PairWatch& pairs, const CycleConstants& cycle) noexcept
       : memory_(memory), pairs_(pairs), cycle_(cycle) {}
 
   /// Returns a row for the body's point that is nearest to a triangle at a knot of the motion. The
   /// row limits that point alone, so that the body may roll and pivot over the triangle. Its normal
-  /// is that of the gap at the knot, turned back as far as the point's position at the start
-  /// requires. Returns no row if body and triangle touch.
+  /// is that of the gap at the knot, rotated towards the one at the start until the plane allows
+  /// the start. Returns no row if body and triangle touch.
   std::optional<Row> at_contact(std::size_t pair, const NearTriangle& triangle, int knot) noexcept;
 
-  /// Adds a row for each point of the body's core that a joint moves, all with one plane; none if
-  /// body and triangle touch at the start. Precondition: the triangle is measured.
+  /// Adds a row for each point of the body's core that a joint moves, all with one plane. Adds no
+  /// row if body and triangle touch at the start. Precondition: the triangle is measured.
   void at_vertices(std::size_t pair, const NearTriangle& triangle, int knot,
                    Buffer<Row>& rows) noexcept;
 

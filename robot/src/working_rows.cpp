@@ -12,8 +12,7 @@ constexpr int most_recovery_rows = 4;   // of a body
 constexpr double same_direction = 0.9;  // a larger cosine of two normals
 constexpr int most_corrections = 3;     // of a row
 
-/// Returns the knot at which a plane is put to keep a motion from an obstacle. At knot 0 nothing
-/// has moved yet.
+/// Returns the knot at which to place the plane for an obstacle. At knot 0 nothing has moved yet.
 int knot_of_plane(int proved_knot) noexcept { return std::max(proved_knot, 1); }
 
 }  // namespace
@@ -51,7 +50,7 @@ void WorkingRows::add_recovery_rows(std::size_t p) noexcept {
   const auto nearby = pairs_.nearer_than(p, distance);
   for (int count = 0; count < most_recovery_rows && !budget.is_spent(); ++count) {
     budget.spend(1 + nearby.size() * (1 + memory_.rows.size()) / 32);
-    // The nearest one without a row that pulls the body away from it.
+    // The nearest triangle from which no row pulls the body away.
     const NearTriangle* nearest = nullptr;
     for (const NearTriangle& triangle : nearby) {
       if (!triangle.is_measured || triangle.at_start.distance >= distance) continue;
@@ -83,7 +82,8 @@ bool WorkingRows::add(std::span<const Certificate::Obstacle> obstacles) noexcept
 }
 
 bool WorkingRows::add(const GuideWatch::Obstacle& obstacle) noexcept {
-  // The planes touch the region where the motion leaves it, and then where it ends.
+  // The first plane touches the region where the motion leaves it, the others where the motion
+  // ends.
   constexpr int most_planes = 4;
   const std::size_t owner = owner_of_guide(obstacle.guide);
   const auto planes = std::count_if(memory_.rows.begin(), memory_.rows.end(),
@@ -111,7 +111,7 @@ bool WorkingRows::add(std::size_t p, const NearTriangle& triangle, int knot) noe
   }
   if (contacts < 2) {
     auto row = maker_.at_contact(p, triangle, knot);
-    // A core that touches there has no normal: use the one at the start of the cycle.
+    // If the core touches there, it has no normal: use the one at the start of the cycle.
     if (!row) row = maker_.at_contact(p, triangle, 0);
     if (row) memory_.rows.push(*row);
   } else if (!has_vertices) {
@@ -120,8 +120,8 @@ bool WorkingRows::add(std::size_t p, const NearTriangle& triangle, int knot) noe
   return memory_.rows.size() > before;
 }
 
-/// Adds to a triangle's rows the height that the linear motion of their points predicted, less the
-/// height of the true motion.
+/// Corrects the rows of a triangle, by the height that the linear motion of their points predicted
+/// minus the height of the true motion. Returns true if any row changed.
 bool WorkingRows::correct(std::size_t owner, TriangleId triangle) noexcept {
   bool changed = false;
   for (Row& row : memory_.rows) {

@@ -11,10 +11,10 @@
 namespace keepout {
 
 /// The working set of one cycle: the rows on bodies and guides that it starts with, and those that
-/// are added as trial motions fail.
+/// it adds when trial motions fail.
 class WorkingRows {
  public:
-  /// Starts empty. All must outlive it.
+  /// Starts empty. All arguments must outlive this object.
   WorkingRows(CycleMemory& memory, PairWatch& pairs, GuideWatch& guides,
               const CycleConstants& cycle) noexcept
       : memory_(memory), pairs_(pairs), guides_(guides), maker_(memory, pairs, cycle) {
@@ -29,9 +29,9 @@ class WorkingRows {
   /// Adds the rows that the last cycle remembered, and for bodies and guides that recover, rows
   /// that pull them back.
   void add_first_rows() noexcept;
-  /// Adds rows for the obstacles to the last motion, one of each pair. Corrects the rows of a
-  /// triangle that has them all, but only if no row of an earlier pair has changed: the others are
-  /// corrected after later motions. Returns true if any row changed.
+  /// Adds rows for the obstacles to the last motion, one obstacle of each pair. If a triangle has
+  /// all of its rows, corrects them instead, unless rows of an earlier pair have changed: later
+  /// motions correct them then. Returns true if any row changed.
   bool add(std::span<const Certificate::Obstacle> obstacles) noexcept;
   /// Like add(obstacles), but for a guide that the motion violates beyond a knot.
   bool add(const GuideWatch::Obstacle& obstacle) noexcept;
@@ -39,19 +39,21 @@ class WorkingRows {
   /// Removes the rows of a pair or a guide.
   void remove(std::size_t owner) noexcept;
   /// Remembers the active rows of a solution, by their numbers, for the next cycle; ignores numbers
-  /// beyond the rows, which are limits of joints. A triangle with two active rows counts twice: the
-  /// next cycle then starts with two equal rows of it, and add() goes on with rows of the vertices.
+  /// beyond the rows, which are limits of joints. A triangle with two active rows counts twice. The
+  /// next cycle then starts with two equal rows of it, and add() continues with rows of the
+  /// vertices.
   void remember(std::span<const std::uint32_t> active) noexcept;
   /// Remembers all rows for the next cycle, after a cycle that found no motion.
   void remember_all() noexcept;
-  /// Turns the planes of the remembered rows to where they are at the end of the trial motion: all
-  /// rows of a remembered triangle become the row of its contact there, and all of a guide become
-  /// one. Gradients stay those at the start of the cycle. Returns true if any plane turned.
+  /// Rotates the planes of the remembered rows to those at the end of the trial motion
+  /// (re-linearization). All rows of a remembered triangle become the row of its contact there, and
+  /// all rows of a guide become one. Gradients stay those at the start of the cycle. Returns true
+  /// if any plane changed.
   bool turn_planes_to_end() noexcept;
   /// Restores the rows that turn_planes_to_end() has replaced.
   void turn_back() noexcept;
   /// Scales the corrections for curvature by a factor, for a motion that may be shorter, and allows
-  /// three more.
+  /// three more corrections.
   void scale_corrections(double factor) noexcept;
 
  private:

@@ -524,7 +524,7 @@ requests = [
     (instrument('"period":0'), "no_instrument", "period: expected a number above 0 and at most 1e9, got 0"),
     (instrument('"certified":"actul"'), "no_instrument", "certified: expected 'actual' or 'linearized', got 'actul'"),
     (instrument('"refinements":-1'), "no_instrument", "refinements: expected a whole number from 0", "got -1"),
-    (instrument(f'"frame":{doubled}'), "no_instrument", "the base of the chain is no pose"),
+    (instrument(f'"frame":{doubled}'), "no_instrument", "the base of the chain is not a pose"),
     (instrument('"frame":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,1,1]]'), "no_instrument", "last row of 'frame'"),
     (instrument("", '"capsules":[]'), not_a_request, "'capsules' must be", "at least one, and at most 16"),
     (instrument('"index":"wide_bhv"'), "no_instrument", "there is no", "wide_bhv"),

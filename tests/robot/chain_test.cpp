@@ -165,7 +165,7 @@ TEST(Chain, WhatIsNoChainIsRefusedAndTheMessageNamesTheJoint) {
   expect_refused(chain({.axis = Vec3(0, 0, 2)}), "joint 2 is not a unit vector");
   expect_refused(chain({.axis = Vec3(test::nan, 0, 1)}), "not a unit vector");
   expect_refused(chain({.origin = {Vec3(0, test::infinity, 0)}}),
-                 "the origin of joint 2 is no pose");
+                 "the origin of joint 2 is not a pose");
   expect_refused(chain({.origin = {Vec3::Zero(), -Mat3::Identity()}}), "the origin of joint 2");
   expect_refused(chain({.limits = {.lower = 1, .upper = 0}}), "lower limit above its upper");
   expect_refused(chain({.limits = {.lower = test::nan}}), "not a number");

@@ -161,7 +161,8 @@ TEST(Urdf, EachFaultOfAJointHasAMessageOfItsOwn) {
   expect_fault("upper=\"0.2\"", "upper=\"1e307\"", "'slide' has a limit that is not finite");
   expect_fault("upper=\"2\"", "upper=\"-2\"", "joint 'turn' has lower above upper limit");
   expect_fault("upper=\"2\"", "upper=\"nan\"", "joint [turn]");
-  expect_fault("xyz=\"0.1 0 0\"", "xyz=\"1e307 0 0\"", "the origin of joint 1 ('turn') is no pose");
+  expect_fault("xyz=\"0.1 0 0\"", "xyz=\"1e307 0 0\"",
+               "the origin of joint 1 ('turn') is not a pose");
   expect_fault("xyz=\"0.1 0 0\"", "xyz=\"0.1 0 nan\"", "joint [turn]");
 }
 

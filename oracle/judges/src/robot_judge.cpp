@@ -11,11 +11,11 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int parts_of_a_cycle = 8;
-constexpr int refinements = 3;               // around the worst place
+constexpr int refinements = 3;               // around the worst pose
 constexpr double angular_tolerance = 1e-12;  // [chord]
 
-/// Returns true if all joints may go there, apart from rounding. A joint outside of its limits may
-/// stay, or come back.
+/// Returns true if all joints may move to `to`, up to rounding. A joint outside its limits may stay
+/// or return.
 bool are_allowed(const Chain& chain, std::span<const double> from, std::span<const double> to,
                  double period) {
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -30,15 +30,16 @@ bool are_allowed(const Chain& chain, std::span<const double> from, std::span<con
   return true;
 }
 
-/// Returns the certified distance of a pair or a guide that should keep `target`, is at `distance`,
-/// and was promised `floor` last. Source: docs/joint-space-step.md, "Certified clearance".
+/// Returns the certified clearance of a pair or a guide with target clearance `target`, at
+/// `distance`, that was promised `floor` last. Source: docs/joint-space-step.md, "Certified
+/// clearance".
 double certified(double distance, double floor, double target, double band, double tolerance) {
   if (distance >= target - 2.75 * tolerance) return target;
   const double room = distance > 0.0 ? std::min(band, 0.5 * distance) : band;
   return std::clamp(distance - room, std::min(floor, target), target);
 }
 
-/// Returns the fraction of the certified distance that a step promises to a body and a mesh.
+/// Returns the clearance fraction that a step promises to a body and a mesh.
 double promised_fraction(const InstrumentStep& step, std::size_t body, std::size_t mesh) {
   if (!step.ok()) return step.clearance_fraction;
   for (const DegradedClearance& pair : step.degraded) {
@@ -139,8 +140,8 @@ void RobotJudge::measure(std::span<const double> next, double share) {
   }
 }
 
-/// Measures, notes the least distances, and returns the smallest difference of a distance and what
-/// is due.
+/// Measures, notes the least distances, and returns the smallest difference of a distance and the
+/// due one.
 double RobotJudge::measure_and_note(std::span<const double> next, double share) {
   measure(next, share);
   double room = infinity;
@@ -198,7 +199,7 @@ void RobotJudge::sample(std::span<const double> next) {
     try_at(std::max(middle - step, 0.0));
     try_at(std::min(middle + step, 1.0));
   }
-  measure_and_note(next, 1.0);  // where the next cycle begins
+  measure_and_note(next, 1.0);  // the start of the next cycle
   for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].distance = distances_[i];
   std::ranges::copy(next, positions_.begin());
   for (Mesh& mesh : meshes_) mesh.pose = pose_at(mesh, 1.0);

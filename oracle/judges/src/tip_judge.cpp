@@ -57,7 +57,7 @@ bool TipJudge::is_too_long(const Motion& motion, const Step& step) const noexcep
   const double length = step.motion.norm();
   if (!(length <= options_.radius * (1.0 + 2e-9))) return true;
   const bool is_projection = !motion.jacobian && step.status != Status::recovering;
-  // A tip that lost some tau of its distance recovers by as much on top.
+  // A tip that lost some tau of its distance may also recover by as much.
   const double tau = surface_->tolerance(options_, motion.tip);
   return is_projection && length > motion.desired.norm() * (1.0 + 1e-9) + 3.0 * tau;
 }

@@ -34,9 +34,10 @@ struct RigidFit {
   double estimated_fle() const noexcept;
 
   /// Returns why a fiducial localization error contradicts the residuals; empty if it does not.
-  /// It does if fewer than one in a thousand registrations with that error, alike in all
-  /// directions, has so large an FRE: N FRE^2 / (FLE^2 / 3) is chi-squared with 3 N - 6 degrees of
-  /// freedom. fle: root mean square, above 0, as estimated_fle() [length]. Throws Error otherwise.
+  /// It contradicts them if less than one in a thousand registrations with that error, equal in
+  /// all directions, has so large an FRE. N FRE^2 / (FLE^2 / 3) is chi-squared with 3 N - 6 degrees
+  /// of freedom. `fle`: root mean square, above 0, like estimated_fle() [length]. Throws Error for
+  /// another number.
   std::string doubt_of(double fle) const;
 };
 

@@ -11,17 +11,16 @@
 
 namespace keepout::oracle {
 
-/// The convex hull of a few points: a point, a segment, a flat blade or a solid one.
+/// The convex hull of a few points: a point, a segment, a flat blade or a solid.
 ///
-/// The distance from a triangle is the least over edges of the hull and the triangle, and over
-/// faces of the hull and the triangle's edges; each is a distance of a segment and a triangle,
-/// bracketed by narrow_distance(). Which pairs and triples of points are edges and faces is found
-/// once. Doubtful ones are included: all of them are within the hull, so they cannot make the
-/// distance too small. Only a triangle that is wholly inside is found otherwise, as a point in a
-/// solid.
+/// The distance from a triangle is the least of two kinds: from an edge of the hull to the
+/// triangle, and from a face of the hull to an edge of the triangle. Both kinds use
+/// narrow_distance(). The constructor determines which pairs and triples of points are edges and
+/// faces. It includes doubtful ones: they are within the hull, so they cannot make the distance too
+/// small. A triangle that is wholly inside is detected separately, by a point in the solid.
 ///
-/// Most pairs are passed over by a direction that separates them. However it was found, no pair is
-/// nearer than its heights along it say.
+/// A separating direction excludes most pairs: for any direction, no pair is nearer than the
+/// difference of its heights along it.
 class Hull {
  public:
   static constexpr std::size_t most_points = 64;
@@ -30,18 +29,20 @@ class Hull {
   explicit Hull(std::span<const Vec3> points);
 
   std::span<const Vec3> points() const noexcept { return points_; }
-  /// Moves the hull rigidly; a segment may change its length as well. Precondition: as many points.
+  /// Moves the hull rigidly; a segment may also change its length. Precondition: the number of
+  /// points is unchanged.
   void move_to(std::span<const Vec3> points);
 
-  /// A ball that contains the hull. [length]
+  /// Returns the center and the radius of a ball that contains the hull. [length]
   const Vec3& center() const noexcept { return center_; }
   double radius() const noexcept { return radius_; }
 
   /// Returns a lower bound of the distance from a point, cheap and rounded. [length]
   double least_distance(const Vec3& point) const noexcept;
 
-  /// Brackets the distance from a triangle narrowly; 0 if and only if they touch, or the triangle
-  /// is inside by more than rounding. If it is surely more than `enough`, the bracket may be wide.
+  /// Returns a narrow bracket of the distance from a triangle. It is 0 if and only if they touch,
+  /// or the triangle is inside by more than rounding. If the distance is certainly more than
+  /// `enough`, the bracket may be wide.
   Bracket distance(const Triangle& triangle,
                    double enough = std::numeric_limits<double>::infinity()) const;
 

@@ -14,11 +14,12 @@
 
 namespace keepout::oracle {
 
-/// Judges where the bodies of an instrument are beside a mesh, and believes nothing that the
-/// library computes: kinematics, distances and search are its own.
+/// Measures the clearance of an instrument's bodies from a mesh, independently of the library:
+/// kinematics, distances and search are its own.
 ///
-/// One that moves a little at a time is followed cheaply: each body remembers the triangles that
-/// were near, and how far it has gone since. The answers do not depend on it. One oracle a thread.
+/// It is fast if an instrument moves a little at a time: each body remembers the triangles that
+/// were near, and its displacement since then. Results do not depend on this memory. One oracle for
+/// each thread.
 class InstrumentOracle {
  public:
   /// `base`: the pose of link 0. Throws std::invalid_argument for a body without points or with
@@ -28,25 +29,26 @@ class InstrumentOracle {
   const JudgedRobot& robot() const noexcept { return robot_; }
   std::size_t bodies() const noexcept { return robot_.bodies.size(); }
 
-  /// From now on the joints are at `positions` [rad or length].
+  /// Moves the joints to `positions` [rad or length].
   void move_to(std::span<const double> positions);
-  /// Like move_to(positions), but also moves link 0 to `base`, as the mesh sees it: for a mesh that
-  /// moves.
+  /// Like move_to(positions), but also moves link 0 to `base`, in the frame of the mesh: for a mesh
+  /// that moves.
   void move_to(std::span<const double> positions, const Pose& base);
 
-  /// The frames of the links at these positions, the base first, as the mesh sees them.
+  /// Returns the frames of the links at these positions, the base first, in the frame of the mesh.
   std::span<const LinkFrame> links() const noexcept { return links_; }
 
-  /// The segment from a body's first point to its last one: the axis of a capsule. [length]
+  /// Returns the segment from a body's first point to its last one: the axis of a capsule. [length]
   Segment axis(std::size_t body) const noexcept {
     return {cores_[body].points().front(), cores_[body].points().back()};
   }
 
-  /// The distance of the surface of the body from the mesh, to 1e-9 of the distance of its core and
-  /// some 1e-12 of the coordinates; less than 0 when the mesh reaches into it, and minus its radius
-  /// only where its core touches. Infinite when that is more than `reach`. [length]
+  /// Returns the distance of the body's surface from the mesh, accurate to 1e-9 of the distance of
+  /// its core and about 1e-12 of the coordinates. It is below 0 if the mesh reaches into the body,
+  /// and minus the radius only if the core touches the mesh. Infinite if it is more than `reach`.
+  /// [length]
   double clearance(std::size_t body, double reach);
-  /// The smallest clearance of all bodies.
+  /// Returns the smallest clearance of all bodies.
   double clearance(double reach) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t b = 0; b < bodies(); ++b) least = std::min(least, clearance(b, reach));
@@ -59,20 +61,20 @@ class InstrumentOracle {
     Vec3 center;
     double radius;  // of a ball around the triangle
   };
-  /// A neighbor, and how far away it is at least, plus how far the body had travelled when that
-  /// was found out: the sum need not be kept up to date while the body travels on.
+  /// A neighbor and its key: a lower bound of its distance, plus the path length of the body when
+  /// the bound was computed. So the key needs no update while the body moves on.
   struct Entry {
     double key;
     std::uint32_t neighbor;
   };
-  /// What was around a body, and how far it has travelled since.
+  /// The triangles near a body, and its path length since they were fetched.
   struct Surroundings {
-    double known = -1.0;  // all triangles that were nearer than that are here
-    double slack = 1.0;   // beyond what was asked for
+    double known = -1.0;  // all triangles that were nearer are in `neighbors`
+    double slack = 1.0;   // added to the requested distance
     double travelled = 0.0;
     std::vector<Vec3> last = {};  // the points of its core at the last call
     std::vector<Neighbor> neighbors = {};
-    std::vector<Entry> heap = {};  // those that may be nearest first
+    std::vector<Entry> heap = {};  // the least key first
   };
 
   void look_around(Surroundings& around, const Hull& core, double reach);

@@ -8,8 +8,8 @@
 
 namespace keepout::oracle {
 
-/// A guide told once more, in the judge's own terms: something of a robot, and the convex region in
-/// which it is to stay.
+/// A guide in the judge's own terms: a guided part of a robot, and the convex region in which it
+/// must stay.
 struct JudgedGuide {
   enum class Kind : std::uint8_t {
     point,         // `first` stays in the region
@@ -27,11 +27,11 @@ struct JudgedGuide {
   Vec3 origin = Vec3::Zero();      // [length]
   Vec3 direction = Vec3::UnitZ();  // unit: into a half-space, normal of a slab, along a tube
   double radius = 0.0;             // of a slab half the width; of a half-space 0 [length]
-  double band = 0.0;               // by how much the region may be left [length, or chord]
+  double band = 0.0;               // the excess that is allowed [length, or chord]
 };
 
-/// Returns how far the guided point is out of its region, in long double; below 0 it is inside.
-/// `links`: of the robot, in the frame of the region. [length, or chord]
+/// Returns the distance of the guided point from its region, computed in long double; below 0
+/// inside. `links`: those of the robot, in the frame of the region. [length, or chord]
 double excess(const JudgedGuide& guide, std::span<const LinkFrame> links);
 
 }  // namespace keepout::oracle

@@ -10,8 +10,9 @@
 
 namespace keepout::oracle {
 
-/// A row of a table after Denavit and Hartenberg as Craig has it: about x, along x, about z, along
-/// z. A joint turns or moves along z, and the frame behind the row is its link's.
+/// A row of a Denavit-Hartenberg table in Craig's convention: a rotation about x, a displacement
+/// along x, a rotation about z, a displacement along z. The joint turns about z or slides along z.
+/// The frame after the row is that of its link.
 struct TableRow {
   bool slides = false;        // the position is added to d, and not to theta
   double a = 0.0;             // along x [length]
@@ -26,22 +27,23 @@ struct JudgedPoint {
   Vec3 position = Vec3::Zero();  // in the frame of the link [length]
 };
 
-/// A body that keeps clear: all within `radius` of the convex hull of its points, 1 to 8. Three
-/// points or more are on one link.
+/// A body that must stay clear: all points within `radius` of the convex hull of 1 to 8 points.
+/// Three points or more must be on one link.
 struct JudgedBody {
   std::vector<JudgedPoint> points;
   double radius = 0.0;  // [length]
 };
 
-/// A robot told once more, in numbers of the judge's own.
+/// A robot in the judge's own numbers.
 struct JudgedRobot {
   std::vector<TableRow> table;
   std::vector<JudgedBody> bodies;
 };
 
-/// The da Vinci research kit's manipulator with an 8 mm instrument, as its tables have it. [mm]
+/// Returns the manipulator of the da Vinci Research Kit with an 8 mm instrument, from its published
+/// tables. [mm]
 JudgedRobot judged_psm();
-/// KUKA LBR iiwa 7 with a straight shaft and a cutter. [mm]
+/// Returns a KUKA LBR iiwa 7 with a straight shaft and a cutter. [mm]
 JudgedRobot judged_seven_joint_arm();
 
 /// The pose of a link, in the frame in which the base was given.
@@ -56,8 +58,8 @@ struct LinkFrame {
   }
 };
 
-/// Returns the frames of the links, the base first, in long double from link to link. `base`: the
-/// pose of link 0. Precondition: a position for each row [rad or length].
+/// Returns the frames of the links, the base first, computed in long double. `base`: the pose of
+/// link 0. Precondition: one position for each row [rad or length].
 std::vector<LinkFrame> place(const JudgedRobot& robot, const Pose& base,
                              std::span<const double> positions);
 

@@ -12,8 +12,8 @@
 
 namespace keepout::oracle {
 
-/// The triangles around a moving place, side by side in memory: a tip that moves a little at a time
-/// rarely needs the tree. For one thread; it allocates when it fetches.
+/// The triangles around a moving point, stored contiguously: a tip that moves a little at a time
+/// rarely needs the tree. For one thread; allocates when it fetches.
 class Neighborhood {
  public:
   struct Neighbor {
@@ -21,7 +21,7 @@ class Neighborhood {
     Triangle triangle;
     TriangleId id;
   };
-  /// Some that are near each other, passed over at once where their bounds are out of the way.
+  /// Neighbors that are near each other; their common bounds exclude all of them at once.
   struct Group {
     Bounds bounds;
     std::span<const Neighbor> neighbors;
@@ -29,8 +29,8 @@ class Neighborhood {
 
   explicit Neighborhood(std::shared_ptr<const TriangleTree> tree);
 
-  /// At least each triangle whose bounds overlap the box, once. The order of any two of them is
-  /// always the same. Valid until the next call.
+  /// Returns each triangle whose bounds overlap the box once, and perhaps others. The order of any
+  /// two triangles is always the same. Valid until the next call.
   std::span<const Group> around(const Bounds& box) {
     if (!region_.contains(box)) fetch(box);
     return groups_;
@@ -47,49 +47,49 @@ class Neighborhood {
   std::vector<Group> groups_;
 };
 
-/// What became of a way.
+/// The result for one segment.
 struct Finding {
-  bool crosses = false;  // it touches the mesh: their distance is exactly 0
+  bool crosses = false;  // it touches the mesh: the distance is exactly 0
   bool below = false;    // its distance from the mesh is less than the threshold, exactly
   double distance =
       std::numeric_limits<double>::infinity();  // [length]; infinite: beyond the reach
-  TriangleId triangle = no_triangle;            // the nearest; of equally near ones the lowest id
+  TriangleId triangle = no_triangle;  // the nearest; if several are equally near, the lowest id
 };
 
-/// Judges the ways of a tool tip past a mesh, and believes nothing that the engine computes: it
-/// takes the mesh as data and has a geometry, a search and an arithmetic of its own.
+/// Judges the motions of a tool tip near a mesh, independently of the engine: it takes the mesh as
+/// data, and its geometry, search and arithmetic are its own.
 ///
-/// `crosses` and `below` are right for the real numbers that the doubles stand for, on every
-/// mesh: open, degenerate, self-intersecting, far from the origin. `distance` is within 1e-9 of
-/// itself, and agrees with the two: it is 0 if and only if the way crosses, <= the threshold when
-/// below, and >= the threshold when not.
+/// `crosses` and `below` are exact for the real numbers that the doubles represent, on every mesh:
+/// open, degenerate, self-intersecting, far from the origin. `distance` has a relative error of at
+/// most 1e-9 and agrees with both. It is 0 if and only if the segment crosses. It is <= the
+/// threshold if below, and >= the threshold if not.
 ///
-/// The answers do not depend on what was asked before; the time does. A way near the last one takes
-/// a microsecond or two in contact with a mesh of a million triangles, less in free space. One that
-/// takes exact arithmetic - some 2^-47 of the size of a triangle in reach around the threshold, or
-/// all but a touch - takes some 10 us for each such triangle.
+/// Results do not depend on earlier calls; the time does. A segment near the last one takes 1 to 2
+/// µs in contact with a mesh of a million triangles, and less in free space. Exact arithmetic takes
+/// about 10 µs for each triangle that needs it: whose distance is within about 2^-47 of its size of
+/// the threshold, or that almost touches.
 ///
-/// One oracle a thread. Copies are cheap: they share what was built.
+/// One oracle for each thread. Copies are cheap: they share the tree.
 class SafetyOracle {
  public:
-  /// O(n log n): about 2 s for a million triangles.
+  /// Builds the tree in O(n log n): about 2 s for a million triangles.
   explicit SafetyOracle(std::shared_ptr<const Mesh> mesh);
 
-  /// Judges the closed segment from `from` to `to`, which may coincide. The distance is told when
-  /// it is at most `reach`, or the threshold if that is more. Throws std::invalid_argument unless
-  /// all are finite and the threshold is >= 0.
+  /// Judges the closed segment from `from` to `to`, which may coincide. Returns the distance if it
+  /// is at most `reach` and threshold, whichever is larger. Throws std::invalid_argument unless all
+  /// numbers are finite and the threshold is >= 0.
   Finding check(const Vec3& from, const Vec3& to, double threshold, double reach = 0.0);
 
-  /// The distance of a point from the mesh [length], within 1e-9 of itself, and 0 if and only if
-  /// the point is on the mesh. O(log n) where the mesh is not everywhere as near. Precondition:
-  /// finite coordinates.
+  /// Returns the distance of a point from the mesh [length], with a relative error of at most 1e-9.
+  /// It is 0 if and only if the point is on the mesh. O(log n), unless many triangles are equally
+  /// near. Precondition: finite coordinates.
   double distance(const Vec3& point) const;
 
-  /// The tree of the mesh's triangles, for other judges of the same mesh.
+  /// Returns the tree of the mesh's triangles, for other judges of the same mesh.
   const std::shared_ptr<const TriangleTree>& tree() const noexcept { return tree_; }
 
-  /// Strictly inside a closed mesh, exactly, whatever the winding; nothing when an edge of the mesh
-  /// has an odd number of triangles. Some 10 us to 100 us.
+  /// Returns true if the point is strictly inside the closed mesh: exact, for any winding. Empty if
+  /// an edge of the mesh has an odd number of triangles. Takes about 10 µs to 100 µs.
   std::optional<bool> inside(const Vec3& point) const { return inside_test_->inside(point); }
 
  private:

@@ -17,7 +17,7 @@ struct Bounds {
   Vec3 low;
   Vec3 high;
 
-  /// Boxes that touch overlap. Exact: comparisons only.
+  /// Returns true if the boxes overlap or touch. Exact: only comparisons.
   bool overlaps(const Bounds& other) const noexcept {
     return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
   }
@@ -26,7 +26,7 @@ struct Bounds {
   }
 };
 
-/// The smallest boxes: exact.
+/// Return the smallest boxes, exactly.
 inline Bounds bounds_of(const Triangle& t) noexcept {
   return {t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])};
 }
@@ -37,45 +37,46 @@ inline Bounds united(const Bounds& a, const Bounds& b) noexcept {
   return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
 }
 
-/// A box that holds everything within `reach` [length, >= 0] of the box. The sum is rounded, by at
-/// most 2^-53 of itself, so 2^-52 of itself, at least the distance to the next double, is added.
+/// Returns a box that contains all points within `reach` [length, >= 0] of a box. The sum has a
+/// rounding error of at most 2^-53 of itself, so 2^-52 of itself is added, which is at least the
+/// distance to the next double.
 inline Bounds inflated(const Bounds& box, double reach) noexcept {
   const Eigen::Array3d low = box.low.array() - reach;
   const Eigen::Array3d high = box.high.array() + reach;
   return {low - (low.abs() * 0x1p-52 + 1e-300), high + (high.abs() * 0x1p-52 + 1e-300)};
 }
 
-/// Finds the triangles in some place. A binary tree of boxes, split at the median center along the
-/// longest side: its depth is log2 n and its size 2 n whatever the triangles are like, huge, equal
-/// or in one place. Immutable, so any number of threads may ask.
+/// Finds the triangles in a region. It is a binary tree of boxes, split at the median center along
+/// the longest side. Its depth is log2 n and its size 2 n for any triangles: huge, equal or in one
+/// place. It is immutable, so any number of threads may use it.
 ///
-/// Boxes are the exact bounds of their triangles, and each test is either made of comparisons only
-/// or widened by more than its rounding: extras are possible, misses are not.
+/// Boxes are the exact bounds of their triangles. Each test either consists of comparisons only, or
+/// is widened by more than its rounding. So it may return extra triangles, but misses none.
 class TriangleTree {
  public:
-  /// O(n log n), about 1 s for a million triangles; 64 bytes a triangle.
+  /// Builds the tree in O(n log n): about 1 s for a million triangles, 64 bytes for each triangle.
   explicit TriangleTree(std::shared_ptr<const Mesh> mesh);
 
   const Mesh& mesh() const noexcept { return *mesh_; }
   const Bounds& bounds() const noexcept { return nodes_[0].bounds; }
 
-  /// Appends each triangle whose bounds overlap the box, once, in an order of the tree's own that
-  /// does not depend on the box.
+  /// Appends each triangle whose bounds overlap the box, once, in an order that does not depend on
+  /// the box.
   void collect(const Bounds& box, std::vector<TriangleId>& out) const;
 
-  /// Appends, once, each triangle that touches the segment, and others close to it.
-  /// Precondition: no coordinate of `to` equals that of `from`.
+  /// Appends each triangle that touches the segment once, and perhaps others near it. Precondition:
+  /// no coordinate of `to` equals that of `from`.
   void collect_along(const Segment& segment, std::vector<TriangleId>& out) const;
 
-  /// Appends, once, each triangle within `reach` [length, >= 0] of the segment, and others farther.
+  /// Appends each triangle within `reach` [length, >= 0] of the segment once, and perhaps others.
   void collect_within(double reach, const Segment& segment, std::vector<TriangleId>& out) const;
 
   struct Nearest {
     TriangleId triangle;
-    Bracket distance;  // low holds for all triangles; estimate and high are of the one named
+    Bracket distance;  // low holds for all triangles; estimate and high for `triangle`
   };
-  /// The triangle whose estimated distance from the point is least: a narrow bracket, and 0 if and
-  /// only if the point is on the mesh.
+  /// Returns the triangle whose estimated distance from the point is least, with a narrow bracket.
+  /// The distance is 0 if and only if the point is on the mesh.
   Nearest nearest(const Vec3& point) const;
 
  private:

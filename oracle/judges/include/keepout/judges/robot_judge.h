@@ -18,23 +18,23 @@ namespace keepout::oracle {
 
 /// The verdict on one cycle of an instrument.
 struct RobotVerdict {
-  /// Smallest clearance of all bodies at all poses; infinite beyond the margin. [length]
+  /// The smallest clearance of all bodies at all poses; infinite beyond the margin. [length]
   double least = std::numeric_limits<double>::infinity();
-  /// The smallest of these clearances less what was promised to body and mesh. [length]
+  /// The smallest difference of a clearance and the promised clearance of its pair. [length]
   double beyond = std::numeric_limits<double>::infinity();
-  /// The smallest distance of a guided point to the edge of what is promised, in tolerances of the
-  /// guide; below 0 if the point is beyond the edge.
+  /// The smallest difference of a guided point's depth in its region and the promised depth, in
+  /// tolerances of the guide.
   double guide_room = std::numeric_limits<double>::infinity();
   bool is_below = false;       // a body came closer than promised, beyond rounding
-  bool is_guide_left = false;  // a guide was left by more than is promised, beyond rounding
-  bool limits_broken = false;  // a joint left its limits, or moved farther than a cycle admits
+  bool is_guide_left = false;  // a guide was left by more than promised, beyond rounding
+  bool limits_broken = false;  // a joint left its limits, or moved farther than a cycle allows
 };
 
 /// The robot, meshes and guides in the terms of the judge.
 struct JudgedScene {
   struct Mesh {
     std::shared_ptr<const TriangleTree> tree;
-    double margin = 0.0;  // of its own; 0: that of the options [length]
+    double margin = 0.0;  // its own margin; 0: that of the options [length]
     Pose pose = {};
   };
 
@@ -45,44 +45,45 @@ struct JudgedScene {
   bool has_band = true;  // the step uses InstrumentOptions::band; MotionConstraint has none
 };
 
-/// Follows an instrument and holds each cycle to the theorem: no body comes closer to a mesh than
-/// its certified distance. That is margin - band or, if the body was closer already, what it had
-/// less the band. It falls only where a step reported that it keeps less. The same holds for
-/// guides, whose certified distance is a depth within their region. Kinematics, distances and
-/// regions are the oracle's.
+/// Follows an instrument and checks each cycle against the theorem: no body comes closer to a mesh
+/// than its certified clearance. This is margin - band, or if the body was closer already, its
+/// clearance minus the band. It decreases only if a step reported a degraded clearance. Guides are
+/// judged in the same way, with the depth in their region as clearance. Kinematics, distances and
+/// regions are those of the oracle.
 ///
-/// The judge samples a cycle at its start and end, at a random place in each eighth of it, and
-/// again around the worst of these. It can miss a dip between two samples: over a flat surface a
-/// dip of at most bend / 512, because the height there is a parabola; over an edge or a corner one
-/// of half the displacement between two samples. It misses such a dip in one cycle, not in all,
-/// because the samples are random.
+/// The judge samples a cycle at its start and end, at a random pose in each eighth of it, and near
+/// the margin again around the worst pose. Two neighbors are up to a quarter of the motion apart.
+/// So it can miss a dip between two samples (docs/joint-space-step.md, "How it is tested"). Over a
+/// flat surface the dip is at most M / 128, with M the second-derivative bound. Over an edge or a
+/// corner it is at most half of the path between the samples. The samples are random, so it misses
+/// such a dip in some cycles only.
 class RobotJudge {
  public:
-  /// `limits`: the chain whose joint limits hold. Limits and random numbers must outlive the judge.
+  /// `limits`: the chain that has the joint limits. It and `random` must outlive the judge.
   RobotJudge(JudgedScene scene, const Chain& limits, Random& random,
              std::span<const double> positions, const InstrumentOptions& options, double tolerance);
 
-  /// From now on these options hold.
+  /// Sets the options from the next cycle on.
   void follow(const InstrumentOptions& options);
 
   /// Sets pose and velocity of a mesh from the next cycle on.
   void place(std::size_t mesh, const Pose& pose, const Twist& velocity);
 
-  /// Judges the motion of all joints at once from where they are to `next`, beside meshes that move
-  /// as they were placed. Each body must keep its whole certified distance.
+  /// Judges the motion of the joints from their positions to `next`, beside meshes that move as
+  /// place() states. Each body must maintain its whole certified clearance.
   RobotVerdict judge(std::span<const double> next);
-  /// Like judge(next), but bodies must keep only what `step` promises, except for the body
-  /// `must_keep`.
+  /// Like judge(next), but bodies must maintain only the clearance that `step` promises. The body
+  /// `must_keep` must maintain all of it.
   RobotVerdict judge(std::span<const double> next, const InstrumentStep& step,
                      std::optional<std::size_t> must_keep = std::nullopt);
 
-  /// Returns true if no body comes closer than it may and no guide is left when the joints go to
-  /// `next` in the coming cycle, with all of the margin but a tenth of the band. Samples nine
+  /// Returns true if the joints may move to `next` in the coming cycle, without leaving a guide. No
+  /// body may come closer than the margin minus a tenth of the band, or than it is. Samples nine
   /// poses.
   bool would_allow(std::span<const double> next);
 
-  /// The smallest clearance of each body at the poses of the last cycle; infinite beyond the
-  /// margin. [length]
+  /// Returns the smallest clearance of each body at the poses of the last cycle; infinite beyond
+  /// the margin. [length]
   std::span<const double> least() const noexcept { return least_; }
 
   /// Returns the oracle of the instrument beside the first mesh. Valid until the next call.
@@ -95,9 +96,9 @@ class RobotJudge {
   bool is_recovered() const noexcept;
 
  private:
-  /// The distance of a body and a mesh, or of a guide, and the part of it that is promised.
+  /// The distance of a body from a mesh, or the depth of a guide, and the promised part of it.
   struct Kept {
-    double distance = 0.0;                                    // where the instrument is [length]
+    double distance = 0.0;                                    // at the present pose [length]
     double floor = -std::numeric_limits<double>::infinity();  // promised in the last cycle
     double due = 0.0;                                         // promised in this cycle
     double least = 0.0;                                       // in this cycle
@@ -130,9 +131,9 @@ class RobotJudge {
   double tolerance_;
   bool has_band_;
   bool is_placed_anew_ = false;
-  std::vector<Kept> kept_;  // pairs as InstrumentConstraint has them, then guides
+  std::vector<Kept> kept_;  // the pairs in the order of InstrumentConstraint, then the guides
   std::vector<double> distances_;
-  std::vector<double> levels_;  // fractions of the certified distances that are promised to pairs
+  std::vector<double> levels_;  // the clearance fractions that are promised to pairs
   std::vector<double> least_;   // of the last cycle [length]
 };
 
