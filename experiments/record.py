@@ -15,7 +15,7 @@ import keepout
 
 from .experiment import Findings, Scale
 
-FORMAT = 1  # must match apps/keepout/record/record.cpp
+FORMAT = 2  # must match apps/keepout/record/record.cpp
 
 
 def write_record(

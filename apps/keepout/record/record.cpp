@@ -20,7 +20,8 @@
 namespace keepout::app {
 namespace {
 
-constexpr int format = 1;  // see docs/records.md
+constexpr int oldest_format = 1;
+constexpr int format = 2;  // see docs/records.md
 
 /// Prints JSON with one line for each member of the outer objects and each entry of their arrays.
 void print_lines(std::ostream& out, const Json& value, int depth) {
@@ -80,9 +81,9 @@ std::string fault_of(const Json& json) {
       std::ranges::find(kinds, json["keepout_record"]) == kinds.end()) {
     return none;
   }
-  if (json["format"] != format) {
+  if (json["format"] < oldest_format || json["format"] > format) {
     return "is a record of format " + json["format"].dump() + ", and this keepout reads format " +
-           std::to_string(format);
+           std::to_string(oldest_format) + " to " + std::to_string(format);
   }
   const Json head = new_record({});
   const bool is_whole = std::ranges::all_of(head.items(), [&](const auto& member) {

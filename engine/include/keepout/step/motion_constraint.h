@@ -23,8 +23,9 @@ class TipMemory;
 
 /// The treatment of a tip that starts on the forbidden side. For the certified rule.
 enum class Inside : std::uint8_t {
-  escape,      // escapes straight through the nearest point of the surface, before anything else
-  taken_as_is  // is not classified: the tip maintains its clearance on the side where it is
+  escape,       // escapes straight through the nearest point of the surface, before anything else
+  taken_as_is,  // is not classified: the tip maintains its clearance on the side where it is
+  led_out [[deprecated("use escape")]] = escape
 };
 
 /// The names of Inside.
