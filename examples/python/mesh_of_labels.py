@@ -117,7 +117,7 @@ def read_nrrd(path):
 
 
 def chosen_label(labels, label):
-    """Returns the label to take: the only one that there is, unless it is given."""
+    """Returns the requested label, or the only label of the image."""
     if labels.dtype.kind not in "iuf" or not np.isfinite(labels).all():
         raise Unreadable(f"has voxels that are no labels ({labels.dtype.name}, or NaN)")
     present = np.unique(labels[labels != 0])
@@ -139,7 +139,7 @@ def surface_of(labels, matrix, label, smooth):
     at = [np.flatnonzero(inside.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
     low = np.array([indices[0] for indices in at])
     box = inside[tuple(slice(indices[0], indices[-1] + 1) for indices in at)]
-    border = 2 + int(np.ceil(4 * smooth))  # closes the surface where the label ends with the image
+    border = 2 + int(np.ceil(4 * smooth))  # closes the surface at the border of the image
     values = np.pad(box, border).astype(np.float32)
     if smooth > 0:
         values = gaussian_filter(values, smooth)
