@@ -171,11 +171,11 @@ def write_ply(path, vertices, triangles, comments):
 def main():
     parser = argparse.ArgumentParser(description="Makes a mesh of a label map: the surface of one label, in mm.")
     parser.add_argument("labels", type=Path, help="label map, NIfTI (.nii, .nii.gz) or NRRD (.nrrd)")
-    parser.add_argument("mesh", type=Path, help="where to write the mesh, a .ply file")
-    parser.add_argument("--label", type=int, help="the label to take, if there are several")
+    parser.add_argument("mesh", type=Path, help="the mesh file to write (.ply)")
+    parser.add_argument("--label", type=int, help="the label to extract, if there are several")
     parser.add_argument("--space", choices=sorted(SPACES), default="LPS", help="space of the mesh (default LPS)")
     parser.add_argument("--smooth", type=float, default=0.7, metavar="VOXELS",
-                        help="standard deviation of a Gauss filter, which rounds the steps between voxels and moves "
+                        help="standard deviation of a Gaussian filter, which rounds the steps between voxels and moves "
                         "the surface; 0 for none (default 0.7)")  # fmt: skip
     given = parser.parse_args()
     if not 0 <= given.smooth <= 10:
