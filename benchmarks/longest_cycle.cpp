@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The longest control cycles that could be provoked: on each scene, the most work units (Budget)
-// that any call took and the longest time of any, the least of three tries counting, so that what
-// the machine did besides is left out. Prints the table of docs/safety.md.
+// Provokes long control cycles. For each scene, prints the most work units (Budget) and the longest
+// time of any call. Each call is tried three times; the shortest counts, to exclude other load on
+// the machine. Prints the table of docs/safety.md.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -23,7 +23,7 @@
 namespace keepout {
 namespace {
 
-/// A watertight sphere around the origin, of 2 n (n - 1) triangles.
+/// Returns a watertight sphere around the origin, with 2 n (n - 1) triangles.
 Surface sphere(VertexId n, double radius) {
   Surface surface;
   for (VertexId i = 0; i <= n; ++i) {
@@ -45,7 +45,7 @@ Surface sphere(VertexId n, double radius) {
   return weld(std::move(surface));
 }
 
-/// Triangles in all directions through a box, as no anatomy has them.
+/// Returns intersecting triangles in all directions, unlike any anatomy.
 Surface soup(std::size_t triangles, double size) {
   Surface surface;
   Random random(5);
@@ -57,7 +57,7 @@ Surface soup(std::size_t triangles, double size) {
   return surface;
 }
 
-/// One triangle again and again.
+/// Returns many copies of one triangle.
 Surface copies(std::size_t triangles) {
   Surface surface{{{-5, -5, 0}, {5, -5, 0}, {0, 5, 0}}, {}};
   surface.triangles.assign(triangles, {0, 1, 2});
@@ -68,13 +68,13 @@ struct Scene {
   std::string name;
   Surface surface;
   MotionConstraintSettings settings = {.options = {.radius = 5.0, .margin = 1.0}};
-  double near = 1.0;  // tips are so far from the middle at most [length]
+  double near = 1.0;  // the farthest tip from the middle [length]
   Vec3 middle = Vec3::Zero();
   bool with_joints = false;
   bool with_guides = false;
 };
 
-/// Returns sixteen round regions about a place, some of which leave it out.
+/// Returns sixteen balls around a place; some do not contain it.
 std::vector<Guide> balls_about(const Vec3& place) {
   std::vector<Guide> guides;
   for (std::size_t g = 0; g < Guide::most; ++g) {
@@ -149,7 +149,7 @@ struct Longest {
 
 using Call = std::function<std::string_view()>;
 
-/// Takes down what the longest of three tries at least took.
+/// Takes the shortest of three tries into account.
 void measure(MotionConstraint& guard, const Call& call, Longest& longest) {
   double least = 1e300;
   for (int attempt = 0; attempt < 3; ++attempt) {
@@ -179,7 +179,7 @@ void measure(const Scene& scene, Longest& of_steps, Longest& of_polytopes) {
   Longest steps, polytopes;
   Eigen::Matrix<double, 3, 7> jacobian;
   for (int trial = 0; trial < 150; ++trial) {
-    // Both close to the middle and far from it.
+    // Close to the middle, and far from it.
     const double off = scene.near * std::pow(10.0, random.uniform(-6.0, 0.0));
     const Vec3 tip = scene.middle + off * random.direction();
     const Vec3 desired = scene.settings.options.radius * random.uniform() *

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout-bench: the commands of keepout, and those that compare, which keepout calls here.
+// keepout-bench: the commands of keepout, and those that compare. keepout runs this program for
+// them.
 #include <span>
 
 #include "bench/bench.h"

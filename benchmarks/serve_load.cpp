@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long a client of `keepout serve` waits for an answer, and whether its memory stays flat: an
-// operator who presses a tool over the mesh, one request at a time, in closed loop.
+// Measures how long a client of `keepout serve` waits for an answer, and whether the server's
+// memory stays constant. An operator presses a tool over the mesh in closed loop, one request at a
+// time.
 #include <fcntl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -37,10 +38,10 @@ struct Load {
   std::string mesh;
   std::string transport = "pipe";
   double requests = 1e6;
-  double malformed = 0.01;  // share of the lines
+  double malformed = 0.01;  // fraction of the lines
 };
 
-/// A server of ours, and the line to it.
+/// A server process, and the connection to it.
 class Server {
  public:
   explicit Server(const Load& load) {
@@ -56,7 +57,7 @@ class Server {
       ::dup2(from[1], STDOUT_FILENO);
       for (const int file : {to[0], to[1], from[0], from[1]}) ::close(file);
       const char* command = load.command.c_str();
-      // Without a socket its option is where the arguments end.
+      // Without a socket, the null pointer ends the arguments before its option.
       ::execl(command, command, "serve", load.mesh.c_str(), "--radius", "1",
               is_pipe ? nullptr : "--socket", socket.c_str(), nullptr);
       std::_Exit(127);
@@ -75,20 +76,20 @@ class Server {
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  /// Sends a line, and waits for one; valid until the next.
+  /// Sends a line and returns the answer, which is valid until the next call.
   std::string_view ask(std::string_view line) {
     if (::write(out_, line.data(), line.size()) != std::ssize(line))
       throw std::runtime_error("write");
     std::size_t size = 0;
     do {
       const ssize_t count = ::read(in_, answer_.data() + size, answer_.size() - size);
-      if (count <= 0) throw std::runtime_error("the server has gone");
+      if (count <= 0) throw std::runtime_error("the server has closed the connection");
       size += static_cast<std::size_t>(count);
     } while (answer_[size - 1] != '\n');
     return {answer_.data(), size};
   }
 
-  /// Of the server. [KiB]
+  /// Returns the resident memory of the server, with its unit.
   std::string resident() const {
     std::ifstream status("/proc/" + std::to_string(process_) + "/status");
     for (std::string line; std::getline(status, line);) {
@@ -118,7 +119,7 @@ class Server {
   std::vector<char> answer_ = std::vector<char>(1 << 20);
 };
 
-/// An operator who goes for one place of the surface after the other, as deep as possible.
+/// An operator who moves to one place of the surface after the other, as deep as possible.
 class Operator {
  public:
   explicit Operator(const Mesh& mesh) : starts_(places(mesh, 3.0)), goals_(places(mesh, -3.0)) {}
@@ -130,7 +131,7 @@ class Operator {
       goal_ = goals_[(place + number / 200 / starts_.size()) % goals_.size()];
     }
     Vec3 desired = goal_ - tip_;
-    // Slide about, once it has arrived.
+    // Move along the surface after arrival.
     const double angle = 0.1 * static_cast<double>(number % 200);
     desired += Vec3(2.0 * std::cos(angle), 2.0 * std::sin(angle), std::cos(1.7 * angle));
     desired = app::clipped(desired, 0.2);
@@ -152,7 +153,7 @@ class Operator {
   }
 
  private:
-  /// The same places at any height above the surface. [mm]
+  /// Returns the same places for any height above the surface. [mm]
   static std::vector<Vec3> places(const Mesh& mesh, double height) {
     Random random(1);
     return surface_points(mesh, 5000, height, random);
@@ -196,7 +197,7 @@ void run(const Load& load) {
               machine.compiler.c_str(), machine.simd.c_str());
   const app::Timing waited = app::timing_of(steps);
   std::printf(
-      "| over | requests | of them cut off | held back by the surface | p50, µs | p99 | p99.9 "
+      "| over | requests | of them cut off | limited by the surface | p50, µs | p99 | p99.9 "
       "| max | resident after 10,000 | at the end |\n"
       "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n");
   std::printf("| a %s | %zu | %zu | %.0f %% | %.1f | %.1f | %.0f | %.0f | %s | %s |\n",
@@ -216,10 +217,10 @@ int main(int argc, char** argv) {
   app.add_option("--transport", load.transport, "pipe or socket")
       ->check(CLI::IsMember({"pipe", "socket"}))
       ->capture_default_str();
-  app.add_option("--requests", load.requests, "How many")
+  app.add_option("--requests", load.requests, "Number of requests")
       ->check(CLI::Range(1.0, 1e9))
       ->capture_default_str();
-  app.add_option("--malformed", load.malformed, "Share of lines that are cut off")
+  app.add_option("--malformed", load.malformed, "Fraction of lines that are cut off")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);

@@ -2,7 +2,6 @@
 """The command line: runs experiments, writes their tables, their figures and the report."""
 from __future__ import annotations
 
-import argparse
 import importlib
 import os
 import shlex
@@ -14,52 +13,17 @@ from pathlib import Path
 import keepout
 
 from . import record, runner, summary
+from .arguments import NAMES, read
 from .experiment import Findings, Scale
 
-EXPERIMENTS = tuple(importlib.import_module(f".{file.stem}", __package__)
-                    for file in sorted(Path(__file__).parent.glob("e[0-9]*_*.py")))
-
-
-def parser() -> argparse.ArgumentParser:
-    names = ", ".join(f"{e.NAME.split('_')[0]} ({e.NAME[3:].replace('_', ' ')})" for e in EXPERIMENTS)
-    of = argparse.ArgumentParser(
-        prog="./run experiments",
-        allow_abbrev=False,
-        description="Runs the experiments of Li et al. (IROS 2020) again, with their rule, keepout's and "
-        "others. Writes tables, figures and a report. What is done is kept: a run that was stopped "
-        "goes on where it was. See docs/experiments.md.",
-    )
-    of.add_argument("--full", action="store_true", help="all shapes and sizes, more repetitions: about an hour")
-    of.add_argument("--seed", type=int, default=1, help="of all random numbers (default: 1)")
-    of.add_argument("--only", metavar="E1,E3", default="", help=f"some of {names}")
-    of.add_argument("--out", type=_folder, metavar="FOLDER", help="where to write (default: out/experiments "
-                    "beside run, with --full out/experiments_full)")
-    of.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: one a processor)")
-    of.add_argument("-q", "--quiet", action="store_true", help="print no progress: only results, warnings and errors")
-    of.add_argument("--fresh", action="store_true", help="begin anew, and forget what is kept")
-    return of
-
-
-def _folder(text: str) -> Path:
-    if not text:
-        raise argparse.ArgumentTypeError("expected the name of a folder, not ''")
-    return Path(text)
+EXPERIMENTS = tuple(importlib.import_module(f".{name}", __package__) for name in NAMES)
 
 
 def main(arguments: list[str]) -> int:
-    told = parser().parse_args(arguments)
+    told = read(arguments)
     if told.quiet:
         os.environ["KEEPOUT_QUIET"] = "1"  # programs that this one starts obey it as well
-    chosen = {name.strip().lower() for name in told.only.split(",") if name.strip()}
-    known = {e.NAME.split("_")[0]: e for e in EXPERIMENTS}
-    wrong = sorted(chosen - set(known))
-    if wrong:
-        parser().error(f"--only: there is no {', '.join(wrong)}; there are {', '.join(known)}")
-    if not 0 <= told.seed < 2**32:
-        parser().error("--seed: give a whole number from 0 to 4294967295")
-    if told.jobs is not None and told.jobs < 1:
-        parser().error("--jobs: give 1 or more")
-    experiments = [e for name, e in known.items() if not chosen or name in chosen]
+    experiments = [e for e in EXPERIMENTS if not told.only or e.NAME in told.only]
     root = Path(__file__).resolve().parent.parent
     folder: Path = told.out or root / "out" / ("experiments_full" if told.full else "experiments")
     (folder / "figures").mkdir(parents=True, exist_ok=True)
@@ -73,7 +37,7 @@ def main(arguments: list[str]) -> int:
     try:
         rows = runner.run_units(experiments, units, runner.folder_kept(folder, told.seed), jobs)
     except KeyboardInterrupt:
-        print(f"\nkeepout: stopped. What is done is kept in {folder}; the same line goes on from there.",
+        print(f"\nkeepout: stopped. Finished units are kept in {folder}; the same command continues from there.",
               file=sys.stderr)
         return 130
 
@@ -96,7 +60,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _report(file: Path) -> Path | None:
-    """The page of a record, where the command that makes it is known."""
+    """Makes the page of a record and returns its path; None if the command that makes it is unknown."""
     command = os.environ.get("KEEPOUT_COMMAND")
     if not command:
         return None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The anatomy: named meshes, the path on the CT skull, and the phantom that is cut.
 
-The paper's skull is of a child, and not public. Ours is the adult CT skull of the fixtures. The path
-is 30 mm on its outside, on the sagittal plane at the vertex, as the paper's lies on the sagittal suture.
+The skull of Li et al. (2020) is of a child, and not public. Ours is the adult CT skull of the sample meshes. The path
+is 30 mm long, on the outside of the skull, in the sagittal plane at the vertex. Theirs lies on the sagittal suture.
 """
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from scipy.ndimage import gaussian_filter, gaussian_filter1d
 from .experiment import Array
 from .planned_path import PlannedPath
 
-#: Where the sagittal plane is on the skull, and where on it the path begins [mm]; z is up.
+#: The sagittal plane of the skull, and the start of the path in it [mm]; z is up.
 SAGITTAL_X = 125.0
 PATH_BEGINS = 90.0
 PATH_LENGTH = 30.0
-SHELL = 2.0  # thickness of the paper's phantoms [mm]
+SHELL = 2.0  # thickness of the phantoms of Li et al. [mm]
 
 
 def mesh_file(name: str) -> Path:
-    """Of a real mesh, which is prepared if it is not there yet. FileNotFoundError: it cannot be."""
+    """Returns the file of a real mesh; prepares the mesh if necessary. Raises an error if it cannot."""
     root = Path(__file__).resolve().parent.parent
     cache = Path(os.environ.get("KEEPOUT_CACHE", root / ".cache"))
     file = cache / "fixtures" / f"{name}.stl"
@@ -38,15 +38,15 @@ def mesh_file(name: str) -> Path:
 
 @lru_cache(maxsize=2)
 def real_index(name: str) -> keepout.Index:
-    """The index of a real mesh, and with `.mesh` the mesh; built once in a process."""
+    """Returns the index of a real mesh, with the mesh as `.mesh`. Built once in a process."""
     return keepout.Index(keepout.load_mesh(mesh_file(name)))
 
 
 def outer_surface(index: keepout.Index, x: Array, y: Array) -> Array:
-    """The z of the first bone that a ray from above meets at each place, shapes as x and y [mm].
+    """Returns the z of the first bone that a ray from above hits at each place, in the shape of x and y [mm].
 
-    Each ray goes on by the distance of the nearest triangle until that is nothing (sphere tracing,
-    Hart 1996). ValueError: a ray meets none.
+    Each ray advances by the distance of the nearest triangle until that is 0 (sphere tracing, Hart 1996). Raises
+    ValueError if a ray hits no bone.
     """
     top = float(index.mesh.bounds[1, 2]) + 1.0
     points = np.stack([x, y, np.full_like(x, top)], axis=-1).reshape(-1, 3)
@@ -62,7 +62,7 @@ def outer_surface(index: keepout.Index, x: Array, y: Array) -> Array:
 
 
 def _path(y: Array, z: Array, spacing: float) -> PlannedPath:
-    """Through (SAGITTAL_X, y, z), at equal spacing along it and PATH_LENGTH long."""
+    """Returns the path through (SAGITTAL_X, y, z), with equal spacing and PATH_LENGTH long."""
     ways = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(y), np.diff(z)))])
     at = np.arange(0.0, PATH_LENGTH + spacing / 2, spacing)
     y, z = np.interp(at, ways, y), np.interp(at, ways, z)
@@ -79,7 +79,7 @@ def _path(y: Array, z: Array, spacing: float) -> PlannedPath:
 
 @lru_cache(maxsize=1)
 def skull_path(spacing: float = 0.05) -> PlannedPath:
-    """The path on the skull as it is; what is finer than 1 mm, voxels, is smoothed out of the plan."""
+    """Returns the path on the skull. It is smoothed by 1 mm, so that it does not follow voxels."""
     y = np.arange(PATH_BEGINS - 5.0, PATH_BEGINS + PATH_LENGTH + 10.0, spacing)
     z = outer_surface(real_index("skull"), np.full_like(y, SAGITTAL_X), y)
     smooth = gaussian_filter1d(z, 1.0 / spacing)
@@ -89,11 +89,11 @@ def skull_path(spacing: float = 0.05) -> PlannedPath:
 
 @lru_cache(maxsize=1)
 def phantom(cell: float = 0.5) -> tuple[PlannedPath, keepout.Index]:
-    """The phantom that is cut: the path on its outside, and the index of what is not to be entered.
+    """Returns the phantom that is cut: the path on its outside, and the index of the forbidden region.
 
-    Its outside is that of the CT skull, smoothed by 1 mm as a print is; it is a shell of uniform 2 mm.
-    Forbidden is all below its inside: a closed block, whose top is the outside 2 mm deeper along
-    its normals. So the depth of a cut below the inside is the paper's penetration depth.
+    The outside is that of the CT skull, smoothed by 1 mm as a print is. The shell is 2 mm thick everywhere.
+    Everything below its inside is forbidden: a closed block whose top is the outside moved 2 mm inwards along its
+    normals. So the depth of a cut below the inside is the penetration depth of Li et al.
     """
     x = np.arange(SAGITTAL_X - 20.0, SAGITTAL_X + 20.01, cell)
     y = np.arange(PATH_BEGINS - 15.0, PATH_BEGINS + PATH_LENGTH + 15.01, cell)
@@ -110,7 +110,7 @@ def phantom(cell: float = 0.5) -> tuple[PlannedPath, keepout.Index]:
 
 
 def _block_below(top: Array) -> keepout.Mesh:
-    """A closed mesh under a grid of points (m, n, 3), 10 mm high below its lowest."""
+    """Returns a closed mesh below a grid of points (m, n, 3), down to 10 mm below the lowest point."""
     m, n, _ = top.shape
     bottom = top.copy()
     bottom[..., 2] = top[..., 2].min() - 10.0

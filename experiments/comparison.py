@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Modes compared with a free hand: means, tests, effects, box plots, and the paper's number beside each.
+"""Compares modes with a free hand: means, tests, effects, box plots, and the published number beside each.
 
-A trial counts once. The paper tests samples 1 mm apart as if they were independent, which they are
-not; its own test, on the samples, stands beside ours. Significant means below 0.05 after Holm over all
-comparisons of an experiment, by Welch's test on trials.
+A trial counts once. Li et al. (2020) test samples 1 mm apart as if they were independent, which they are not. Their
+test, on the samples, stands beside ours. Significant means p below 0.05 by Welch's test on trials, after Holm over
+all comparisons of an experiment.
 """
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from .hypothesis_tests import Effect, Summary
 from .published import Comparison
 from .teleoperation import CORRIDOR, TREMOR
 
-#: A rule whose setpoint is never so deep in its own frame may be called best [mm].
+#: A rule may be called best if its setpoint is never this deep in its own frame [mm].
 SOUND = 0.05
 
-#: The rows of each mode that has some, in the order of modes.MODES.
+#: The rows of each mode that has rows, in the order of modes.MODES.
 ByMode = dict[str, list[Row]]
 
 
 @dataclass(frozen=True)
 class Measure:
-    """A member of the rows that modes are compared by."""
+    """A member of the rows by which modes are compared."""
 
     member: str
     name: str
     unit: str
     published: Comparison | None = None
-    samples: str | None = None  # the member with the samples that the paper tests
+    samples: str | None = None  # the member with the samples that Li et al. test
     higher_is_better: bool = False
-    tested: bool = True  # False: what is nothing without a fixture by construction
-    why: str = ""  # where the reproduction disagrees with the paper: why
+    tested: bool = True  # False: always 0 without a fixture
+    why: str = ""  # why the reproduction disagrees with Li et al., if it does
 
     @property
     def of_unit(self) -> str:
@@ -50,7 +50,7 @@ class Measure:
         return np.array([row[self.member] for row in rows if row[self.member] is not None], dtype=np.float64)
 
     def paper_values(self, rows: list[Row]) -> Array:
-        """What the paper tests: the samples where it has such, absolute; else the trials."""
+        """Returns the values that Li et al. test: the absolute samples if there are any, else the trials."""
         if self.samples is None:
             return self.values(rows)
         told = [sample for row in rows for sample in row[self.samples] if sample is not None]
@@ -65,27 +65,27 @@ class Measure:
 
 @dataclass(frozen=True)
 class Against:
-    """A mode against no fixture."""
+    """The comparison of a mode with no fixture."""
 
     measure: Measure
     mode: str
-    student: float  # p of the paper's test, on what the paper tests
+    student: float  # p of the test of Li et al., on the values that they test
     welch: float  # p on trials
     effect: Effect
     holm: float = 1.0  # welch, after Holm over the experiment
 
 
 def main_rows(rows: list[Row]) -> list[Row]:
-    """The trials with the usual tremor and corridor, and errors of the set-up."""
+    """Returns the trials with the usual tremor and corridor, and with errors of the set-up."""
     return [row for row in rows if row["tremor"] == TREMOR and not row["ideal"] and row["corridor"] == CORRIDOR]
 
 
 def compare(
     experiment: str, rows: list[Row], measures: tuple[Measure, ...], seed: int, swept: tuple[str, ...]
 ) -> Findings:
-    """All modes with no fixture, by all measures, and a table of the sweeps by the members `swept`.
+    """Compares all modes with no fixture by all measures; adds a table of the sweeps with the members `swept`.
 
-    Rows: one a trial, with `mode`, `tremor`, `corridor` [mm] and `ideal`.
+    Each row is a trial with `mode`, `tremor`, `corridor` [mm] and `ideal`.
     """
     main = main_rows(rows)
     by_mode = {mode: of for mode in modes.MODES if (of := [row for row in main if row["mode"] == mode])}
@@ -122,7 +122,7 @@ def _claim(measure: Measure, by_mode: ByMode, against: list[Against]) -> Claim:
     unit = measure.of_unit
 
     def pair(mode: str) -> str:
-        """Free hand and mode, as the paper prints them: of what it tests."""
+        """Returns free hand and mode as Li et al. print them, of the values that they test."""
         free, held = (measure.text(measure.paper_values(by_mode[m])) for m in (modes.NO_FIXTURE, mode))
         tested = f", pooled p = {tests[mode].student:.2g}" if mode in tests else ""
         return f"{free} → {held}{unit}{tested}"
@@ -137,7 +137,7 @@ def _claim(measure: Measure, by_mode: ByMode, against: list[Against]) -> Claim:
         f"{paper.fixture.sd:g}{unit}, pooled p = {paper.p:.2g}",
         reproduction=pair("paper"),
         certified=pair("certified"),
-        best=f"{figures.label(best)}: {means[best]:.2f}{unit}, of those that finished with a setpoint never {SOUND:g} mm deep"
+        best=f"{figures.label(best)}: {means[best]:.2f}{unit}, of the modes that finished with a setpoint never {SOUND:g} mm deep"
         if best
         else f"none finished with a setpoint never {SOUND:g} mm deep",
         sure="certified against no fixture, trials: "
@@ -147,7 +147,7 @@ def _claim(measure: Measure, by_mode: ByMode, against: list[Against]) -> Claim:
 
 
 def _sound(by_mode: ByMode) -> list[str]:
-    """The fixtures whose trials all came to the path's end, with a setpoint that never was SOUND deep."""
+    """Returns the fixtures whose trials all reached the path's end, with a setpoint never SOUND deep."""
     return [mode for mode, rows in by_mode.items() if mode != modes.NO_FIXTURE
             and all(row["finished"] and row["deepest_registered_mm"] < SOUND for row in rows)]
 
@@ -171,15 +171,15 @@ def _crossings(rows: list[Row]) -> str:
 
 def _safety(by_mode: ByMode) -> Table:
     return Table(
-        "What came into the anatomy",
+        "Penetration into the anatomy",
         ["mode", "setpoint passes through, registered frame", "deepest setpoint, registered frame [mm]",
          "deepest tip, true frame [mm]", "registration error [mm]", "tip deeper than that error [mm]",
          "tip short of the path's end"],
         [[figures.label(mode), _crossings(rows),
           *_greatest(rows, "deepest_registered_mm", "deepest_mm", "registration_error_mm", "beyond_registration_mm"),
           str(sum(not row["finished"] for row in rows))] for mode, rows in by_mode.items()],
-        "The fixture answers for its setpoint in the frame that it was told. What the tip does in the true "
-        "frame is the registration's too: greatest values of all trials.",
+        "The fixture guards its setpoint in the registered frame. The tip in the true frame also has the "
+        "error of registration. Greatest values of all trials.",
     )
 
 
@@ -192,7 +192,7 @@ def _tests_table(by_mode: ByMode, against: list[Against]) -> Table:
           *(a.measure.text(a.measure.values(by_mode[mode])) for mode in (modes.NO_FIXTURE, a.mode)),
           *(f"{p:.2g}" for p in (a.student, a.welch, a.holm)),
           hypothesis_tests.in_words(a.holm, a.effect).split(", ", 1)[1]] for a in against],
-        f"Holm over these {len(against)} comparisons. g is positive where no fixture has more.",
+        f"Holm over these {len(against)} comparisons. g is positive if the value is greater without a fixture.",
     )
 
 
@@ -218,8 +218,8 @@ def _headline(by_mode: ByMode, against: list[Against]) -> str:
 
     sure = [told(a) for a in against if a.mode == "certified" and a.holm < 0.05]
     return (
-        f"certified: {len(certified)} trials, {entered} of which entered in the frame of the fixture. Beside "
-        f"no fixture, what differs after Holm: {'; '.join(sure) or 'nothing for certain'}."
+        f"certified: {len(certified)} trials, {entered} of which entered in the frame of the fixture. Measures "
+        f"that differ from no fixture after Holm: {'; '.join(sure) or 'none for certain'}."
     )
 
 
@@ -229,7 +229,7 @@ def _mean(values: list[float | None]) -> str:
 
 
 def _sweep_table(rows: list[Row], members: tuple[str, ...]) -> Table:
-    """By tremor, corridor and errors of the set-up."""
+    """Returns the means by tremor, corridor and errors of the set-up."""
 
     def kind(row: Row) -> tuple[int, bool, float, float]:
         return modes.MODES.index(row["mode"]), row["ideal"], row["corridor"], row["tremor"]

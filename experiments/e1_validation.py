@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""E1: does each rule keep a point out of each shape? (section IV-A: 11 shapes, all kept out of)
+"""E1: does each rule keep a point out of each shape? (section IV-A: out of all 11 shapes)
 
-A hand tries to lead the tip in, loop by loop, with the same seeds for every mode. What became of
-the tip is told by the judge, which shares nothing with keepout, and how much motion was given away
-by the best safe step of all, which branch and bound finds. Only closed shapes count: around the
-border of an open one a tip may pass, and come back from behind, which rules of one side let it.
+A simulated hand tries to push the tip through the surface, in loops with the same seeds for every mode. The judge,
+which shares no code with keepout, decides if the tip entered. The best safe step, found by branch and bound, shows
+how much motion a rule lost. Only closed shapes count: around the border of an open shape, a tip may pass and come
+back from behind. Rules that guard one side allow that.
 """
 from __future__ import annotations
 
@@ -26,29 +26,29 @@ from .rules.rule import Rule, Task
 NAME = "e1_validation"
 TITLE = "E1 Validation on shapes (section IV-A)"
 
-#: The paper's rule as it is printed, without a margin; with the margin of all others it is "paper".
+#: The rule of Li et al. (2020) as printed, without a margin; "paper" has the margin of all others.
 AS_PUBLISHED = "paper_published"
 MARGIN = 0.2  # [mm]
-REACH = 2.0 * MARGIN  # clearances are told up to this [mm]
-#: Without a margin a tip may lie on the surface; nearer than this it does, on whichever side. [mm]
+REACH = 2.0 * MARGIN  # limit of computed clearances [mm]
+#: Without a margin a tip may lie on the surface; closer than this, it counts as on it. [mm]
 TOUCH = 1e-6
 
-#: Of a quick run: small ones of each kind, and the skull.
+#: The shapes of a quick run: small ones of each kind, and the skull.
 QUICK_SHAPES = ("cube", "sphere", "concave_sphere", "pyramid", "gear", "thin_plates", "star_bumps",
                 "cortex", "far_cube", "pinion", "femur", "saddle_terrain", "skull")
-#: A shape takes minutes to sample as finely as that; E5 has these fields.
+#: A shape takes minutes to sample as finely as these; E5 has these fields.
 WITHOUT = ("sdf_0.25", "sdf_0.5")
 
 CYCLES = 300  # of a loop
 LOOPS = 10  # of a shape and a mode; twice as many in a full run
-BEST_STEPS = 3  # of a loop, that are held against the best safe step
+BEST_STEPS = 3  # of a loop, to compare with the best safe step
 
 #: The rows of a shape and a mode.
 Loops = dict[tuple[str, str], list[Row]]
 
 
 def units(scale: Scale) -> list[Unit]:
-    """One for each shape and mode, shape after shape, so that a process keeps what it has read."""
+    """Returns a unit for each shape and mode, shape by shape, so that a process reuses what it has read."""
     import keepout_peers
 
     shapes = [name for name, _ in keepout_peers.named_meshes()] if scale.full else QUICK_SHAPES
@@ -62,7 +62,7 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def run(unit: Unit) -> list[Row]:
-    """A row for each loop; a single one with `refused` where a rule does not take the shape."""
+    """Returns a row for each loop; a single row with `refused` if a rule rejects the shape."""
     shape, mode = unit.settings["shape"], unit.settings["mode"]
     index, judge = _surface(shape)
     margin = 0.0 if mode == AS_PUBLISHED else MARGIN
@@ -94,10 +94,10 @@ def _loop(
     index: keepout.Index, judge: Any, rule: Rule | None, task: Task, start: np.ndarray, route: str,
     random: np.random.Generator,
 ) -> Row:
-    """One loop: a tip that starts outside, a hand, a rule, and what the judge says of it."""
+    """Runs one loop: a tip that starts outside, a hand, a rule, and the judge's findings."""
     longest = task.radius * 10.0 ** random.uniform(-2.0, 0.0)  # [mm]
     tip = start
-    sample = random.random(CYCLES)  # which steps are held against the best
+    sample = random.random(CYCLES)  # selects the steps to compare with the best
     hand = PointHand(index, route, longest, random)
     tips, asked = np.empty((CYCLES + 1, 3)), np.empty((CYCLES, 3))
     tips[0] = tip
@@ -115,17 +115,17 @@ def _loop(
 def _judged(
     judge: Any, tips: np.ndarray, asked: np.ndarray, sample: np.ndarray, margin: float
 ) -> Row:
-    """Of a loop: whether the tip got in, depth and clearance; and what was lost until it got in."""
+    """Returns if the tip of a loop entered, its depth and clearance, and the motion lost until it entered."""
     starts, ends = tips[:-1], tips[1:]
-    distances = judge.distances(tips)  # less than 0 inside: free if the normals point inwards
+    distances = judge.distances(tips)  # below 0 inside; inside is free if the normals point inwards
     clearances = np.minimum(judge.least_distances(starts, ends, REACH), REACH)
     depths = -np.sign(distances[0]) * distances
     entered = clearances == 0.0
-    if margin == 0.0:  # what touches may still be outside
+    if margin == 0.0:  # a tip that touches may still be outside
         clear = np.abs(distances) > TOUCH
         entered = (entered & clear[:-1] & clear[1:]) | (judge.closed & (depths[1:] > TOUCH))
     before = int(entered.argmax()) if entered.any() else len(asked)
-    kept = np.minimum(margin, np.abs(distances[:-1]))[:before]  # a tip that is nearer may stay so
+    kept = np.minimum(margin, np.abs(distances[:-1]))[:before]  # a tip that is closer may stay so
     lost = np.linalg.norm(ends - starts - asked, axis=1)[:before]
     length = np.linalg.norm(asked, axis=1)[:before]
     room = judge.least_distances(starts[:before], starts[:before] + asked[:before], REACH)
@@ -150,7 +150,7 @@ def _judged(
 
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
-    """Which modes kept the tip out of which shapes, and what they took for it."""
+    """Returns which modes kept the tip out of which shapes, and how much motion they lost."""
     shapes = list(dict.fromkeys(row["shape"] for row in rows))
     modes = list(dict.fromkeys(row["mode"] for row in rows))
     loops: Loops = {(s, m): [] for s in shapes for m in modes}
@@ -171,28 +171,28 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     best = min(safe, key=lambda m: _excess(counted[m]), default=None)
     claims = [
         Claim(
-            about="shapes that the tip is kept out of, and loops in which it got in (IV-A)",
+            about="shapes that the tip never entered, and loops in which it entered (IV-A)",
             paper="11 of 11 shapes",
             reproduction=told(AS_PUBLISHED),
             certified=told("certified"),
             best=figures.label(best) if best else "none",
             sure=_mcnemar(counted[AS_PUBLISHED], counted["certified"]),
-            note="best: of those that kept out of all, the one nearest to the best safe steps",
+            note="best: of the modes that never entered, the one nearest to the best safe steps",
         ),
         Claim(
-            about="free motion that is not allowed (IV-A)",
+            about="free motion that is lost (IV-A)",
             paper="-",
             reproduction=_number(100 * _lost(counted[AS_PUBLISHED]), 1, " %"),
             certified=_number(100 * _lost(counted["certified"]), 1, " %"),
             best=figures.label(min(safe, key=lambda m: _lost(counted[m]))) if safe else "none",
             sure=_sign_test(closed, loops),
-            note="planes of triangles that the tip does not run into, as far as the sphere reaches",
+            note="planes of all triangles in the sphere, even if the motion does not reach them",
         ),
     ]
-    headline = (f"Closed shapes kept out of, and loops in which the tip got in: "
-                f"{told(AS_PUBLISHED)} by the paper's rule as printed, which gives away "
-                f"{claims[1].reproduction} of the free motion; {told('certified')} and "
-                f"{claims[1].certified} by the certified one.")
+    headline = (f"Closed shapes never entered, and loops in which the tip entered. "
+                f"The paper's rule as printed: {told(AS_PUBLISHED)}, and it loses "
+                f"{claims[1].reproduction} of the free motion. Certified: {told('certified')}, and "
+                f"it loses {claims[1].certified}.")
     tables = [_overview(modes, counted, told), _by_shape(shapes, closed, modes, loops)]
     return Findings(headline, claims, tables, [_picture(shapes, modes, loops)])
 
@@ -202,7 +202,7 @@ def _crossed(loops: list[Row]) -> int:
 
 
 def _excess(loops: list[Row]) -> float:
-    """Mean of (|u - u_desired| - that of the best safe step) / |u_desired|, of safe steps."""
+    """Returns the mean of (|u - u_desired| - that of the best safe step) / |u_desired|, of safe steps."""
     steps = sum(row["excess_of"] for row in loops)
     return sum(row["excess"] for row in loops) / steps if steps else float("nan")
 
@@ -213,7 +213,7 @@ def _lost(loops: list[Row]) -> float:
 
 
 def _mcnemar(ours: list[Row], theirs: list[Row]) -> str:
-    """The exact test of pairs of loops with the same shape and seed, two-sided."""
+    """Returns the exact two-sided test of pairs of loops with the same shape and seed."""
     other = {(row["shape"], row["loop"]): row["crossed"] for row in theirs}
     pairs = [(row["crossed"], other[row["shape"], row["loop"]]) for row in ours
              if (row["shape"], row["loop"]) in other]
@@ -226,7 +226,8 @@ def _mcnemar(ours: list[Row], theirs: list[Row]) -> str:
 
 
 def _sign_test(closed: list[str], loops: Loops) -> str:
-    """Of shapes: does the printed rule lose more free motion than the certified one? Two-sided."""
+    """Returns the two-sided sign test over shapes: does the printed rule lose more free motion than the certified
+    one?"""
     lost = [(_lost(loops[s, AS_PUBLISHED]), _lost(loops[s, "certified"])) for s in closed]
     more, less = sum(a > b + 1e-9 for a, b in lost), sum(a < b - 1e-9 for a, b in lost)
     if more + less == 0:
@@ -255,10 +256,10 @@ def _overview(
             _number(100 * _lost(loops), 2, " %"),
             _number(100 * _excess(loops), 1, " %") if mode in (*FIXTURES, AS_PUBLISHED) else "-",
         ])
-    note = (f"Closed shapes that it never got into, and loops of {CYCLES} cycles in which it did. "
-            "Lost is motion that was free and was not allowed; excess is what safe steps that "
-            "something limits fall short of the best one, in lengths of the motion asked for.")
-    columns = ["mode", "kept out of, got in", "deepest [mm]", "least clearance [mm]", "lost",
+    note = (f"Closed shapes that the tip never entered, and loops of {CYCLES} cycles in which it entered. "
+            "Lost: free motion that the rule did not allow. Excess: by how much limited safe steps fall "
+            "short of the best safe step, relative to the desired motion.")
+    columns = ["mode", "never entered, entered", "deepest [mm]", "least clearance [mm]", "lost",
                "excess"]
     return Table("Modes over all closed shapes", columns, rows, note)
 
@@ -274,7 +275,7 @@ def _by_shape(shapes: list[str], closed: list[str], modes: list[str], loops: Loo
         [shape if shape in closed else f"{shape} (open)", *(cell(loops[shape, m]) for m in modes)]
         for shape in shapes
     ]
-    note = "Crossed of all loops, and how deep the tip got at the worst. Open shapes do not count."
+    note = "Loops with a crossing of all loops, and the greatest depth of the tip. Open shapes do not count."
     columns = ["shape", *map(_label, modes)]
     return Table("Loops in which the tip crossed the surface", columns, rows, note)
 
@@ -290,9 +291,9 @@ def _picture(shapes: list[str], modes: list[str], loops: Loops) -> Figure:
     ax.set_yticks(range(len(shapes)), shapes)
     ax.set_xlim(-0.6, len(modes) - 0.4)
     ax.set_ylim(len(shapes) - 0.4, -0.6)
-    caption = ("The area of a dot is the share of loops in which the tip crossed the surface; "
-               "no dot is none.")
-    return Figure("e1_crossings", "Where the tip got in", caption, figures.svg(fig))
+    caption = ("The area of a dot is the fraction of loops in which the tip crossed the surface. "
+               "No dot means that it never did.")
+    return Figure("e1_crossings", "Loops in which the tip entered", caption, figures.svg(fig))
 
 
 def _of_look(mode: str) -> str:

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""E2: how fast a control loop runs on how many triangles, and where it falls below 1 kHz (IV-B).
+"""E2: the rate of a control loop against the number of triangles, and where it falls below 1 kHz (IV-B).
 
-What is timed is what the product does: `keepout bench` runs each rule on each index, on a bunny of
-150 mm that is resampled to each size, with a tool that presses on the surface and slides along it;
-each step is held to a reference before it is timed. The paper's run is the rule `paper` on
-`pd_tree_1997`, its tree as published. The motion sphere of its figure is not given: ours is of
-5 mm, as in section V, and of 1 mm. `certified` looks as far as a motion leads, without a sphere.
+`keepout bench` times the product: each rule on each index, on a bunny of 150 mm that is resampled to each size. A
+tool presses on the surface and slides along it; each step is compared with a reference before it is timed. The run of
+Li et al. (2020) is the rule `paper` on `pd_tree_1997`, their tree as published. They do not give the motion sphere of
+their figure: ours is of 5 mm, as in their section V, and of 1 mm. `certified` searches as far as a motion goes,
+without a sphere.
 """
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ TITLE = "E2 Run time against triangles (section IV-B)"
 SIZES = (51_978, 200_000, 989_376)
 FULL_SIZES = (
     51_978, 104_000, 200_000, 500_000, 989_376, 2_000_000, 4_000_000, 16_000_000)
-#: Where a step of the slowest takes tens of milliseconds fewer are timed.
+#: Above this size fewer steps are timed, because the slowest take tens of milliseconds.
 MANY_TRIANGLES = 1_000_000
 
-#: For comparison only: a query looks at every triangle, or takes memory. Up to so many triangles.
+#: For comparison only, up to LARGEST_OF_SLOW triangles: a query tests every triangle, or needs much memory.
 SLOW_INDICES = ("brute_force", "fcl_collide")
 LARGEST_OF_SLOW = 60_000
-#: Those of other libraries take up to 560 bytes a triangle: up to so many triangles.
+#: Indices of other libraries need up to 560 bytes a triangle: only up to LARGEST_OF_OTHERS triangles.
 OUR_INDICES = ("wide_bvh", "pd_tree", "pd_tree_1997")
 LARGEST_OF_OTHERS = 2_000_000
 
@@ -54,7 +54,7 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def run(unit: Unit) -> list[Row]:
-    """A row for each rule, index and radius. Raises RuntimeError with what `keepout bench` says."""
+    """Returns a row for each rule, index and radius. Raises RuntimeError with the message of `keepout bench`."""
     asked = unit.settings
     with TemporaryDirectory() as folder:
         record = Path(folder) / "record.json"
@@ -62,7 +62,7 @@ def run(unit: Unit) -> list[Row]:
             os.environ["KEEPOUT_COMMAND"], "bench", "--triangles", str(asked["triangles"]),
             "--index", ",".join(asked["indices"]), "--activation", "all_faces,paper,certified",
             "--radius", "5,1", "--queries", str(asked["queries"]), "--seed", str(asked["seed"]),
-            "--seconds", "3600",  # all queries, however long they take: rows are then reproducible
+            "--seconds", "3600",  # all queries, however long they take, so that rows are reproducible
             "--json", str(record), "--out", str(record.with_suffix(".html")),
         ]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -72,7 +72,7 @@ def run(unit: Unit) -> list[Row]:
 
 
 def rows_of(record: Row) -> list[Row]:
-    """The rows of a record of `keepout bench`; times in us, memory in bytes."""
+    """Returns the rows of a record of `keepout bench`; times in µs, memory in bytes."""
     machine = record["machine"]
     rows: list[Row] = []
     for row in record["benchmark"]["rows"]:
@@ -93,9 +93,9 @@ def rows_of(record: Row) -> list[Row]:
 
 
 def triangles_at(curve: Sequence[tuple[int, float]], khz: float = 1.0) -> float | None:
-    """Where a curve of (triangles, kHz) first falls below a rate; None: nowhere in it.
+    """Returns the triangles at which a curve of (triangles, kHz) first falls below a rate; None if it does not.
 
-    A straight line on logarithmic axes between points. At the first point if it is below already.
+    Interpolates on logarithmic axes. Returns the first point if it is already below.
     """
     if curve and curve[0][1] < khz:
         return float(curve[0][0])
@@ -123,13 +123,13 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
             for (rule, index, radius), curve in sorted(
                 curves.items(), key=lambda entry: (entry[0][0], -(entry[0][2] or 0), entry[0][1]))
         ],
-        f"{where}; one thread; other processes kept up to {busy:.1f} cores busy. '-': not built or "
-        f"not timed; {' and '.join(SLOW_INDICES)} are for comparison only, up to "
-        f"{LARGEST_OF_SLOW:,} triangles, and those of other libraries up to {LARGEST_OF_OTHERS:,}.",
+        f"{where}; one thread; other processes kept up to {busy:.1f} cores busy. '-' means not built or "
+        f"not timed. Indices only for comparison: {' and '.join(SLOW_INDICES)}, up to "
+        f"{LARGEST_OF_SLOW:,} triangles. Indices of other libraries: up to {LARGEST_OF_OTHERS:,}.",
     )
     headline = (
         f"On {sizes[-1]:,} triangles the certified rule makes steps at {rate} kHz, {ratio:.0f} "
-        f"times as fast as the paper's rule on its tree; it falls below 1 kHz at {_fall(ours)} "
+        f"times as fast as the paper's rule on its tree. It falls below 1 kHz at {_fall(ours)} "
         f"triangles, the paper's at {_fall(theirs)}.")
     return Findings(headline, _claims(rows, curves), [table], [_figure(curves)])
 
@@ -141,13 +141,13 @@ def _indices(size: int) -> list[str]:
     return [name for name in names if name not in SLOW_INDICES or size <= LARGEST_OF_SLOW]
 
 
-#: A rule, an index, and the radius of the motion sphere [mm], None: as far as the motion leads.
+#: A rule, an index, and the radius of the motion sphere [mm]; None: as far as the motion goes.
 Way = tuple[str, str, float | None]
 Curves = dict[Way, list[tuple[int, float]]]
 
 
 def _curves(rows: list[Row]) -> Curves:
-    """Of each rule, index and radius: (triangles, kHz), from few triangles to many."""
+    """Returns (triangles, kHz) for each rule, index and radius, by ascending number of triangles."""
     curves: Curves = {}
     for row in sorted(rows, key=lambda row: int(row["triangles"])):
         if row["measured_khz"] is not None:
@@ -175,7 +175,7 @@ def _fall(curve: list[tuple[int, float]]) -> str:
 
 def _claims(rows: list[Row], curves: Curves) -> list[Claim]:
     steps = min(row["steps"] for row in rows)
-    sure = f"medians of {steps:,} steps, each the reference's bit for bit"
+    sure = f"medians of {steps:,} steps, each bitwise identical to the reference"
     authors = [rate for rate in published.AUTHORS_CODE if rate.radius == 5.0]
     claims = []
     for printed, timed in zip(published.RATES, (authors[0], authors[-1])):
@@ -219,8 +219,8 @@ def _figure(curves: Curves) -> Figure:
     ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     return Figure(
         "rate", "Rate against triangles",
-        "Bunnies of 150 mm; motion sphere of 5 mm, certified as far as the motion leads. Below the "
-        "line a loop of 1 kHz is not kept. The paper ran on an Intel Core i7-8700.",
+        "Bunnies of 150 mm; motion sphere of 5 mm, certified as far as the motion goes. Below the "
+        "line a loop is slower than 1 kHz. Li et al. used an Intel Core i7-8700.",
         figures.svg(fig))
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""E3: the outside of a pre-cut skull is traced along a planned path (section V-A).
+"""E3: the operator traces the outside of a pre-cut skull along a planned path (section V-A).
 
-30 mm on the outside of the CT skull; the slot is there already, so nothing stops the tip but the
-fixture, which has the whole skull of half a million triangles for its mesh. Measured: smoothness,
-as spectral arc length up to 20 Hz as in the paper and as SPARC; how far the tip is from the planned
-depth, which is the outside smoothed by 1 mm, and from the path across.
+The path is 30 mm on the outside of the CT skull. The slot exists already, so only the fixture stops the tip; its mesh
+is the whole skull of half a million triangles. Measures smoothness: spectral arc length up to 20 Hz as in Li et al.
+(2020), and SPARC. Also measures the distance from the planned depth, which is the outside smoothed by 1 mm, and the
+distance across the path.
 """
 from __future__ import annotations
 
@@ -22,12 +22,13 @@ from .trial import Course
 NAME = "e3_path_tracing"
 TITLE = "E3 Path tracing (section V-A)"
 
-SPEED = 2.0  # [mm/s], ours: the paper does not say
+SPEED = 2.0  # [mm/s], ours: Li et al. do not give it
 ADJUSTING = 0.4  # [mm RMS in depth], ours: the arc length hardly depends on it
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Five trials a mode, as the paper's; full: six. A sweep of tremor, and no errors of the set-up."""
+    """Five trials for each mode, as in Li et al.; full: six. Also a sweep of tremor, and trials without errors of the
+    set-up."""
     of_all: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(6 if scale.full else 5)]
     swept = [(mode, n, {"tremor": t}) for mode in SWEPT for t in SWEEP for n in range(3 if scale.full else 1)]
     ideal = [(mode, n, {"ideal": True}) for mode in modes.MODES for n in range(2 if scale.full else 1)]
@@ -35,7 +36,7 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def run(unit: Unit) -> list[Row]:
-    """One trial."""
+    """Runs one trial."""
     told = unit.settings
     course = Course(path=anatomy.skull_path(), depth=0.0, speed=SPEED, time_limit=120.0)
     trace, row = teleoperation.run_unit(unit, 3, course, anatomy.real_index("skull"), Operator(adjusting=ADJUSTING))
@@ -55,9 +56,9 @@ def run(unit: Unit) -> list[Row]:
 MEASURES = (
     Measure(
         "spectral_arc_length", "spectral arc length, 20 Hz", "", published.SAL, higher_is_better=True,
-        why="the simulated free hand is smoother than the paper's, whose corrections in depth it has too few of; "
-        "and a tip that leans on a skull of CT voxels feels their steps, where the paper's is a smooth print. "
-        "How long a trace took the paper does not say, and the length grows with it",
+        why="the simulated free hand is smoother than the paper's, because it makes too few corrections in depth. "
+        "A tip that leans on a skull of CT voxels feels their steps; the paper's skull is a smooth print. "
+        "The paper does not give the duration of a trace, and the arc length grows with it",
     ),
     Measure("sparc", "SPARC, 10 Hz", "", higher_is_better=True),
     Measure("absolute_depth_mm", "distance from the planned depth", "mm"),
@@ -71,14 +72,14 @@ MEASURES = (
 
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
-    """Compared mode by mode with no fixture; the overlay of trajectories; the sweep of tremor."""
+    """Compares each mode with no fixture; adds the overlay of trajectories and the sweep of tremor."""
     swept = ("spectral_arc_length", "sparc", "absolute_depth_mm", "deviation_mm")
     found = compare(NAME, rows, MEASURES, scale.seed, swept)
     return replace(found, figures=[*found.figures, _overlay(main_rows(rows))])
 
 
 def _overlay(rows: list[Row]) -> Figure:
-    """The trajectories on the section of the skull, as the paper overlays them."""
+    """Draws the trajectories on the section of the skull, as Li et al. do."""
     fig, axes = figures.new(160, 120, rows=len(SWEPT))
     for ax, mode in zip(axes, SWEPT, strict=True):
         for row in (row for row in rows if row["mode"] == mode and row["along_mm"]):

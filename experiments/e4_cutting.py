@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""E4: skulls are cut along a planned path (section V-B).
+"""E4: the operator cuts skulls along a planned path (section V-B).
 
-A shell of 2 mm, as the paper's phantoms are, on the outside of the CT skull; sagittal plane, corridor of 1 mm
-on each side, motion sphere of 5 mm, six fiducials. Measured at 1 mm spacing, 30 samples a trial:
-cutting path deviation, the farthest that the tip was beside the path within the bone, and
-penetration depth, the depth of the kerf less the shell's thickness: positive is an over-cut.
+As in Li et al. (2020), the shell is 2 mm thick (here on the outside of the CT skull) and the path is in the sagittal
+plane. The corridor is 1 mm on each side, the motion sphere 5 mm, and there are six fiducials. Measures 30 samples in
+each trial, 1 mm apart. Cutting path deviation is the greatest distance of the tip beside the path within the bone.
+Penetration depth is the depth of the kerf minus the thickness of the shell: positive is an over-cut.
 """
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ from .trial import Course, Trace
 NAME = "e4_cutting"
 TITLE = "E4 Cutting (section V-B)"
 
-CORRIDORS = (0.25, 0.5)  # [mm] besides that of the paper
+CORRIDORS = (0.25, 0.5)  # [mm], besides that of Li et al.
 SAMPLES = 30
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Quick: two trials a mode, as the paper's. Full: four; sweeps of tremor and corridor; no errors of the set-up."""
+    """Quick: two trials for each mode, as in Li et al. Full: four; sweeps of tremor and corridor; trials without
+    errors of the set-up."""
     trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(4 if scale.full else 2)]
     trials += [(mode, 0, {"ideal": True}) for mode in SWEPT]
     trials += [("certified", n, {"corridor": c}) for c in CORRIDORS for n in range(2 if scale.full else 1)]
@@ -35,7 +36,7 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def run(unit: Unit) -> list[Row]:
-    """One trial."""
+    """Runs one trial."""
     path, index = anatomy.phantom()
     bone = None if unit.settings["ideal"] else BoneProperties()  # no force, no deflection
     course = Course(path=path, depth=anatomy.SHELL, speed=0.22, bone=bone)
@@ -59,10 +60,10 @@ def run(unit: Unit) -> list[Row]:
 
 
 def cut(trace: Trace, course: Course) -> tuple[list[float | None], list[float]]:
-    """Deviation and penetration depth at each millimetre of the path [mm].
+    """Returns deviation and penetration depth at each millimeter of the path [mm].
 
-    Where the tip never was within the bone there is no deviation: None. Without bone to cut there is
-    no kerf, and the tip's own depth takes its place.
+    A millimeter without the tip in the bone has no deviation (None). Without bone to cut there is no kerf; the depth
+    of the tip replaces it.
     """
     along, across, depth = course.path.depths(trace.tip[trace.begun :])
     millimetre = np.minimum(along.astype(int), SAMPLES - 1)
@@ -82,14 +83,14 @@ def cut(trace: Trace, course: Course) -> tuple[list[float | None], list[float]]:
 MEASURES = (
     Measure(
         "deviation_mm", "cutting path deviation", "mm", published.PATH_DEVIATION, samples="deviations_mm",
-        why="the free hand is fitted to the paper's. A corridor of 1 mm on each side seldom touches a hand that "
-        "errs by 0.6 mm: that the paper's surgeon deviates less with it must come from what is not simulated, "
-        "such as attention that depth no longer takes. Narrower corridors are in the table of sweeps",
+        why="the free hand is fitted to the paper's. A corridor of 1 mm on each side seldom limits a hand with an "
+        "error of 0.6 mm. The paper's surgeon deviates less with it, probably from effects that are not simulated, "
+        "such as attention that depth no longer needs. The table of sweeps has narrower corridors",
     ),
     Measure(
         "absolute_depth_mm", "absolute penetration depth", "mm", published.PENETRATION_DEPTH, samples="depths_mm",
-        why="the free hand is fitted to the paper's. With a fixture what is left is under-cut, by which robot and "
-        "tool bend, and the error of registration; the paper's rule keeps off ridges besides",
+        why="the free hand is fitted to the paper's. With a fixture the rest is under-cut, from the bending of robot "
+        "and tool, and the error of registration. The paper's rule also stays away from ridges",
     ),
     Measure(
         "duration_s", "duration", "s", published.DURATION,
@@ -99,7 +100,7 @@ MEASURES = (
     Measure("over_cut_mm", "greatest over-cut", "mm"),
     Measure("under_cut_mm", "greatest under-cut", "mm"),
     Measure("contact_n", "force on the bone", "N"),
-    Measure("millimetres_reached", "how much of the path was cut into", "mm"),
+    Measure("millimetres_reached", "length of the path cut", "mm"),
     Measure("force_n", "force of the fixture on the hand", "N", tested=False),
     Measure("energy_mj", "energy that the fixture gave to the hand", "mJ", tested=False),
     Measure("chatter_um", "chatter of the setpoint above 30 Hz", "µm"),
@@ -107,5 +108,5 @@ MEASURES = (
 
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
-    """Compared mode by mode with no fixture; then the sweeps."""
+    """Compares each mode with no fixture; then the sweeps."""
     return compare(NAME, rows, MEASURES, scale.seed, ("deviation_mm", "absolute_depth_mm", "duration_s"))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""E5: the distance field that is mostly used today, beside the mesh itself, where anatomy is thin.
+"""E5: a distance field, which most systems use today, compared with the mesh itself, where anatomy is thin.
 
-On closed meshes of anatomy, in the box with the most thin walls: by how much a grid's distances
-err, which walls it does not have, what it takes, and where a tip gets that is pushed at such walls
-under its rule, under the paper's and under the certified one. Not in the paper. The aneurysm of
-the fixtures is open at its ends: it has no inside, and is left out.
+On closed meshes of anatomy, in the box with the most thin walls. Measures the errors of a grid's distances, the walls
+that it loses, its memory, and how far a tip gets that pushes at such walls. Rules: the distance field's, that of Li
+et al. (2020), and the certified one. Li et al. have no such experiment. The aneurysm of the sample meshes is open at
+its ends: it has no inside, so it is not used.
 """
 from __future__ import annotations
 
@@ -33,26 +33,26 @@ TITLE = "E5 A distance field beside the mesh, at thin walls"
 
 ANATOMY = ("skull", "airway")
 FULL_ANATOMY = ("skull", "airway", "brain")
-#: Meshes of what is hollow: the tool is in it, and solid is what is around it.
+#: Meshes of hollow anatomy: the tool is inside, and everything around it is solid.
 HOLLOW = ("airway",)
 
 CELLS = {"sdf_0.25": 0.25, "sdf_0.5": 0.5, "sdf_1": 1.0}  # [mm]
 MODES = ("paper", "certified", *CELLS)
 
-HALF_BOX = 16.0  # of what is sampled [mm]
-INNER = 12.5  # of it, where walls are pushed at and distances are looked at
-NEAR = 2.0  # distances are looked at so near to the surface [mm]
-THICKEST = 4.0  # of what is a wall here [mm]
-THIN = 1.0  # walls thinner than this are pushed at by themselves, beside the thicker ones [mm]
-CELLS_THICK = (1, 2, 4)  # walls thinner than so many cells are counted
-OPPOSED = 1.9  # of 2: how far apart, in radii, a ball in a wall touches front and back
-START = 1.0  # the tip begins so far before a wall [mm]
-PUSH, SLIDE, CYCLES = 0.1, 0.03, 120  # what the hand wants in each cycle, into and along it [mm]
+HALF_BOX = 16.0  # of the sampled box [mm]
+INNER = 12.5  # of the part with the tested walls and distances [mm]
+NEAR = 2.0  # distances are compared up to this far from the surface [mm]
+THICKEST = 4.0  # thickest wall [mm]
+THIN = 1.0  # walls thinner than this are tested separately [mm]
+CELLS_THICK = (1, 2, 4)  # walls thinner than this many cells are counted
+OPPOSED = 1.9  # of 2: the distance between the front and back contacts of a ball in a wall, in radii
+START = 1.0  # distance of the tip from a wall at the start [mm]
+PUSH, SLIDE, CYCLES = 0.1, 0.03, 120  # desired motion of a cycle, into and along a wall [mm]
 
 
 @dataclass(frozen=True)
 class Walls:
-    """Places on walls, (n, 3); the unit way into each; half its thickness; and the middle of it."""
+    """Places on walls, (n, 3); the unit direction into each; half its thickness; and its middle."""
 
     front: Array
     inwards: Array
@@ -64,19 +64,19 @@ class Walls:
 
 
 class Truth:
-    """What is so of a closed mesh, by the judge: an airway whose normals point inwards is free inside."""
+    """The judge's findings on a closed mesh. An airway whose normals point inwards is free inside."""
 
     def __init__(self, mesh: keepout.Mesh) -> None:
         self._judge = Judge(mesh.vertices, mesh.triangles)
         self._sign = -1.0 if mesh.inspect().inside_out else 1.0
 
     def distances(self, points: Array) -> Array:
-        """Of (n, 3) points; negative in the solid."""
+        """Returns the distances of (n, 3) points; negative in the solid."""
         signed: Array = self._sign * self._judge.distances(points)
         return signed
 
     def entered(self, tips: Array) -> bool:
-        """Whether the way through the places (n, 3) touches the mesh, or one is in the solid."""
+        """Returns True if the path through the places (n, 3) touches the mesh, or if a place is in the solid."""
         touches = self._judge.crossings(tips[:-1], tips[1:]).any()
         return bool(touches or self.distances(tips).min() < 0.0)
 
@@ -92,7 +92,7 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def run(unit: Unit) -> list[Row]:
-    """A row for each mode. Lengths in mm, memory in bytes, shares of 1."""
+    """Returns a row for each mode. Lengths in mm, memory in bytes, fractions of 1."""
     asked = unit.settings
     mesh = keepout.load_mesh(mesh_file(asked["anatomy"]))
     if asked["anatomy"] in HOLLOW:
@@ -146,7 +146,7 @@ def _rule(mode: str, task: Task, index: keepout.Index) -> Rule:
 def thinnest_place(
     index: keepout.Index, random: np.random.Generator, samples: int
 ) -> tuple[Array, Walls]:
-    """The center of the box that has most of the thin walls, and the walls there, sampled anew."""
+    """Returns the center of the box that has most of the thin walls, and the walls there, from new samples."""
     everywhere = walls_at(index, *surface_points(index.mesh, random, samples))
     thin = everywhere.front[everywhere.half < 0.25 * THICKEST]
     apart = np.abs(thin[:, None] - thin[None]).max(axis=2)
@@ -160,7 +160,7 @@ def surface_points(
     mesh: keepout.Mesh, random: np.random.Generator, count: int,
     chosen: NDArray[np.bool_] | None = None,
 ) -> tuple[Array, Array]:
-    """Points all over the chosen triangles, and the ways inwards there: (count, 3) each."""
+    """Returns random points on the chosen triangles, and the directions inwards: (count, 3) each."""
     a, b, c = (mesh.vertices[mesh.triangles[:, i]] for i in range(3))
     normals = np.cross(b - a, c - a)
     area = np.linalg.norm(normals, axis=1)
@@ -173,10 +173,10 @@ def surface_points(
 
 
 def walls_at(index: keepout.Index, points: Array, inwards: Array) -> Walls:
-    """Those of the places where a wall is, no thicker than THICKEST.
+    """Returns the places that are on a wall, no thicker than THICKEST.
 
-    The largest ball in the solid that touches a place is found by bisection; it lies in a wall if
-    it touches the other side straight across, and not beside the place, as behind a ridge.
+    Bisection finds the largest ball in the solid that touches a place. The ball lies in a wall if it touches the
+    other side straight across. A contact beside the place, as behind a ridge, does not count.
     """
     low, high = np.zeros(len(points)), np.full(len(points), 0.5 * THICKEST)
     for _ in range(30):
@@ -193,7 +193,7 @@ def walls_at(index: keepout.Index, points: Array, inwards: Array) -> Walls:
 
 
 def errors(grid: VoxelGrid, truth: Truth, points: Array) -> Row:
-    """By how much the grid's distances err at those points that are near the surface [mm]."""
+    """Returns the errors of the grid's distances at the points near the surface [mm]."""
     exact = truth.distances(points)
     near = np.abs(exact) < NEAR
     wrong = np.abs(grid.distances(points[near]) - exact[near])
@@ -204,7 +204,7 @@ def errors(grid: VoxelGrid, truth: Truth, points: Array) -> Row:
 
 
 def lost_walls(grid: VoxelGrid, walls: Walls) -> Row:
-    """Of walls thinner than some cells: how many there are, and the share whose middle is free."""
+    """Returns, for walls thinner than some cells, their number and the fraction whose middle is free."""
     free = grid.distances(walls.middle) >= 0.0
     row: Row = {}
     for cells in CELLS_THICK:
@@ -217,7 +217,7 @@ def lost_walls(grid: VoxelGrid, walls: Walls) -> Row:
 def pushes_at(
     truth: Truth, walls: Walls, random: np.random.Generator, loops: int
 ) -> tuple[Array, Array]:
-    """Where tips start before walls, if free there, and what they want in each cycle."""
+    """Returns the start of each tip before a wall, if it is free there, and its desired motion in each cycle."""
     room = truth.distances(walls.front - START * walls.inwards)
     walls = walls.where(room > 0.5 * START)
     walls = walls.where(random.permutation(len(walls.half))[:loops])
@@ -229,7 +229,7 @@ def pushes_at(
 def pushed(
     new_rule: Callable[[], Rule], truth: Truth, starts: Array, wanted: Array
 ) -> Row:
-    """Tips that are pushed at walls: how many get in, how deep, and step times."""
+    """Pushes tips at walls. Returns how many enter, how deep, and the step times."""
     tips = np.empty((len(starts), CYCLES + 1, 3))
     tips[:, 0] = starts
     times = []
@@ -266,16 +266,16 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
             f"{row['thicker_entered']} of {row['thicker_loops']}",
         ] for row in rows],
         f"In a box of {2 * HALF_BOX:g} mm with the most thin walls. Errors within {NEAR:g} mm of "
-        "the surface. A wall is lost where the field is free half-way through it. Pushed at are "
-        f"walls thinner than {THIN:g} mm, and in the last column those of {THIN:g} to {THICKEST:g} "
-        "mm; passed: out again after it has entered. Grids are stepped in Python, the other rules "
+        "the surface. A wall is lost if the field is free half-way through it. The tip pushes at "
+        f"walls thinner than {THIN:g} mm; in the last column they are {THIN:g} to {THICKEST:g} mm thick. "
+        "Passed: the tip entered and came out again. Grids are stepped in Python, the other rules "
         "in C++, called from Python.",
     )
     fields = [row for row in rows if row["mode"] in CELLS]
     ours = [row for row in rows if row["mode"] == "certified"]
     entered, loops = sum(row["entered"] for row in fields), sum(row["loops"] for row in fields)
     headline = (
-        f"Pushed at walls thinner than {THIN:g} mm, the tip entered in {entered} of {loops} loops "
+        f"At walls thinner than {THIN:g} mm, a pushed tip entered in {entered} of {loops} loops "
         f"under distance fields, {max(row['deepest'] for row in fields):.2f} mm deep at "
         f"most, and under certified in {sum(row['entered'] for row in ours)} of {sum(row['loops'] for row in ours)}.")
     return Findings(headline, _claims(rows), [table], [_figure(rows)])
@@ -293,7 +293,7 @@ def _lost(row: Row) -> str:
 
 
 def _claims(rows: list[Row]) -> list[Claim]:
-    """How often each field lets the tip in, against certified: Fisher's exact test, then Holm."""
+    """Compares how often each field lets the tip in with certified: Fisher's exact test, then Holm."""
     counts = {}
     for mode in MODES:
         own = [row for row in rows if row["mode"] == mode]
@@ -310,8 +310,8 @@ def _claims(rows: list[Row]) -> list[Claim]:
             f"loops at thin walls that enter: {figures.label(mode)} {said[mode]}", "-",
             said["paper"], said["certified"], best,
             f"p = {p:.2g}, field against certified (Fisher, Holm)",
-            "p takes loops as independent, but some are pushed at one wall, and all modes at the same: "
-            "it is no more than a rough guide")
+            "p assumes independent loops, but some push at the same wall, and all modes use the same walls: "
+            "only a rough guide")
         for mode, p in zip(CELLS, holm(p_values))
     ]
 
@@ -342,5 +342,5 @@ def _figure(rows: list[Row]) -> Figure:
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0))
     return Figure(
         "error_and_memory", "Error and memory of a distance field",
-        "How wrong the field is within 2 mm of the surface, and what it takes of memory. The "
-        "certified rule asks the mesh: its distances do not depend on a voxel.", figures.svg(fig))
+        "The error of the field within 2 mm of the surface, and its memory. The certified rule queries the mesh: "
+        "its distances do not depend on a voxel.", figures.svg(fig))

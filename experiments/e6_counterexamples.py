@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""E6: small meshes on which the paper's algorithm fails, or some reading of it does (section III).
+"""E6: small meshes on which the algorithm of Li et al. (2020), or some reading of it, fails (section III).
 
-Section III-B enumerates the local cases and finds the algorithm complete. On nine meshes of a few triangles
-one motion is asked for, and the judge tells whether the motion that a rule allows passes through. They were found
-by search, one of them closed and well made: docs/activation.md says what goes wrong in each.
+Section III-B enumerates the local cases and finds the algorithm complete. Here are nine meshes of a few triangles,
+each with one desired motion. The judge decides if the motion that a rule allows passes through. We found the meshes
+by search; one of them is closed and well made. docs/activation.md explains each failure.
 """
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NAME = "e6_counterexamples"
 TITLE = "E6 Counterexamples (section III)"
 
 MARGIN = 0.001  # [mm]
-CYCLES = 20  # the motion is asked for again and again
+CYCLES = 20  # the desired motion is repeated
 
 
 def units(scale: Scale) -> list[Unit]:
@@ -27,7 +27,7 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def run(unit: Unit) -> list[Row]:
-    """A row for each counterexample."""
+    """Returns a row for each counterexample."""
     import keepout_peers
 
     rows: list[Row] = []
@@ -41,7 +41,7 @@ def run(unit: Unit) -> list[Row]:
         for _ in range(CYCLES):
             places.append(places[-1] + rule.step(places[-1], desired))
         ways = np.array(places)
-        # A tip that starts on the surface touches it: what counts is a motion that leads through.
+        # A tip that starts on the surface touches it: only a motion through the surface counts.
         starts_free = judge.distances(ways[:1])[0] != 0.0
         through = judge.crossings(ways[:-1], ways[1:]) if starts_free else np.zeros(CYCLES, bool)
         rows.append(
@@ -76,14 +76,14 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
         f"{said('certified')}.",
         claims=[
             Claim(
-                about="completeness: local cases in which the tip is let through (III-B)",
+                about="completeness: local cases in which the tip passes through (III-B)",
                 paper="none",
                 reproduction=said("paper"),
                 certified=said("certified"),
                 best=", ".join(figures.label(m) for m in FIXTURES if len(passed[m]) == fewest),
                 sure="each is a proof by example, judged in exact arithmetic",
-                note="a neighbour whose closest point is nearer takes a triangle's place, and its plane "
-                "need not cover that triangle",
+                note="a neighbor with a nearer closest point replaces a triangle, and its plane "
+                "may not cover that triangle",
             )
         ],
         tables=[
@@ -95,7 +95,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
                     + [cell(of[e, m]) for m in FIXTURES]
                     for e in examples
                 ],
-                "Grids coarser than a mesh of a few millimetres cannot hold it. On CE4 the tip starts on the "
+                "Grids coarser than a mesh of a few millimeters cannot represent it. On CE4 the tip starts on the "
                 "surface, which counts as held.",
             )
         ],

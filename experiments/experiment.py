@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an experiment is: pieces of work that make rows of a table, and what is found in the rows.
+"""The interface of an experiment: units of work that make the rows of a table, and findings from the rows.
 
-A module is an experiment if it has
+A module is an experiment if it has these members:
 
-    NAME = "e3_path_tracing"                     # of its files and on the command line
-    TITLE = "E3 Path tracing (section V-A)"
-    def units(scale: Scale) -> list[Unit]        # the pieces of work
-    def run(unit: Unit) -> list[Row]             # of one piece, in a process of its own
-    def findings(rows: list[Row], scale: Scale) -> Findings   # of all rows
+`NAME`: the name of its files and on the command line, such as "e3_path_tracing".
+`TITLE`: such as "E3 Path tracing (section V-A)".
+`units(scale: Scale) -> list[Unit]`: returns the units of work.
+`run(unit: Unit) -> list[Row]`: returns the rows of one unit, in a process of its own.
+`findings(rows: list[Row], scale: Scale) -> Findings`: returns the findings from all rows.
 
-`run` depends on nothing but the unit: the same unit gives the same rows, to the last digit, but for
-members whose names begin with `measured_`, which are times. Lengths are in mm, times in s, forces in N.
+`run` depends on the unit only: the same unit gives identical rows, except for members whose names begin with
+`measured_`, which are times. Lengths are in mm, times in s, forces in N.
 """
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-#: A row of an experiment's table: names and values, which are text, numbers, true or false, or None.
+#: A row of an experiment's table: names and values, which are text, numbers, booleans, lists or None.
 Row = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Scale:
-    """How much is done. `full` takes hours, and not minutes; `seed` is that of all random numbers."""
+    """The extent of a run. `full` takes about an hour instead of minutes; `seed` is for all random numbers."""
 
     full: bool = False
     seed: int = 1
@@ -36,11 +36,10 @@ class Scale:
 
 @dataclass(frozen=True)
 class Unit:
-    """A piece of work of some seconds or minutes, which is kept once it is done.
+    """A unit of work of some seconds or minutes, whose rows are kept.
 
-    `name` tells it from the others of its experiment, and is part of a file's name: letters, digits,
-    '-', '_' and '.'. `settings` is all that `run` is told. A unit that measures times is `alone`:
-    nothing else runs meanwhile.
+    `name` is unique in its experiment, and part of a file name: letters, digits, '-', '_' and '.'. `settings` is the
+    only input of `run`. A unit that measures times is `alone`: no other unit runs at the same time.
     """
 
     name: str
@@ -50,20 +49,20 @@ class Unit:
 
 @dataclass(frozen=True)
 class Claim:
-    """A number of the paper beside ours. Each text is short: a number with its unit and spread."""
+    """A number of Li et al. (2020) beside ours. Each text is short: a number with its unit and spread."""
 
     about: str  # such as "penetration depth, fixture (V-B)"
-    paper: str  # what the paper prints; "-" where it prints nothing
-    reproduction: str  # what its rule does here
-    certified: str  # what keepout does
-    best: str  # which mode is best here
-    sure: str  # how sure that is: p after Holm, effect with its interval
-    note: str = ""  # where the reproduction disagrees with the paper: why
+    paper: str  # as Li et al. print it; "-" if they print nothing
+    reproduction: str  # the result of their rule here
+    certified: str  # the result of keepout
+    best: str  # the best mode here
+    sure: str  # the evidence: p after Holm, effect with its interval
+    note: str = ""  # why the reproduction disagrees with Li et al., if it does
 
 
 @dataclass(frozen=True)
 class Table:
-    """Rows under headings, as text; `note` says what is to be read out of it."""
+    """Rows under headings, as text; `note` explains how to read them."""
 
     title: str
     columns: list[str]
@@ -73,7 +72,7 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture: `svg` is what figures.svg() gives. `name` is that of its file."""
+    """A figure: `svg` is the result of figures.svg(), `name` the name of its file."""
 
     name: str
     title: str
@@ -83,7 +82,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Findings:
-    """What an experiment has found. `headline` is one sentence with the numbers that matter."""
+    """The findings of an experiment. `headline` is one sentence with the most important numbers."""
 
     headline: str
     claims: list[Claim] = field(default_factory=list)

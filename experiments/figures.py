@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the figures look. A figure is drawn once, for paper and for pages in light and in dark.
+"""The style of the figures. A figure is drawn once, for paper and for light and dark pages.
 
     fig, ax = figures.new(120, 70)
     ax.plot(times, depths, color=figures.color("certified"), label=figures.label("certified"))
-    figure = Figure("depth", "Depth over time", "What is to be seen.", figures.svg(fig))
+    figure = Figure("depth", "Depth over time", "The caption.", figures.svg(fig))
 
-Draw in INK (matplotlib's "black"), SOFT, GRID, PAPER ("white") and the colours of modes, as opaque
-as it suits: svg() makes each of them a custom property of CSS, which is another colour in the dark.
-It refuses any other colour, and pictures of pixels, which would not follow.
+Draw in INK (matplotlib's "black"), SOFT, GRID, PAPER ("white") and the colors of modes, with any opacity. The
+function svg() makes each of them a custom property of CSS, with another color on dark pages. It rejects any other
+color, and pixel images, which could not change.
 """
 from __future__ import annotations
 
@@ -30,23 +30,23 @@ from numpy.typing import NDArray
 
 MM_OF_INCH = 25.4
 
-INK = "#000000"  # what is written
-SOFT = "#566173"  # axes, and what is said beside
+INK = "#000000"  # text
+SOFT = "#566173"  # axes and remarks
 GRID = "#dfe3ea"
 PAPER = "#ffffff"
 
 
 @dataclass(frozen=True)
 class Look:
-    """What people call something, and its colour on light and on dark paper."""
+    """The label of a mode, and its color on light and on dark pages."""
 
     name: str
     light: str
     dark: str
 
 
-#: Of each mode. Colours are apart for colour-blind eyes too, and stand out from the paper by 3 : 1
-#: or more. Add yours here; tests/experiments/test_figures.py says whether its colour will do.
+#: The look of each mode. Colors differ for color-blind eyes too, and have a contrast of 3 : 1 or more. Add yours
+#: here; tests/experiments/test_figures.py checks its color.
 MODES = {
     "none": Look("no fixture", "#17202e", "#e8edf4"),
     "all_faces": Look("all faces", "#939646", "#ffdc31"),
@@ -61,10 +61,10 @@ MODES = {
     "bullet_sweep": Look("Bullet, sweep", "#a465ba", "#baa0db"),
 }
 
-#: What the others are set beside: their boxes are fuller, and their names bold.
+#: The modes that others are compared with: their boxes are fuller, and their names bold.
 STRESSED = ("paper", "certified")
 
-#: By the name of the custom property; the colour in which it is drawn is the key of _DRAWN.
+#: By the name of the custom property; _DRAWN maps the drawn color to that name.
 _LOOKS = {
     "ink": Look("", "#17202e", "#e8edf4"),
     "soft": Look("", SOFT, "#9eabbd"),
@@ -73,11 +73,11 @@ _LOOKS = {
 } | {"mode-" + mode.replace(".", "-"): look for mode, look in MODES.items()}
 _DRAWN = {INK: "ink"} | {look.light: name for name, look in _LOOKS.items() if name != "ink"}
 
-matplotlib.rcdefaults()  # not what this user prefers: the same bytes everywhere
+matplotlib.rcdefaults()  # not the user's preferences: the same bytes everywhere
 matplotlib.rcParams.update({
     "svg.fonttype": "none",
     "svg.hashsalt": "keepout",
-    "font.sans-serif": ["DejaVu Sans"],  # wider than what is shown: nothing will overlap
+    "font.sans-serif": ["DejaVu Sans"],  # wider than the displayed font, so that text does not overlap
     "font.size": 9,
     "axes.titlesize": 9.5,
     "axes.titleweight": "bold",
@@ -101,27 +101,27 @@ matplotlib.rcParams.update({
 def new(
     width_mm: float, height_mm: float, *, columns: int = 1, rows: int = 1
 ) -> tuple[Figure, Any]:
-    """An empty figure and its axes: one Axes, or an array of them where there are several."""
+    """Returns an empty figure and its axes: one Axes, or an array of several."""
     size = (width_mm / MM_OF_INCH, height_mm / MM_OF_INCH)
     fig = Figure(figsize=size, layout="constrained")
     return fig, fig.subplots(rows, columns)
 
 
 def color(mode: str) -> str:
-    """In which to draw what a mode did, the same in all figures."""
+    """Returns the color of a mode, the same in all figures."""
     return MODES[mode].light
 
 
 def label(mode: str) -> str:
-    """What people call a mode."""
+    """Returns the label of a mode."""
     return MODES[mode].name
 
 
 def box_plot(ax: Axes, groups: dict[str, NDArray[np.float64]], ylabel: str) -> None:
-    """Box plots of values by mode, from left to right, and every value as a point.
+    """Draws box plots of values by mode, from left to right, and every value as a point.
 
-    A box is from the lower to the upper quartile, with a line at the median; whiskers lead to the
-    last value within 1.5 times its height. Points are spread sidewise only to be told apart.
+    A box spans the quartiles, with a line at the median. Whiskers reach the last value within 1.5 times its height.
+    Points are spread sideways only to separate them.
     """
     for place, (mode, values) in enumerate(groups.items()):
         shade = color(mode)
@@ -138,11 +138,11 @@ def box_plot(ax: Axes, groups: dict[str, NDArray[np.float64]], ylabel: str) -> N
             capprops=lines,
             medianprops={"color": shade, "linewidth": 2.2},
         )
-        spread = (np.arange(len(values)) * 0.6180339887) % 1.0 - 0.5  # the golden section: even
+        spread = (np.arange(len(values)) * 0.6180339887) % 1.0 - 0.5  # the golden section spreads them evenly
         ax.plot(place + 0.4 * spread, values, "o", color=shade, alpha=0.5, markersize=2.6,
                 markeredgewidth=0)
     room = MM_OF_INCH * ax.figure.get_figwidth() * ax.get_position().width / len(groups)
-    if room > 20.0:  # mm, for a name in lines; else names are slanted
+    if room > 20.0:  # mm, enough for a name in lines; otherwise names are slanted
         names = [textwrap.fill(label(mode), 12, break_long_words=False) for mode in groups]
         ax.set_xticks(range(len(groups)), names)
     else:
@@ -156,9 +156,9 @@ def box_plot(ax: Axes, groups: dict[str, NDArray[np.float64]], ylabel: str) -> N
 
 
 def svg(fig: Figure) -> str:
-    """The figure as SVG, for a file of its own or a page; the figure is empty afterwards.
+    """Returns the figure as SVG, for a file or a page; the figure is empty afterwards.
 
-    The same figure gives the same bytes. Raises ValueError for what would not follow into the dark.
+    The same figure gives the same bytes. Raises ValueError for content without a dark color.
     """
     file = io.StringIO()
     fig.savefig(file, format="svg")
@@ -168,23 +168,23 @@ def svg(fig: Figure) -> str:
     fig.clear()
     text = file.getvalue()
     if "<image" in text:
-        raise ValueError("a figure is of lines and faces; pixels do not follow into the dark")
+        raise ValueError("a figure must consist of lines and faces, because pixels have no dark colors")
     names: set[str] = {"ink"}
 
     def property_of(found: re.Match[str]) -> str:
         if found[2] not in _DRAWN:
-            raise ValueError(f"{found[2]} is no colour of figures.py: dark pages need another")
+            raise ValueError(f"{found[2]} is not a color of figures.py, so it has no dark color")
         names.add(_DRAWN[found[2]])
         return f"{found[1]}: var(--{_DRAWN[found[2]]})"
 
     text = re.sub(r"\b(fill|stroke): (#[0-9a-f]{6})", property_of, text)
     text = re.sub(r"'DejaVu Sans'[^;\"]*", "system-ui, sans-serif", text)
-    # Formulas are set letter by letter, for one font: let words run in whichever is there.
+    # matplotlib places formulas letter by letter for one font; without positions they fit any font.
     text = re.sub(r'(<tspan [^>]*x="[^" ]+)[^"]*"', r'\1"', text)
-    # No date, no comments; what its style says, _style() says too.
+    # Remove dates, comments, and the style that _style() replaces.
     text = re.sub(r"\s*<!--.*?-->|\s*<metadata>.*?</metadata>|<defs>\s*<style.*?</defs>", "", text,
                   flags=re.DOTALL)
-    # matplotlib numbers everything; what nothing refers to would only be twice on a page.
+    # matplotlib gives every element an id; unused ones could occur twice on a page.
     used = set(re.findall(r"#([\w.-]+)", text))
     text = re.sub(r' id="([^"]*)"', lambda found: found[0] if found[1] in used else "", text)
     drawn = [look.name for name, look in _LOOKS.items() if name in names and look.name]
@@ -196,7 +196,7 @@ def svg(fig: Figure) -> str:
 
 
 def _style(names: set[str]) -> str:
-    """The custom properties of these names. What matplotlib gives no colour is of the ink."""
+    """Returns the custom properties of these names. Elements without a color get the ink's."""
     light = ";".join(f"--{name}:{_LOOKS[name].light}" for name in sorted(names))
     dark = ";".join(f"--{name}:{_LOOKS[name].dark}" for name in sorted(names))
     return (

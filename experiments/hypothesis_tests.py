@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether two modes differ, by how much, and how sure that is.
+"""Tests if two modes differ, by how much, and how certain that is.
 
-The paper's p values are of Student's test, which takes both modes to vary alike; Welch's does not,
-and is what is to be believed. Samples are whole trials, one number each: what is measured every
-millimetre of one cut is not independent, and counting it as if it were makes p values too small.
+The p values of Li et al. (2020) are of Student's test, which assumes that both modes have the same variance. Welch's
+test does not, and is the one to trust. Samples are whole trials, one number each. Values at every millimeter of one
+cut are not independent; a test that treats them as independent gives p values that are too small.
 """
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .experiment import Array
 
 @dataclass(frozen=True)
 class Summary:
-    """What is printed of a sample: mean, standard deviation (of n - 1), and size."""
+    """The summary of a sample: mean, standard deviation (of n - 1), and size."""
 
     mean: float
     sd: float
@@ -33,7 +33,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class MeanTest:
-    """Of equal means: the statistic, and the two-sided p."""
+    """A test of equal means: the statistic, and the two-sided p."""
 
     t: float
     p: float
@@ -41,7 +41,7 @@ class MeanTest:
 
 @dataclass(frozen=True)
 class Effect:
-    """Hedges' g, the difference a - b in standard deviations, and its interval. NaN: unknown."""
+    """Hedges' g, the difference a - b in standard deviations, and its interval. NaN if unknown."""
 
     g: float
     low: float
@@ -49,17 +49,17 @@ class Effect:
 
 
 def student(a: Summary, b: Summary) -> MeanTest:
-    """The pooled test: exact for normal samples of the same variance."""
+    """Returns the pooled test: exact for normal samples with the same variance."""
     return _test(a, b, equal_var=True)
 
 
 def welch(a: Summary, b: Summary) -> MeanTest:
-    """For variances that may differ, with the degrees of freedom of Welch and Satterthwaite."""
+    """Returns the test for variances that may differ, with the degrees of freedom of Welch and Satterthwaite."""
     return _test(a, b, equal_var=False)
 
 
 def _test(a: Summary, b: Summary, *, equal_var: bool) -> MeanTest:
-    if a.sd == b.sd == 0.0:  # no spread: equal for certain, or different for certain
+    if a.sd == b.sd == 0.0:  # without spread the means are equal or different for certain
         same = a.mean == b.mean
         return MeanTest(0.0 if same else float(np.copysign(np.inf, a.mean - b.mean)), float(same))
     found = stats.ttest_ind_from_stats(a.mean, a.sd, a.n, b.mean, b.sd, b.n, equal_var)
@@ -67,7 +67,7 @@ def _test(a: Summary, b: Summary, *, equal_var: bool) -> MeanTest:
 
 
 def hedges_g(a: Summary, b: Summary) -> float:
-    """(a - b) / pooled deviation, times the usual 1 - 3 / (4 dof - 1), as small samples exaggerate.
+    """Returns (a - b) / pooled deviation, times 1 - 3 / (4 dof - 1), because small samples exaggerate it.
 
     Hedges, "Distribution theory for Glass's estimator of effect size", 1981. NaN without spread.
     """
@@ -78,7 +78,8 @@ def hedges_g(a: Summary, b: Summary) -> float:
 
 
 def _bounded_g(difference: Array, squares: Array, dof: int) -> Array:
-    """Of samples with these differences of means and sums of squares; a million at most, as some may have no spread."""
+    """Returns g from differences of means and sums of squares. Limited to a million, because some samples have no
+    spread."""
     spread = np.maximum(np.sqrt(squares / dof), 1e-6 * np.abs(difference))
     g: Array = difference / np.where(difference == 0.0, 1.0, spread) * (1 - 3 / (4 * dof - 1))
     return g
@@ -93,11 +94,10 @@ def _hedges_g_along(a: Array, b: Array, axis: int = -1) -> Array:
 def effect(
     a: ArrayLike, b: ArrayLike, seed: int, confidence: float = 0.95, resamples: int = 10_000
 ) -> Effect:
-    """Hedges' g with the interval of the BCa bootstrap, each mode resampled by itself.
+    """Returns Hedges' g with the interval of the BCa bootstrap, which resamples each mode separately.
 
-    Efron, "Better bootstrap confidence intervals", 1987: corrected for bias, and for a spread that
-    changes with g. Fewer than three trials of a mode are too few to resample: the interval is NaN
-    then. The same seed gives the same interval.
+    Efron, "Better bootstrap confidence intervals", 1987: corrected for bias, and for a spread that changes with g.
+    The interval is NaN for fewer than three trials of a mode. The same seed gives the same interval.
     """
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     g = hedges_g(Summary.of(a), Summary.of(b))
@@ -111,7 +111,7 @@ def effect(
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
-    """Each p as if it were the only one of its family: below 0.05 means 5 % for any error at all.
+    """Returns each p adjusted for its family: below 0.05 means at most 5 % for any error in the family.
 
     Holm, "A simple sequentially rejective multiple test procedure", 1979.
     """
@@ -122,7 +122,7 @@ def holm(p_values: Sequence[float]) -> list[float]:
 
 
 def in_words(p_after_holm: float, size: Effect) -> str:
-    """For a table: p after Holm, and the effect with its interval."""
+    """Returns p after Holm, and the effect with its interval, as text for a table."""
     p = "p < 1e-6" if p_after_holm < 1e-6 else f"p = {p_after_holm:.2g}"
     if not np.isfinite(size.g):
         return f"{p}, no spread"

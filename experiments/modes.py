@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The modes that are compared, by name. To compare a rule of your own, add it to `_rules`."""
+"""The modes to compare, by name. To compare a rule of your own, add it to `_rules`."""
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from .rules.rule import Rule, Task
 from .rules.signed_distance_field import SignedDistanceField
 from .rules.vector_field_inequality import VectorFieldInequality
 
-#: No fixture: the tip goes where the hand wants it.
+#: No fixture: the tip follows the hand.
 NO_FIXTURE = "none"
 
 _rules: dict[str, Callable[[Task, keepout.Index], Rule]] = {
@@ -36,5 +36,5 @@ MODES = (NO_FIXTURE, *FIXTURES)
 
 
 def make_rule(mode: str, task: Task, index: keepout.Index) -> Rule | None:
-    """The rule of a mode for one trial; None without a fixture. KeyError: no such mode."""
+    """Returns the rule of a mode for one trial; None without a fixture. Raises KeyError for an unknown mode."""
     return None if mode == NO_FIXTURE else _rules[mode](task, index)

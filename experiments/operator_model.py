@@ -1,26 +1,28 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The operator: what he intends, what his hand adds, and an arm that feels the fixture's force.
+"""The operator: the intended motion, the errors of the hand, and an arm that feels the fixture's force.
 
-The hand means to follow a planned path. What it does instead is the sum of
+The hand intends to follow a planned path. Its errors are:
 
-- a bias, the same all through a trial: the place that stereo vision gets wrong;
-- a slow error below 2 Hz. Of the voluntary motion of eye surgeons 98.9 % of the power is below that
-  (Riviere, Rader, Khosla, "Characteristics of hand motion of eye surgeons", 1997);
-- adjustments in depth, up and down again from 0.5 to 2 Hz, of a hand whose eye is not sure of it: the
-  paper's argument for smoothness is that a fixture takes them away;
-- physiological tremor from 8 to 12 Hz. 0.05, 0.13 and 0.25 mm RMS, here of the robot's goal, are
-  what was measured holding still and actuating (0.049 and 0.133 mm, the same article) and without
-  sight of the tip (0.254 mm in the axis with most of it: PubMed Central PMC3032442).
+A bias, constant in a trial: the error of stereo vision.
+A slow error below 2 Hz: 98.9 % of the power of voluntary motion of eye surgeons is below 2 Hz.
+Adjustments in depth, up and down from 0.5 to 2 Hz, because the eye is not sure of the depth. Li et al. (2020) argue
+that a fixture makes motion smoother because it takes these away.
+Physiological tremor from 8 to 12 Hz, of 0.05, 0.13 and 0.25 mm RMS, here of the robot's goal. Measured values are
+0.049 mm (holding still) and 0.133 mm (actuating). Without sight of the tip it is 0.254 mm in the axis with most of it
+(PubMed Central PMC3032442).
 
-The arm is a mass on a spring and a damper between the place intended and the handle, the usual form
-(Speich, Shao, Goldfarb, "Modeling the human hand as it interacts with a telemanipulation system",
-Mechatronics 15, 2005; Fu and Cavusoglu, "Human arm-and-hand dynamics model with variability
-analyses for a stylus-based haptic interface", IEEE SMC-B 42, 2012). The values are ours, of the order
-that such articles find for a light grip, near critical damping.
+The source of the power and of the first two values of tremor is Riviere, Rader, Khosla, "Characteristics of hand
+motion of eye surgeons", 1997.
 
-The amounts of bias and slow error are not from the literature: they are fitted to what the paper prints
-of cutting WITHOUT a fixture (`docs/experiments.md` has the table). What is said of any
-fixture is then a prediction, with nothing left to fit.
+The arm is a mass on a spring and a damper between the intended position and the handle, the usual form. Sources:
+Speich, Shao, Goldfarb, "Modeling the human hand as it interacts with a telemanipulation system", Mechatronics 15,
+2005. Fu and Cavusoglu, "Human arm-and-hand dynamics model with variability analyses for a stylus-based haptic
+interface", IEEE SMC-B 42, 2012. The values are ours, of the order that such articles find for a light grip, near
+critical damping.
+
+The amounts of bias and slow error are not from the literature. They are fitted to the numbers of Li et al. for
+cutting WITHOUT a fixture (`docs/experiments.md` has the table). All results with a fixture are then predictions, with
+no parameter left to fit.
 """
 from __future__ import annotations
 
@@ -34,7 +36,7 @@ from .experiment import Array
 
 @dataclass(frozen=True)
 class Operator:
-    """Errors at the tip in mm, across the path and along the tool's axis (in depth)."""
+    """The errors at the tip in mm, across the path and along the tool's axis (in depth)."""
 
     bias_across: float = 0.2  # standard deviation from trial to trial [mm]
     bias_in_depth: float = 0.25
@@ -46,15 +48,16 @@ class Operator:
     mass: float = 0.15  # of hand and handle [kg]
     stiffness: float = 0.4  # of the arm [N/mm]
     damping: float = 0.014  # of the arm [N s/mm]
-    motion_scale: float = 1.0  # tip motion a hand motion
-    reaction: float = 0.2  # until the eye's finding acts on the hand's speed [s]
-    tolerance: float = 0.5  # deviation at which the hand goes half as fast [mm]
-    felt_force: float = 0.1  # the least that the hand notices of a fixture [N]
-    leaning: float = 1.5  # how far beyond a fixture the hand aims, to lean on it [mm]
+    motion_scale: float = 1.0  # tip motion divided by hand motion
+    reaction: float = 0.2  # delay between the deviation and the hand's change of speed [s]
+    tolerance: float = 0.5  # deviation at which the hand moves at half speed [mm]
+    felt_force: float = 0.1  # least force of a fixture that the hand notices [N]
+    leaning: float = 1.5  # distance that the hand aims beyond a fixture, to lean on it [mm]
 
 
 def slow_error(random: np.random.Generator, cycles: int, period: float, corner: float) -> Array:
-    """(cycles, 3), each axis of mean square 1 in expectation: first-order noise without what is above 2 Hz."""
+    """Returns (cycles, 3): first-order noise without power above 2 Hz, each axis with an expected mean square of
+    1."""
     settle = int(3.0 / (2 * np.pi * corner) / period)
     white = random.standard_normal((settle + cycles, 3))
     pole = np.exp(-2 * np.pi * corner * period)
@@ -65,12 +68,12 @@ def slow_error(random: np.random.Generator, cycles: int, period: float, corner: 
 
 
 def adjustments(random: np.random.Generator, cycles: int, period: float, rms: float) -> Array:
-    """(cycles,) [mm]: band noise from 0.5 to 2 Hz with this root mean square."""
+    """Returns (cycles,) [mm]: band noise from 0.5 to 2 Hz with this root mean square."""
     return _band(random.standard_normal((cycles, 1)), 0.5, 2.0, period, rms)[:, 0]
 
 
 def tremor(random: np.random.Generator, cycles: int, period: float, rms: float) -> Array:
-    """(cycles, 3) [mm]: band noise from 8 to 12 Hz, whose vector has this root mean square."""
+    """Returns (cycles, 3) [mm]: band noise from 8 to 12 Hz; its vector has this root mean square."""
     return _band(random.standard_normal((cycles, 3)), 8.0, 12.0, period, rms)
 
 
@@ -81,7 +84,7 @@ def _band(white: Array, low: float, high: float, period: float, rms: float) -> A
 
 
 class Arm:
-    """The mass, the spring and the damper. Places and speeds are those of the handle [mm, mm/s]."""
+    """The mass, the spring and the damper. Positions and velocities are those of the handle [mm, mm/s]."""
 
     def __init__(self, operator: Operator, place: Array) -> None:
         self.place = place.copy()
@@ -89,12 +92,12 @@ class Arm:
         self._operator = operator
 
     def move(self, intended: Array, intended_speed: Array, force: Array, period: float) -> Array:
-        """One cycle of `period` [s] under the `force` [N] of the handle; where the handle is then.
+        """Moves the handle for one cycle of `period` [s] under a `force` [N], and returns its position.
 
-        Semi-implicit Euler: stable, as the damper's part is taken at the cycle's end.
+        Semi-implicit Euler: stable, because the damper acts on the velocity at the end of the cycle.
         """
         arm = self._operator
-        mass = arm.mass / 1000.0  # in N s^2/mm, for forces in N of lengths in mm
+        mass = arm.mass / 1000.0  # in N s^2/mm, because lengths are in mm
         pull = arm.stiffness * (intended - self.place) + arm.damping * intended_speed + force
         self.speed = (self.speed + pull * (period / mass)) / (1.0 + arm.damping * period / mass)
         self.place = self.place + self.speed * period

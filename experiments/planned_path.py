@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The path that is inked on the skull, as the operator sees it."""
+"""The path that is inked on the skull, which the operator sees."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from .experiment import Array
 
 @dataclass(frozen=True)
 class PlannedPath:
-    """Points at equal spacing along the outer surface; away from the bone is `up`.
+    """Points at equal spacing along the outer surface; `up` points away from the bone.
 
-    `across` is perpendicular to the plane that the path lies in, the same all along.
+    `across` is perpendicular to the plane of the path, and constant.
     """
 
     points: Array  # (n, 3) [mm]
@@ -28,11 +28,11 @@ class PlannedPath:
         return self.spacing * (len(self.points) - 1)
 
     def number(self, along: float) -> int:
-        """Of the point nearest to a place along the path [mm]; the ends stand for what is beyond."""
+        """Returns the number of the point nearest to a place along the path [mm], limited to the ends."""
         return min(max(round(along / self.spacing), 0), len(self.points) - 1)
 
     def at(self, along: float) -> tuple[Array, Array]:
-        """The place and `up` there, between points; the ends stand for what is beyond."""
+        """Returns the interpolated position at a place along the path, and `up` there, limited to the ends."""
         place = min(max(along / self.spacing, 0.0), len(self.points) - 1.0)
         low = min(int(place), len(self.points) - 2)
         share = place - low
@@ -43,15 +43,15 @@ class PlannedPath:
     @cached_property
     def _heading(self) -> tuple[Array, Array]:
         heading = self.points[-1] - self.points[0]
-        return heading, self.points @ heading  # ascends: the path turns by far less than a right angle
+        return heading, self.points @ heading  # ascends, because the path turns by much less than a right angle
 
     def abreast(self, places: Array) -> NDArray[np.intp]:
-        """The numbers of the points abreast of places (m, 3) or (3,), in the direction of the whole path."""
+        """Returns the numbers of the points beside places (m, 3) or (3,), in the direction of the whole path."""
         heading, order = self._heading
         return np.minimum(np.searchsorted(order, places @ heading), len(self.points) - 1)
 
     def depths(self, places: Array) -> tuple[Array, Array, Array]:
-        """Of each of (m, 3) places: along the path, across it and in depth below it, [mm] each."""
+        """Returns for each of (m, 3) places: along the path, across it, and in depth below it, each in mm."""
         numbers = self.abreast(places)
         offset = places - self.points[numbers]
         return (

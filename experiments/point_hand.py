@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A hand that tries to lead a point through a surface: it sees where both are, and goes for it."""
+"""A simulated hand that tries to push a point through a surface; it sees both."""
 from __future__ import annotations
 
 import keepout
@@ -7,13 +7,13 @@ import numpy as np
 
 from .experiment import Array
 
-#: push: straight in. slide: along the surface, leaning on it. wedge: at corners and edges nearby,
-#: and beyond. press: held behind the surface, with a tremor. through: at vertices anywhere.
+#: push: straight in. slide: along the surface, leaning on it. wedge: at corners and edges nearby, and beyond. press:
+#: towards a place behind the surface, with a tremor. through: at random vertices.
 ROUTES = ("push", "slide", "wedge", "press", "through")
 
 
 class PointHand:
-    """What is asked of a tip, cycle by cycle, along one of ROUTES; at most `longest` mm each.
+    """The desired motion of a tip in each cycle, along one of ROUTES, at most `longest` mm long.
 
     The same generator and the same tips give the same motions.
     """
@@ -26,14 +26,14 @@ class PointHand:
         self._route = route
         self._longest = longest
         self._random = random
-        self._period = int(random.integers(10, 80))  # cycles until it thinks anew
+        self._period = int(random.integers(10, 80))  # cycles until it decides again
         self._attention = 8 if route in ("slide", "wedge") else self._period
         self._cycle = 0
         self._inwards = self._heading = np.zeros(3)
         self._goal: Array | None = None
 
     def next(self, tip: Array) -> Array:
-        """The motion that is asked for, (3,) in mm."""
+        """Returns the desired motion, (3,) in mm."""
         if self._cycle % self._attention == 0:
             self._look(tip)
         wish = self._wish(tip)
@@ -76,7 +76,7 @@ class PointHand:
 
 
 def nearest(index: keepout.Index, point: Array) -> tuple[int, Array]:
-    """The triangle that is nearest to a point, and the way to it, (3,) in mm."""
+    """Returns the triangle nearest to a point, and the vector to it, (3,) in mm."""
     distance = float(index.distances(point[None], threads=1)[0])
     hits = index.hits(point, distance * (1.0 + 1e-9) + 1e-9)
     which = int(hits.distances.argmin())
@@ -86,9 +86,9 @@ def nearest(index: keepout.Index, point: Array) -> tuple[int, Array]:
 def place_outside(
     index: keepout.Index, clearance: float, height: float, random: np.random.Generator
 ) -> Array:
-    """A place on the side that the normals point to, `height` mm above the surface or less.
+    """Returns a place on the side that the normals point to, at most `height` mm above the surface.
 
-    ValueError where none with that clearance [mm] is found: between sheets that are too close.
+    Raises ValueError if it finds no place with that clearance [mm], as between sheets that are too close.
     """
     mesh = index.mesh
     for attempt in range(400):
@@ -98,4 +98,4 @@ def place_outside(
         place = weights @ mesh.vertices[mesh.triangles[triangle]] + up * mesh.normals[triangle]
         if index.distances(place[None], threads=1)[0] > max(clearance, 0.8 * up):
             return place
-    raise ValueError("no place outside has the clearance that is to be kept")
+    raise ValueError("no place outside has the required clearance")

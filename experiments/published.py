@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The numbers that the paper prints, and where: Li et al., IROS 2020.
+"""The numbers that Li et al. (2020) print, with their sections: IROS 2020.
 
-Nothing here is measured by us but `AUTHORS_CODE`. What only its plots show is not here: of the
-rate, two points are given in words. Standard deviations are as printed; the paper does not say
-whether they are of n or n - 1.
+We measured only `AUTHORS_CODE`. Numbers that appear only in their plots are missing; of the rate, they print two
+points in words. Standard deviations are as printed; Li et al. do not say if they are of n or n - 1.
 """
 from __future__ import annotations
 
@@ -14,26 +13,26 @@ from .hypothesis_tests import Summary
 
 @dataclass(frozen=True)
 class Comparison:
-    """Free hand against fixture, as printed. `n` counts what the paper's test counts."""
+    """Free hand against fixture, as printed. `n` counts as the test of Li et al. does."""
 
     about: str
     section: str
     unit: str
     free: Summary
     fixture: Summary
-    p: float  # as printed: of the pooled two-sided Student test, but for that of PENETRATION_DEPTH
+    p: float  # as printed: of the pooled two-sided Student test, except for PENETRATION_DEPTH
 
 
 SAL = Comparison(
     "spectral arc length", "V-A", "", Summary(-20.98, 0.79, 5), Summary(-10.02, 3.7, 5), 1.9e-4)
 
-#: Durations are 232 and 237 s, 212 and 196 s. The first two have a deviation of 3.5, not of 3.8.
+#: Durations are 232 and 237 s, 212 and 196 s. The first two have a deviation of 3.5, not 3.8.
 DURATION = Comparison(
     "duration", "V-B", "s", Summary(234.0, 3.8, 2), Summary(204.0, 11.0, 2), 0.069)
 DURATIONS_FREE = (232.0, 237.0)
 DURATIONS_FIXTURE = (212.0, 196.0)
 
-#: Two trials of 30 places each, 1 mm apart; 60 are tested as if they were independent.
+#: Two trials with 30 places each, 1 mm apart; the test treats all 60 as independent.
 PATH_DEVIATION = Comparison(
     "cutting path deviation", "V-B", "mm",
     Summary(0.63, 0.30, 60), Summary(0.37, 0.24, 60), 2.3e-6)
@@ -45,7 +44,7 @@ PENETRATION_DEPTH = Comparison(
 
 @dataclass(frozen=True)
 class Rate:
-    """How fast a loop runs on a mesh of so many triangles; `radius` in mm, None: not given."""
+    """The rate of a loop on a mesh of this many triangles; `radius` in mm, None if it is not given."""
 
     triangles: int
     khz: float
@@ -57,8 +56,8 @@ RATES = (Rate(51_978, 7.73), Rate(989_376, 0.180))
 #: IV-B: "less than approximately 200,000 triangles" keep the 1 kHz of a teleoperated loop.
 TRIANGLES_AT_1_KHZ = 200_000
 
-#: The authors' published code (cisstMesh, sawConstraintController) as we timed it: one core, g++ 12
-#: -O3, medians of closed-loop contact states on a bunny of 150 mm, with a step of the radius.
+#: The authors' published code (cisstMesh, sawConstraintController), timed by us: one core, g++ 12 -O3, medians of
+#: closed-loop contact states on a bunny of 150 mm, with a step of the radius.
 AUTHORS_CODE = (
     Rate(51_978, 19.7, 5.0), Rate(200_000, 5.90, 5.0), Rate(989_374, 0.749, 5.0),
     Rate(51_978, 35.2, 1.0), Rate(989_374, 1.21, 1.0), Rate(989_374, 1.35, 0.25),

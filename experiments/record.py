@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The record of the experiments, of which `keepout report` makes the page: docs/records.md."""
+"""Writes the record of the experiments, from which `keepout report` makes the page: docs/records.md."""
 from __future__ import annotations
 
 import json
@@ -15,7 +15,7 @@ import keepout
 
 from .experiment import Findings, Scale
 
-FORMAT = 1  # as in apps/keepout/record/record.cpp
+FORMAT = 1  # must match apps/keepout/record/record.cpp
 
 
 def write_record(
@@ -25,9 +25,9 @@ def write_record(
     complete: bool,
     command: str,
 ) -> None:
-    """Writes what was found, by name with its title, as JSON.
+    """Writes the findings as JSON, by name and with the title.
 
-    `complete`: nothing was left out or stopped. `command` does it again.
+    `complete`: no experiment was omitted or stopped. `command`: the command line that repeats it.
     """
     extent = "full" if scale.full else "quick"
     compared = sum(claim.paper != "-" for _, found in findings.values() for claim in found.claims)
@@ -40,8 +40,8 @@ def write_record(
         "command": command,
         "complete": complete,
         "subject": f"The experiments of Li et al., IROS 2020: {extent}",
-        "headline": f"{numbers} of the paper, beside what its rule does here, what the certified "
-        "rule does, and what is best",
+        "headline": f"{numbers} of the paper, beside the results of its rule, of the certified rule "
+        "and of the best mode here",
         "account": [],
         "machine": _machine(),
         "settings": {"scale": extent, "seed": str(scale.seed)},
@@ -54,9 +54,9 @@ def write_record(
 
 
 def _machine() -> dict[str, Any] | None:
-    """This machine as other records tell of it: that of a comparison of next to nothing.
+    """Returns this machine in the form of other records, from a minimal run of `compare`.
 
-    The command is $KEEPOUT_COMMAND, which ./run experiments sets; without it nothing is told.
+    The command is $KEEPOUT_COMMAND, which ./run experiments sets; without it the result is null.
     """
     program = os.environ.get("KEEPOUT_COMMAND")
     if not program:

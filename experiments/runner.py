@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the units of experiments on all processors, and keeps the rows of each that is done.
+"""Runs the units of experiments on all processors, and keeps the rows of each finished unit.
 
-What is kept is a file for each unit, `kept/seed<seed>/<experiment>/<unit>.json`. It is used again when the unit,
-keepout and the sources that its rows depend on are what they were, so that a run that was stopped goes on
-where it was. The tables are written from all rows: `<experiment>.csv`, which depends on the seed
-alone, and `<experiment>_times.csv` with what was measured by the clock.
+The rows of a unit are kept in `kept/seed<seed>/<experiment>/<unit>.json`. They are reused while the unit, keepout and
+the sources behind the rows are unchanged, so a stopped run continues where it stopped. The tables contain all rows:
+`<experiment>.csv`, which depends on the seed only, and `<experiment>_times.csv` with measured times.
 """
 from __future__ import annotations
 
@@ -17,6 +16,7 @@ import os
 import signal
 import sys
 import time
+import warnings
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from modulefinder import ModuleFinder
 from pathlib import Path
@@ -26,16 +26,16 @@ import keepout
 
 from .experiment import Row, Unit
 
-#: Members of a row that are measured by the clock begin with this.
+#: Members of a row with measured times begin with this.
 TIMED = "measured_"
 
 
-#: Modules that rows do not depend on: they are made of the rows.
+#: Modules that only show rows; rows do not depend on them.
 _SHOWING = ("__main__", "comparison", "figures", "published", "record", "runner", "summary")
 
 
 def source_digest(experiment: str) -> str:
-    """Of everything that the rows of an experiment depend on but their unit."""
+    """Returns a digest of everything that the rows of an experiment depend on, except the unit."""
     here = Path(__file__).parent
     finder = ModuleFinder([str(here.parent)], excludes=[f"{here.name}.{module}" for module in _SHOWING])
     finder.import_hook(f"{here.name}.{experiment}")
@@ -50,6 +50,7 @@ def source_digest(experiment: str) -> str:
 
 def _be_a_worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits for this one
+    warnings.filterwarnings("ignore", "Mesh: ")  # counterexamples are open, and cavities face inward
 
 
 def _run(module: str, unit: Unit) -> list[Row]:
@@ -58,16 +59,16 @@ def _run(module: str, unit: Unit) -> list[Row]:
 
 
 class UnitError(RuntimeError):
-    """A unit failed: which, and why. What was done before is kept."""
+    """Says which unit failed, and why. The rows of earlier units are kept."""
 
 
 def folder_kept(folder: Path, seed: int) -> Path:
-    """Where the rows of a seed are kept, of what is written to a folder."""
+    """Returns the folder for the rows of a seed, within an output folder."""
     return folder / "kept" / f"seed{seed}"
 
 
 class Kept:
-    """The rows of units of an experiment that are done, in a folder."""
+    """The kept rows of the units of an experiment, in a folder."""
 
     def __init__(self, folder: Path, experiment: str) -> None:
         self._folder = folder / experiment
@@ -81,12 +82,12 @@ class Kept:
             text = json.loads(self._file(unit).read_text())
             same = text["digest"] == self._digest and text["settings"] == json.loads(json.dumps(unit.settings))
             rows: list[Row] | None = text["rows"] if same else None
-        except (OSError, ValueError, KeyError, TypeError):  # not there, or torn
+        except (OSError, ValueError, KeyError, TypeError):  # missing or incomplete
             return None
         return rows
 
     def keep(self, unit: Unit, rows: list[Row]) -> list[Row]:
-        """Writes them, and gives them back as they are read again: the same rows at the first run and later."""
+        """Writes the rows, and returns them as a later run reads them, so that both runs have the same rows."""
         self._folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps({"digest": self._digest, "settings": unit.settings, "rows": rows}, indent=1)
         part = self._file(unit).with_suffix(".part")
@@ -97,9 +98,9 @@ class Kept:
 
 
 class Progress:
-    """A line on the terminal, or a line every 10 seconds in a file: what is done, and how long the rest may take.
+    """A line on the terminal, or a line every 10 seconds in a file: the finished units, and the time left.
 
-    Nothing if KEEPOUT_QUIET is set.
+    Prints nothing if KEEPOUT_QUIET is set.
     """
 
     INTERVAL = 10.0  # between lines in a file [s]
@@ -112,7 +113,7 @@ class Progress:
         self._name = "nothing is finished yet"
 
     def begin(self, *, alone: bool) -> None:
-        """From now on units run that are `alone` or not; what is left is told of those that are not."""
+        """Starts a batch of units that are `alone` or not; the time left is shown only for those that are not."""
         self._alone, self._ran, self._begun = alone, 0, time.monotonic()
 
     def count(self, name: str, *, kept: bool) -> None:
@@ -122,7 +123,7 @@ class Progress:
         self.show(now=sys.stderr.isatty() or self._done == self._units)
 
     def show(self, *, now: bool = False) -> None:
-        """Prints the line if it is due, or at once."""
+        """Prints the line if it is due, or immediately with `now`."""
         if os.environ.get("KEEPOUT_QUIET") or not (now or time.monotonic() - self._shown >= self.INTERVAL):
             return
         self._shown = time.monotonic()
@@ -138,10 +139,9 @@ class Progress:
 def run_units(
     experiments: list[ModuleType], units: dict[str, list[Unit]], kept_in: Path, jobs: int
 ) -> dict[str, list[Row]]:
-    """The rows of all units, by experiment, in the order of the units.
+    """Returns the rows of all units, by experiment, in the order of the units.
 
-    Units that measure times run one after another, before the others. KeyboardInterrupt: those that
-    are done are kept.
+    Units that measure times run first, one after another. After a KeyboardInterrupt, finished units are kept.
     """
     kept = {e.NAME: Kept(kept_in, e.NAME) for e in experiments}
     progress = Progress(sum(len(of) for of in units.values()))

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The errors of a real set-up: registration, lag, deflection. A fixture acts on what it is told.
+"""The errors of a real set-up: registration, lag, deflection. A fixture sees only the registered position.
 
-The robot's frame is registered to the anatomy by fiducials, which are touched with the tool. Each
-touch errs (fiducial localisation error), so the fit does: where the fixture takes the tip to be,
-and where it truly is, differ by a rigid motion. The da Vinci research kit's tip is known to 0.65 mm
-RMS once it is calibrated (Hwang et al., "Efficiently calibrating cable-driven surgical robots with
-RGBD fiducial sensing and recurrent neural networks", RA-L 2020); the paper has six fiducials.
+The robot's frame is registered to the anatomy by fiducials, which the tool touches. Each touch has an error (fiducial
+localization error), and so does the fit. The registered and the true position of the tip differ by a rigid motion.
+The tip of the da Vinci research kit is known to 0.65 mm RMS after calibration. Source: Hwang et al., "Efficiently
+calibrating cable-driven surgical robots with RGBD fiducial sensing and recurrent neural networks", RA-L 2020. Li et
+al. (2020) use six fiducials.
 """
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from .experiment import Array
 
 @dataclass(frozen=True)
 class SetUp:
-    """What is not perfect. `ideal()` has no error at all."""
+    """The errors of a set-up. `ideal()` has none."""
 
-    fle: float = 0.65  # fiducial localisation error, root mean square of the vector [mm]
+    fle: float = 0.65  # fiducial localization error, root mean square of the vector [mm]
     latency: float = 0.01  # from handle to robot, and back [s]
     lag: float = 0.01  # time constant with which the robot follows its setpoint [s]
     tip_stiffness: float = 4.0  # of robot and tool at the tip [N/mm]
@@ -47,7 +47,7 @@ class RigidMotion:
 
 
 def fiducials_around(place: Array, up: Array, spread: float = 40.0) -> Array:
-    """(6, 3): two rings of three around the place where is cut, on a head's curvature of 80 mm."""
+    """Returns (6, 3): two rings of three around the place of the cut, on a head with a radius of 80 mm."""
     side = np.cross(up, [0.0, 1.0, 0.0])
     side = side / np.linalg.norm(side)
     other = np.cross(up, side)
@@ -61,10 +61,10 @@ def fiducials_around(place: Array, up: Array, spread: float = 40.0) -> Array:
 
 
 def registered_from_true(setup: SetUp, fiducials: Array, random: np.random.Generator) -> RigidMotion:
-    """Where the fixture takes a point to be that truly is in the anatomy's frame.
+    """Returns the rigid motion from the true position of a point to its registered one, in the anatomy's frame.
 
-    The robot's frame is any other: a drawn rigid motion, which drops out again but for the errors.
-    Each of the fit's points errs by `setup.fle`, and keepout.fit_rigid does the rest.
+    The robot's frame is a random rigid motion, which cancels except for the errors. Each touched point has an error
+    of `setup.fle`; keepout.fit_rigid makes the fit.
     """
     if setup.fle == 0.0:
         return RigidMotion(np.eye(3), np.zeros(3))

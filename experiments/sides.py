@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""On which side of a closed mesh the places of a lattice are: what a grid of distances needs.
+"""Classifies the places of a lattice as inside or outside a closed mesh, for a grid of distances.
 
-A vertical line from below to a point enters and leaves the solid; the turns are counted with their
-sense, so that parts which overlap stay solid. Nothing is decided by a tolerance: a line through an
-edge or a vertex is moved aside by less than any number, the same way for all triangles
-(Edelsbrunner and Muecke, "Simulation of simplicity", 1990). An open mesh has no sides.
+A vertical line from below to a point enters and leaves the solid. Each crossing counts with its sign, so that
+overlapping parts stay solid. No tolerance decides: a line through an edge or a vertex moves aside by an infinitesimal
+amount, the same for all triangles (Edelsbrunner and Muecke, "Simulation of simplicity", 1990). An open mesh has no
+inside.
 """
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ Numbers = NDArray[np.int64]
 def lattice_is_solid(
     mesh: keepout.Mesh, low: Array, cell: float, shape: tuple[int, int, int]
 ) -> NDArray[np.bool_]:
-    """Which of the places low + cell (i, j, k) are in the solid of a closed mesh: (nx, ny, nz)."""
+    """Returns which of the places low + cell (i, j, k) are in the solid of a closed mesh: (nx, ny, nz)."""
     vertices, corners = mesh.vertices, mesh.triangles.astype(np.int64)
-    # The lines that may pass through each triangle: those of its box, with some room for rounding.
+    # The lines that may pass through each triangle: those of its box, widened for rounding.
     flat = (vertices[corners][:, :, :2] - low[:2]) / cell
     first = np.clip(np.ceil(flat.min(axis=1) - 1e-6), 0, shape[:2]).astype(np.int64)
     end = np.clip(np.floor(flat.max(axis=1) + 1e-6) + 1, first, shape[:2]).astype(np.int64)
-    # Of a mesh whose normals point inwards, as of an airway in which the tool is to stay, all that is outside is solid.
+    # If the normals point inwards, as of an airway with the tool inside, everything outside is solid.
     outside = int(mesh.inspect().inside_out)
     solid = np.empty(shape, dtype=bool)
     for i in range(shape[0]):
@@ -46,7 +46,7 @@ def lattice_is_solid(
 def _crossings_of_pairs(
     vertices: Array, triangle: Numbers, lines: Array
 ) -> tuple[NDArray[np.bool_], Array, Numbers]:
-    """Which lines cross the triangle beside them; of those that do, the height and the sense."""
+    """Returns which lines cross the triangle beside them; for those, the height and the sign."""
     sides, areas = zip(*(
         _side(vertices, triangle[:, (i + 1) % 3], triangle[:, (i + 2) % 3], lines)
         for i in range(3)
@@ -60,10 +60,10 @@ def _crossings_of_pairs(
 
 
 def _side(vertices: Array, start: Numbers, end: Numbers, place: Array) -> tuple[Numbers, Array]:
-    """+1 where a place is left of an edge, -1 right of it, and twice the area that they span.
+    """Returns +1 if a place is left of an edge, -1 if right of it, and twice the area that they span.
 
-    Computed of each edge in one direction only, so that both its triangles get opposite answers;
-    on the edge itself of the place moved by (e, e^2), for an e that is smaller than any number.
+    Computes each edge in one direction only, so that both its triangles get opposite answers. On the edge itself, the
+    place moves by (e, e^2) with an infinitesimal e.
     """
     forward = np.where(start < end, 1, -1)
     a, b = vertices[np.minimum(start, end), :2], vertices[np.maximum(start, end), :2]

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What was found as one Markdown page: to be read without a browser, and kept with the sources."""
+"""Writes the findings as one Markdown page, which needs no browser and is kept with the sources."""
 from __future__ import annotations
 
 from .experiment import Findings
 
 _POOLED = (
-    "A pooled p is that of the paper's test, which takes dependent samples as independent. "
-    "The evidence is over whole trials, Holm-corrected, where it says so."
+    "A pooled p is that of the paper's test, which treats dependent samples as independent. "
+    "The evidence is from whole trials and Holm-corrected, where it says so."
 )
 
 
 def text(findings: dict[str, tuple[str, Findings]], command: str, version: str) -> str:
-    """Claims first, all experiments together; then each with its tables and figures."""
-    lines = ["# The paper's experiments, redone", "", f"By `{command}`, keepout {version}.", ""]
+    """Returns the claims of all experiments; then each experiment with its tables and figures."""
+    lines = ["# The experiments of Li et al. (2020), repeated", "", f"By `{command}`, keepout {version}.", ""]
     claims = [claim for _, found in findings.values() for claim in found.claims]
     if claims:
         lines += _table(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the experiments of section V have in common: a trial of a mode, and what is measured of it."""
+"""The common part of the experiments of section V: a trial of a mode, and its measures."""
 from __future__ import annotations
 
 import zlib
@@ -21,13 +21,13 @@ from .set_up_errors import SetUp, fiducials_around, registered_from_true
 from .smoothness import spectral_arc_length, sparc
 from .trial import Course, Trace, run_trial
 
-MARGIN = 0.01  # [mm] that each rule keeps: the paper has none, and the certified rule needs some
+MARGIN = 0.01  # [mm] for each rule: Li et al. (2020) have none, and the certified rule needs some
 CORRIDOR = 1.0  # [mm] on each side of the sagittal plane (V)
 
-#: Tremor of all comparisons, and the sweep [mm RMS of the goal].
+#: The tremor of all comparisons, and the sweep [mm RMS of the goal].
 TREMOR = 0.13
 SWEEP = (0.0, 0.05, 0.25)
-#: The modes that are swept, and whose trajectories are drawn.
+#: The modes of the sweeps and of the drawn trajectories.
 SWEPT = ("none", "paper", "certified")
 
 #: A mode, the number of the trial, and the settings of unit() that differ from its defaults.
@@ -36,7 +36,7 @@ Planned = tuple[str, int, dict[str, Any]]
 
 def unit(mode: str, number: int, seed: int, *, tremor: float = TREMOR, ideal: bool = False,
          corridor: float = CORRIDOR) -> Unit:
-    """One trial of a mode. `ideal`: the set-up has no errors."""
+    """Returns the unit of one trial of a mode. `ideal`: the set-up has no errors."""
     kind = f"tremor{round(tremor * 1000)}um-corridor{round(corridor * 1000)}um{'-ideal' if ideal else ''}"
     settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "corridor": corridor, "number": number, "seed": seed}
     return Unit(f"{mode}-{kind}-{number}", settings)
@@ -45,7 +45,7 @@ def unit(mode: str, number: int, seed: int, *, tremor: float = TREMOR, ideal: bo
 def run_unit(
     unit: Unit, experiment: int, course: Course, index: keepout.Index, operator: Operator = Operator()
 ) -> tuple[Trace, Row]:
-    """Makes the trial of a unit, and the row of what is measured of it. `experiment` is part of the seeds."""
+    """Runs the trial of a unit, and returns it with its row of measures. `experiment` is part of the seeds."""
     told = unit.settings
     operator = replace(operator, tremor=told["tremor"])
     setup = SetUp.ideal() if told["ideal"] else SetUp()
@@ -69,7 +69,7 @@ def operate(
     seeds: tuple[int, ...],
     corridor: float = CORRIDOR,
 ) -> Trace:
-    """One trial of a mode. Each mode, and each of the `seeds`, is another operator on another day."""
+    """Runs one trial of a mode. Each mode, and each of the `seeds`, simulates another operator on another day."""
     random = np.random.default_rng([*seeds, zlib.crc32(mode.encode())])
     path = course.path
     middle = len(path.points) // 2
@@ -82,13 +82,13 @@ def operate(
 
 
 def measures(trace: Trace, course: Course, judge: Judge) -> Row:
-    """What is measured of any trial, behind the approach; None for what has no meaning there, such as
-    the duration of a trial that was not finished.
+    """Returns the measures of a trial, after the approach. A measure without a meaning is null, such as the duration
+    of an unfinished trial.
 
-    `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture, all the way: what
-    the rule itself let through. `deepest_mm` is of the tip in the true frame, and `beyond_registration_mm`
-    is by how much that is more than the registration displaces the place. `energy_mj` is what the fixture's
-    force has done on the handle; less than 0 is what it took.
+    `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture, in the whole trial: what
+    the rule itself allowed. `deepest_mm` is of the tip in the true frame. `beyond_registration_mm` is the part of it
+    that exceeds the displacement by the registration. `energy_mj` is the work of the fixture's force on the handle;
+    below 0 the fixture took energy.
     """
     start, rate = trace.begun, 1.0 / course.period
     tip, setpoint = trace.tip[start:], trace.setpoint[start:]
@@ -115,9 +115,9 @@ def measures(trace: Trace, course: Course, judge: Judge) -> Row:
 
 
 def chatter(setpoint: Array, held: NDArray[np.bool_], rate: float) -> float:
-    """Root mean square of what the setpoint does above 30 Hz while the fixture holds it back [um].
+    """Returns the root mean square of the setpoint above 30 Hz while the fixture constrains it [µm].
 
-    A hand alone does next to nothing there: it is what fixture and hand do to one another.
+    A hand alone has almost no power there: it measures the interaction of fixture and hand.
     """
     high_pass = signal.butter(4, 30.0, "highpass", fs=rate, output="sos")
     fast = signal.sosfiltfilt(high_pass, setpoint, axis=0)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One trial: the operator follows the path with the robot, at 1 kHz, with a fixture or without.
+"""One trial: the operator follows the path with the robot, at 1 kHz, with or without a fixture.
 
     hand -> handle -> latency -> goal -> [ fixture, in the registered frame ] -> setpoint -> lag -> tip
       ^                                               |
       +------------------ force, latency -------------+
 
-Where the fixture does not let the tip go, the handle is pulled towards the tip with a force
-proportional to how far the two are apart (section V-A of the paper).
+If the fixture stops the tip, a force pulls the handle towards the tip. It is proportional to the
+distance between the two (section V-A of Li et al., 2020).
 """
 from __future__ import annotations
 
@@ -21,22 +21,22 @@ from .planned_path import PlannedPath
 from .rules.rule import Rule
 from .set_up_errors import RigidMotion, SetUp
 
-APPROACH = 1.0  # the hand comes down onto the path within this time [s]
-NEAR_THE_END = 1.0  # a tip so near to the path's end has finished [mm]
-START_HEIGHT = 3.0  # from this height [mm]
+APPROACH = 1.0  # the hand moves down onto the path within this time [s]
+NEAR_THE_END = 1.0  # a tip this close to the path's end has finished [mm]
+START_HEIGHT = 3.0  # height at the start [mm]
 
 
 @dataclass(frozen=True)
 class Course:
-    """What is to be done: follow `path` at `speed`, `depth` below the outer surface."""
+    """The task: follow `path` at `speed`, `depth` below the outer surface."""
 
     path: PlannedPath
     depth: float  # [mm]
-    speed: float  # [mm/s] that the operator takes where nothing slows him
-    bone: BoneProperties | None = None  # None: nothing is in the way
+    speed: float  # speed of the operator if nothing slows it down [mm/s]
+    bone: BoneProperties | None = None  # None: no bone
     force_per_mm: float = 0.3  # of the fixture on the handle [N/mm]
-    greatest_force: float = 4.0  # that the handle can exert [N]
-    radius: float = 5.0  # of the motion sphere, as the paper's [mm]
+    greatest_force: float = 4.0  # greatest force on the handle [N]
+    radius: float = 5.0  # of the motion sphere, as in Li et al. [mm]
     top_speed: float = 100.0  # of the setpoint [mm/s]
     period: float = 0.001  # of the control cycle [s]
     time_limit: float = 400.0  # [s]
@@ -44,18 +44,18 @@ class Course:
 
 @dataclass(frozen=True)
 class Trace:
-    """What happened, cycle by cycle, (n, 3) in mm or (n,), and the kerf at each point of the path."""
+    """The course of a trial, cycle by cycle, (n, 3) in mm or (n,), and the kerf at each point of the path."""
 
-    tip: Array  # where the tip truly was
-    setpoint: Array  # where the fixture let it go, in the registered frame
-    goal: Array  # where the hand wanted it, in the registered frame
+    tip: Array  # the true position of the tip
+    setpoint: Array  # as the fixture allowed it, in the registered frame
+    goal: Array  # as the hand wanted it, in the registered frame
     force: Array  # (n,) of the fixture on the handle [N]
     power: Array  # (n,) of that force on the handle [mW]
     contact: Array  # (n,) of the tip on the bone [N]
     kerf: Array  # (points of the path,) [mm]
-    begun: int  # the first cycle behind the approach
-    finished: bool  # the tip came to the path's end within the time limit
-    registered: RigidMotion  # from the true frame to where the fixture takes the anatomy to be
+    begun: int  # the first cycle after the approach
+    finished: bool  # the tip reached the path's end within the time limit
+    registered: RigidMotion  # from the true frame to the registered anatomy
 
 
 def run_trial(
@@ -91,12 +91,12 @@ def run_trial(
     goals = np.tile(setpoint, (most, 1))
     tips, setpoints = np.empty((most, 3)), np.empty((most, 3))
     pulls, contacts, powers = np.zeros((most, 3)), np.zeros(most), np.zeros(most)
-    seen = np.zeros(most)  # what the eye makes of the deviation, as a factor of the speed
+    seen = np.zeros(most)  # factor on the speed, from the deviation that the eye sees
     along, approach = 0.0, int(APPROACH / period)
     cycle, none, finished = 0, np.zeros(3), False
 
     for cycle in range(most):
-        # The operator: where he means to be, and how fast he goes on.
+        # The operator: the intended position, and the speed along the path.
         place, up = path.at(along)
         above = max(0.0, 1.0 - cycle / approach) * START_HEIGHT
         below = course.depth + operator.leaning + slow[cycle, 1] - above
@@ -107,7 +107,7 @@ def run_trial(
         if cycle >= approach:
             along += course.speed * period * (seen[cycle - reaction] if cycle >= reaction else 1.0)
 
-        # The robot: goal, fixture, setpoint, and where the tip comes to be.
+        # The robot: goal, fixture, setpoint, and the new position of the tip.
         goals[cycle] = registered(scale * handle + shake[cycle])
         goal = goals[cycle - delay] if cycle >= delay else goals[0]
         desired = goal - setpoint
@@ -130,15 +130,15 @@ def run_trial(
             tip, contacts[cycle] = bone.press(tip, period)
         tips[cycle], setpoints[cycle] = tip, setpoint
 
-        # The eye: how far from the place on the path, seen from above, and how far above where it is
-        # meant to be; a hand that feels a fixture takes that for the depth to go to.
+        # The eye: the distance from the place on the path, seen from above, and the height above the intended depth.
+        # A hand that feels a fixture assumes that it has reached the depth.
         offset = tip - place
         height = offset @ up
         aside_squared = offset @ offset - height * height
         feels = pull @ pull > operator.felt_force**2
         hanging = 0.0 if feels else max(0.0, height + below - operator.leaning)
         seen[cycle] = 1.0 / (1.0 + (aside_squared + hanging * hanging) / operator.tolerance**2)
-        # At the end the hand waits for a tip that has stayed behind.
+        # At the end the hand waits for a tip that lags behind.
         if along >= path.length:
             finished = bool(path.depths(tip[None])[0][0] >= path.length - NEAR_THE_END)
             if finished:

@@ -43,6 +43,8 @@ chmod -R u+w "$work"
 rm -rf "$work"
 mkdir -p "$work"/{cmake,fixtures,apps/web}
 cp "$source/run" "$work"
+mkdir "$work/experiments"
+cp "$source/experiments/arguments.py" "$source"/experiments/e[0-9]*_*.py "$work/experiments"
 printf '#!/bin/sh\nexit "${PAGES_FAIL:-0}"\n' > "$work/apps/web/build"
 printf '#!/bin/sh\n' > "$work/fixtures/prepare"
 cat > "$work/cmake/set_up.sh" <<'STUB'
@@ -66,7 +68,7 @@ compile() {
 }
 STUB
 chmod +x "$work/apps/web/build" "$work/fixtures/prepare"
-said=$("$work/run" | sed "s,$work/,,")
+said=$("$work/run" | sed "s,$work/,,; /^==> waiting for /d")
 [[ $said == "==> configuring (first_page)
 ==> configures first_page
 ==> builds keepout_first_page
@@ -82,3 +84,12 @@ rm -r "$work/build"
 said=$(PAGES_FAIL=1 "$work/run" 2>&1)
 [[ $said == *"going on: reports will be plain pages"*keepout_first_page* ]] ||
   fault "without pages the first run says: $said"
+
+# A mistake in the arguments of the experiments is reported before anything is built.
+for mistake in --ful "--only e1,,e2" "--only e9" "--seed -1"; do
+  # shellcheck disable=SC2086
+  told=$("$work/run" experiments $mistake 2>&1) && fault "./run experiments $mistake goes on: $told"
+  [[ $told == *"usage: ./run experiments"*"error: "* && $told != *builds* ]] || fault "./run experiments $mistake says: $told"
+done
+told=$("$work/run" experiments --help)
+[[ $told == "usage: ./run experiments"*"e6 (counterexamples)"* && $told != *builds* ]] || fault "./run experiments --help says: $told"

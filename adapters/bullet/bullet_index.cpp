@@ -14,14 +14,14 @@
 #include "keepout/geometry/shapes.h"
 #include "keepout/mesh/mesh.h"
 
-// Debian ships Bullet in both precisions, and the one links with headers set for the other.
+// Debian has Bullet in both precisions. Headers for one also link with the library of the other.
 static_assert(sizeof(btScalar) == sizeof(double), "Bullet is used in double precision");
 
 namespace keepout {
 namespace {
 
-/// The mesh as Bullet's trees read it when they are built: in a centered frame, without a copy, and
-/// in parts of as many triangles as a quantized node can number.
+/// The mesh in the form for Bullet's build of a tree: in a centered frame, without a copy. It is in
+/// parts of at most as many triangles as a quantized node can number.
 class BulletMesh final : public btStridingMeshInterface {
  public:
   static constexpr int bits_in_part = 31 - MAX_NUM_PARTS_IN_BITS;
@@ -30,7 +30,7 @@ class BulletMesh final : public btStridingMeshInterface {
 
   static btVector3 bullet(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-  /// The triangle that Bullet knows by its part and its number in it.
+  /// Returns the triangle from Bullet's part and the number in the part.
   static TriangleId triangle(int part, int number) {
     return (static_cast<TriangleId>(part) << bits_in_part) | static_cast<TriangleId>(number);
   }
@@ -48,7 +48,7 @@ class BulletMesh final : public btStridingMeshInterface {
     }
   }
 
-  // The rest is asked for by other users of such a mesh, never by a tree.
+  // A tree never calls the functions below; other users of such a mesh do.
   void getLockedVertexIndexBase(unsigned char**, int&, PHY_ScalarType&, int&, unsigned char**, int&,
                                 int&, PHY_ScalarType&, int) override {
     refuse();
@@ -67,14 +67,16 @@ class BulletMesh final : public btStridingMeshInterface {
   void preallocateIndices(int) override {}
 
  private:
-  [[noreturn]] static void refuse() { throw Error("this Bullet asks for a copy of the mesh"); }
+  [[noreturn]] static void refuse() {
+    throw Error("this version of Bullet needs a copy of the mesh");
+  }
 
   const Mesh& mesh_;
   const CenteredFrame& frame_;
 };
 
-// Bullet's trees, opened for our own traversal. Both are arrays of nodes in which a parent stands
-// before its children and knows how many nodes its subtree has: what is passed over is skipped.
+// Bullet's trees, made accessible for a traversal by this file. Both are arrays of nodes. A parent
+// comes before its children and has the size of its subtree, so a traversal can skip it.
 
 Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -82,7 +84,7 @@ Vec3 from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 class BulletTree final : public btOptimizedBvh {
  public:
   static constexpr std::string_view name = "bullet";
-  /// Bullet counts the nodes, of which it reserves twice as many as there are triangles, by an int.
+  /// Bullet counts nodes by an int, and reserves two for each triangle.
   static constexpr std::size_t most_triangles = (std::size_t{1} << 30) - 1;
 
   explicit BulletTree(BulletMesh& mesh) { build(&mesh, false, mesh.low(), mesh.high()); }
@@ -109,8 +111,8 @@ class BulletTree final : public btOptimizedBvh {
 class BulletQuantizedTree final : public btOptimizedBvh {
  public:
   static constexpr std::string_view name = "bullet_quantized";
-  /// While it builds, Bullet counts the bytes of the tree, 16 a node, by an int. The 21 bits that
-  /// it has for the number of a triangle are no limit: the mesh is handed over in parts.
+  /// Bullet counts the bytes of the tree by an int during a build, 16 for each node. The 21 bits
+  /// for a triangle's number are no limit, because the mesh is passed in parts.
   static constexpr std::size_t most_triangles = std::size_t{1} << 26;
 
   explicit BulletQuantizedTree(BulletMesh& mesh) {
@@ -144,11 +146,11 @@ class BulletQuantizedTree final : public btOptimizedBvh {
   }
 
   Vec3 origin_;  // of the quantized coordinates
-  Vec3 step_;    // of one of them
+  Vec3 step_;    // of one quantum
 };
 
-/// A tree of Bullet's over a mesh, known to hold it, and traversed by others. The mesh may go once
-/// it is built.
+/// A tree of Bullet over a mesh, verified to contain the mesh. Derived classes traverse it. The
+/// mesh may be deleted after the build.
 template <class Tree>
 class BulletModel : public SpatialIndex {
  public:
@@ -168,7 +170,8 @@ class BulletModel : public SpatialIndex {
  protected:
   const Tree& tree() const noexcept { return tree_; }
 
-  /// In the frame of the tree: the ball, as much larger as boxes and the exact kernel may round.
+  /// Returns the ball in the frame of the tree, grown by the rounding of boxes and of the exact
+  /// kernel.
   Ball padded(const Ball& ball) const noexcept {
     const Vec3 center = frame_.from_mesh(ball.center);
     return {center, padded_radius({center, frame_.from_mesh(ball.radius)}, bounds_)};
@@ -176,7 +179,7 @@ class BulletModel : public SpatialIndex {
 
  private:
   // In the frame of the trees. Bullet widens a quantized mesh by 1, and thin triangles by 0.001,
-  // whatever their size: with 2^16 steps across, both are no more than a step.
+  // for any size of the mesh. With 2^16 steps across, both are at most one step.
   static constexpr double reach_of_frame = 0x1p15;
 
   static Tree tree_of(const Mesh& mesh, const CenteredFrame& frame) {
@@ -184,8 +187,8 @@ class BulletModel : public SpatialIndex {
     return Tree(for_bullet);
   }
 
-  /// Bullet asserts its limits in debug builds only, and beyond them confuses triangles. So
-  /// each must be there once, within the boxes of all nodes above it.
+  /// Bullet asserts its limits only in debug builds, and confuses triangles beyond them. So this
+  /// checks that each triangle is there once, within the boxes of all nodes above it.
   void check(const Mesh& mesh) const {
     struct Subtree {
       int end;
@@ -212,7 +215,7 @@ class BulletModel : public SpatialIndex {
     if (std::find(found.begin(), found.end(), 0) != found.end()) fail();
   }
 
-  /// To a tenth of the rounding that the radius is padded by.
+  /// Allows a tenth of the rounding by which the radius is padded.
   bool holds(const Box& outer, const Box& inner) const {
     const double slack = 0.1 * padded_radius({bounds_.center(), 0.0}, bounds_);
     return ((inner.low - outer.low).array() >= -slack).all() &&
@@ -220,7 +223,7 @@ class BulletModel : public SpatialIndex {
   }
 
   [[noreturn]] static void fail() {
-    throw Error("Bullet's tree does not hold the mesh; use the index 'pd_tree'");
+    throw Error("Bullet's tree does not contain the mesh; use the index 'pd_tree'");
   }
 
   CenteredFrame frame_;
@@ -228,7 +231,7 @@ class BulletModel : public SpatialIndex {
   Tree tree_;
 };
 
-/// Bullet's tree, traversed by us: its own traversal takes a box, not a ball.
+/// Bullet's tree, traversed here: Bullet's own traversal takes a box, not a ball.
 template <class Tree>
 class BulletIndex final : public BulletModel<Tree> {
  public:

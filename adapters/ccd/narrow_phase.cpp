@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// libccd computes the depth of an overlap, but no distance of bodies that are apart. Their distance
-// comes from the depth of a tool that is grown by more than it.
+// libccd computes the depth of an overlap, but no distance of separate bodies. Their distance
+// follows from the depth after the tool is grown by more than the distance.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int budget_of_a_pair = 800;  // support queries; tens are usual
 constexpr unsigned long most_iterations = 200;
-// EPA compares squares of lengths with it as well. With less it may never end.
+// EPA also compares squares of lengths with it. With a smaller value EPA may never end.
 constexpr double tolerance = 1e-16;
 
 using Penetration = int (*)(const void*, const void*, const ccd_t*, ccd_real_t*, ccd_vec3_t*,
@@ -29,7 +29,7 @@ class CcdNarrowPhase final : public NarrowPhase {
     const Triangle local = relative(triangle, position);
     const NarrowPhaseAnswer overlap = depth(local, 0.0);
     if (overlap.answered() || overlap.failure != apart) return moved(overlap, position);
-    // No more than the distance of any point of the tool.
+    // An upper bound: the distance of a point of the tool.
     const double at_most = closest_point(local, tool_.points().front()).distance - tool_.radius();
     const double growth = std::max(at_most, 0.0) + 0.1 * tool_.bounding_ball().radius;
     return moved(depth(local, growth), position);
@@ -38,7 +38,7 @@ class CcdNarrowPhase final : public NarrowPhase {
  private:
   static constexpr std::string_view apart = "libccd found no overlap";
 
-  /// Returns the separation from an overlap with the tool grown beyond its radius.
+  /// Returns the separation, from an overlap with the tool grown beyond its radius.
   NarrowPhaseAnswer depth(const Triangle& local, double growth) const noexcept {
     CcdBudget budget{budget_of_a_pair};
     const CcdTriangle first{&local, &budget};
@@ -61,7 +61,7 @@ class CcdNarrowPhase final : public NarrowPhase {
     const Separation s{growth - depth, from_ccd(direction), from_ccd(place)};
     const bool usable = std::isfinite(s.distance) && s.on_triangle.allFinite() &&
                         std::abs(s.normal.squaredNorm() - 1.0) < 1e-9;
-    if (!usable) return NarrowPhaseAnswer::failed("libccd gave what is no number or no direction");
+    if (!usable) return NarrowPhaseAnswer::failed("libccd returned NaN, infinity or no direction");
     return {s, {}};
   }
 
@@ -79,7 +79,7 @@ std::unique_ptr<NarrowPhase> make(const ConvexTool& tool) {
   return std::make_unique<CcdNarrowPhase>(tool, penetration);
 }
 
-// The header has no version, and the package says 2.0 for 2.1.
+// The header has no version, and the package states 2.0 for version 2.1.
 std::string library() { return "libccd " KEEPOUT_CCD_VERSION; }
 
 constexpr NarrowPhaseBackend backends[] = {

@@ -15,7 +15,7 @@ namespace {
 
 using Kernel = CGAL::Simple_cartesian<double>;
 
-/// A triangle of the mesh, by its id: CGAL's concept AABBPrimitiveWithSharedData.
+/// A triangle of the mesh by its id: CGAL's concept AABBPrimitiveWithSharedData.
 class MeshTriangle {
  public:
   using Id = TriangleId;
@@ -46,7 +46,7 @@ using Traits = CGAL::AABB_traits<Kernel, MeshTriangle>;
 using Tree = CGAL::AABB_tree<Traits>;
 using Node = CGAL::AABB_node<Traits>;
 
-/// What CGAL's traversal asks: enter every node within reach, and take all triangles there.
+/// The queries of CGAL's traversal: enters every node within reach, and takes all its triangles.
 struct BallTraversal {
   double squared_reach;
   TriangleBuffer& candidates;
@@ -67,7 +67,7 @@ class CgalIndex final : public SpatialIndex {
     const auto count = static_cast<TriangleId>(mesh().triangle_count());
     tree_.insert(boost::counting_iterator<TriangleId>(0),
                  boost::counting_iterator<TriangleId>(count), &mesh());
-    tree_.build();  // now, not in the first query
+    tree_.build();  // here, so that the first query need not build
   }
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
@@ -84,7 +84,7 @@ class CgalIndex final : public SpatialIndex {
   Tree tree_;
 };
 
-// CGAL counts in size_t: as many as a mesh can have.
+// CGAL counts in size_t, which is enough for any mesh.
 constexpr IndexBackend backends[] = {
     {"cgal", "AABB tree of CGAL", make_index_of<CgalIndex>, no_triangle,
      [] { return std::string("CGAL " CGAL_VERSION_STR); }},

@@ -14,9 +14,9 @@
 namespace keepout {
 namespace {
 
-// In the frame of the scene no coordinate exceeds 1. A vertex is off by half an ulp of a float that
-// is at most 1, a center by half an ulp of its own coordinates, and Embree's distances by some ulp
-// of themselves: none by more than 2^-22 of 1 + |center| + radius. Eight times that is added.
+// In the frame of the scene no coordinate exceeds 1. A vertex is off by half an ulp of a float of
+// at most 1, and a center by half an ulp of its coordinates. Embree's distances are off by some ulp
+// of themselves. None exceeds 2^-22 of 1 + |center| + radius. Eight times that is added.
 constexpr double float_rounding = 0x1p-19;
 
 struct Release {
@@ -37,7 +37,7 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
                                                "cancelled"};
   const auto reason = static_cast<std::size_t>(error);
   throw Error(std::string("Embree: ") +
-              (reason < reasons.size() ? reasons[reason] : "an error of its own") +
+              (reason < reasons.size() ? reasons[reason] : "an unlisted error") +
               "; use the index 'pd_tree', which needs no library");
 }
 
@@ -53,14 +53,14 @@ class EmbreeIndex final : public SpatialIndex {
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override {
     const double reach = padded_radius(ball, mesh().bounds());
-    // Decided in double, before a distance is more than a float can tell from another.
+    // Tested in double, before distances become too large for floats.
     if (squared_distance(mesh().bounds(), ball.center) > reach * reach) return;
     const Vec3 center = frame_.from_mesh(ball.center);
     const double radius = frame_.from_mesh(ball.radius);
     const double pad = float_rounding * (1.0 + center.cwiseAbs().maxCoeff() + radius);
-    // The corner of the frame is farther than the ball need reach to hold every triangle.
+    // The ball contains every triangle if it reaches the farthest corner of the frame.
     const bool holds_all = radius >= (center.cwiseAbs() + Vec3::Ones()).norm();
-    // From farther away all triangles are alike to a float. Written so that a NaN is far, too.
+    // From farther away floats cannot distinguish triangles. This form also counts NaN as far.
     const bool is_far = !(pad < 1.0);
     if (holds_all || is_far) {
       for (TriangleId t = 0; t < mesh().triangle_count(); ++t) candidates.push(t);
@@ -93,7 +93,7 @@ class EmbreeIndex final : public SpatialIndex {
 
   static bool add(RTCPointQueryFunctionArguments* arguments) {
     static_cast<TriangleBuffer*>(arguments->userPtr)->push(arguments->primID);
-    return false;  // the radius stays
+    return false;  // the radius does not change
   }
 
   void build() {
@@ -128,12 +128,12 @@ class EmbreeIndex final : public SpatialIndex {
 
   CenteredFrame frame_;
   Memory memory_;
-  // One of its own for each index: then the memory counted is this index's.
+  // Each index has its own device, so that it counts only its own memory.
   Owned<RTCDevice> device_;
   Owned<RTCScene> scene_;
 };
 
-// Embree numbers triangles and vertices by 32 bits, as keepout does.
+// Embree numbers triangles and vertices by 32 bits, like keepout.
 constexpr IndexBackend backends[] = {
     {"embree", "axis-aligned boxes of Embree, in float", make_index_of<EmbreeIndex>, no_triangle,
      [] { return std::string("Embree " RTC_VERSION_STRING); }},

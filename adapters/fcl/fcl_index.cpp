@@ -27,10 +27,10 @@
 namespace keepout {
 namespace {
 
-/// FCL counts the nodes by an int, as 2 n - 1 of n triangles, of which 2 n must not overflow.
+/// FCL counts nodes by an int, 2 n - 1 for n triangles, and 2 n must not overflow.
 constexpr std::size_t fcl_most_triangles = (std::size_t{1} << 30) - 1;
 
-/// Grows FCL's box until it holds the vertex.
+/// Grows FCL's box until it contains the vertex.
 void include(fcl::AABBd& box, const Vec3& vertex) {
   box.min_ = box.min_.cwiseMin(vertex);
   box.max_ = box.max_.cwiseMax(vertex);
@@ -41,22 +41,23 @@ void include(fcl::OBBd& box, const Vec3& vertex) {
   box.extent = box.extent.cwiseMax(local.cwiseAbs());
 }
 
-/// Makes a box of what need not be one: an empty box around the vertex.
+/// Replaces an invalid box by an empty one around the vertex.
 void start_anew(fcl::AABBd& box, const Vec3& vertex) { box = fcl::AABBd(vertex); }
 
 void start_anew(fcl::OBBd& box, const Vec3& vertex) {
   box = fcl::OBBd(Eigen::Matrix3d::Identity(), vertex, Vec3::Zero());
 }
 
-/// Whether distances to the box mean what they say.
+/// Returns true if distances to the box are valid.
 bool is_sound(const fcl::AABBd& box) { return box.min_.allFinite() && box.max_.allFinite(); }
 
-/// Lengths in the frame of the box are those of the mesh, to the rounding that the radius is padded
-/// by. FCL's axes are, unless the squares of the coordinates overflow.
+/// Returns true if lengths in the frame of the box are those of the mesh, up to the rounding by
+/// which the radius is padded. They are for FCL's axes, unless the squares of the coordinates
+/// overflow.
 bool is_sound(const fcl::OBBd& box) {
   const Eigen::Matrix3d gram = box.axis.transpose() * box.axis;
   const double skew = (gram - Eigen::Matrix3d::Identity()).cwiseAbs().sum();
-  // Written so that a NaN fails.
+  // False for NaN.
   return skew <= 3e-14 && box.To.allFinite() && box.extent.allFinite();
 }
 
@@ -69,7 +70,7 @@ double squared_distance(const fcl::OBBd& box, const Vec3& point) noexcept {
   return (local.cwiseAbs() - box.extent).cwiseMax(0.0).squaredNorm();
 }
 
-// Of an OBBRSS the box is used.
+// Only the oriented box of an OBBRSS is used.
 void include(fcl::OBBRSSd& volume, const Vec3& vertex) { include(volume.obb, vertex); }
 void start_anew(fcl::OBBRSSd& volume, const Vec3& vertex) { start_anew(volume.obb, vertex); }
 bool is_sound(const fcl::OBBRSSd& volume) { return is_sound(volume.obb); }
@@ -77,11 +78,12 @@ double squared_distance(const fcl::OBBRSSd& volume, const Vec3& point) noexcept 
   return squared_distance(volume.obb, point);
 }
 
-/// FCL's tree over a mesh, each box made to hold its triangles, and traversed by others.
+/// FCL's tree over a mesh. Each box is made to contain its triangles. Derived classes traverse the
+/// tree.
 template <class Volume>
 class FclModel : public SpatialIndex {
  public:
-  /// `name`: of the index that it is for.
+  /// `name`: of the index.
   FclModel(std::shared_ptr<const Mesh> on, std::string_view name) : SpatialIndex(std::move(on)) {
     require_at_most(fcl_most_triangles, mesh().triangle_count(), "triangles", name);
     require_at_most(std::numeric_limits<int>::max(), mesh().vertex_count(), "vertices", name);
@@ -110,7 +112,7 @@ class FclModel : public SpatialIndex {
     for (const Corners& corners : mesh().triangles()) {
       triangles.emplace_back(corners[0], corners[1], corners[2]);
     }
-    // The counts are declared, or FCL allocates more than it needs.
+    // Without declared counts FCL allocates more memory than it needs.
     if (model_.beginModel(static_cast<int>(triangles.size()), static_cast<int>(vertices.size())) !=
             fcl::BVH_OK ||
         model_.addSubModel(vertices, triangles) != fcl::BVH_OK ||
@@ -119,9 +121,8 @@ class FclModel : public SpatialIndex {
     }
   }
 
-  /// FCL's boxes are not taken on trust: the oriented ones leave corners out by up to 1e-10 of
-  /// their size, one in eight of those of a CT skull. Each is made to hold its triangles. Appends
-  /// the triangles of the subtree.
+  /// Makes each box contain its triangles. FCL's oriented boxes exclude corners by up to 1e-10 of
+  /// their size: one box in eight on a CT skull. Appends the triangles of the subtree.
   void hold_triangles(int node, std::vector<TriangleId>& triangles) {
     fcl::BVNode<Volume>& at = model_.getBV(node);
     const std::size_t first = triangles.size();
@@ -140,7 +141,7 @@ class FclModel : public SpatialIndex {
   fcl::BVHModel<Volume> model_;
 };
 
-/// FCL's tree, traversed by us: its own collide() tests the triangles as well, and takes memory.
+/// FCL's tree, traversed here: FCL's own collide() also tests the triangles, and allocates memory.
 template <class Volume>
 class FclIndex final : public FclModel<Volume> {
  public:
@@ -155,8 +156,8 @@ class FclIndex final : public FclModel<Volume> {
   }
 
  private:
-  // Recursive, as FCL's own build is: it splits at the mean, so that a depth has no bound but the
-  // range of a double, some two thousand halvings.
+  // Recursive, like FCL's own build. FCL splits at the mean, so only the range of a double bounds
+  // the depth, at about two thousand halvings.
   void visit(int node, const Vec3& point, double squared_reach,
              TriangleBuffer& candidates) const noexcept {
     const fcl::BVNode<Volume>& at = this->tree().getBV(node);
@@ -171,19 +172,20 @@ class FclIndex final : public FclModel<Volume> {
   }
 };
 
-// FCL tests a triangle by the distance to its plane, whose normal it gets from two edges: off by up
-// to 4 u / s, of edges at an angle of sine s, with u = 2^-53. So a sphere may seem farther away by
-// that share of the way to the triangle's far end. Where s is at least thin, the share is less than
-// half of rounding, by which spheres are grown; thinner triangles are for us to test. And it takes
-// the distance to a closest point that it has rounded as the coordinates are, wherever the mesh is.
+// FCL tests a triangle by the distance to its plane, whose normal it computes from two edges. With
+// u = 2^-53, the normal is off by up to 4 u / s, for edges at an angle of sine s. So a sphere may
+// seem farther away, by that fraction of the distance to the triangle's far end. If s is at least
+// `thin`, the fraction is less than half of the rounding by which spheres are grown. Thinner
+// triangles are tested here. FCL also computes the distance to a closest point that is rounded like
+// the coordinates, wherever the mesh is.
 constexpr double thin = 1e-5;
 constexpr double length_rounding = 1e-10;
 constexpr double coordinate_rounding = 1e-15;
 
-// Beyond, FCL's squares of lengths may overflow.
+// Beyond this, FCL's squares of lengths may overflow.
 constexpr double farthest = 1e150;  // [length]
 
-/// Written so that what is no number is thin, and so is what is too small for its squares.
+/// Also true for NaN, and for triangles whose squares underflow.
 bool is_thin(const Triangle& corners) {
   const Vec3 one = corners[1] - corners[0];
   const Vec3 other = corners[2] - corners[0];
@@ -191,9 +193,9 @@ bool is_thin(const Triangle& corners) {
   return !(squares > 1e-200 && one.cross(other).squaredNorm() > thin * thin * squares);
 }
 
-/// FCL's tree, asked by FCL's own collide() for all triangles that a sphere touches. Oriented boxes
-/// alone: of an OBBRSS collide() uses no more than those, and fits one to each sphere. Takes memory
-/// while it answers: for comparison, not for real time.
+/// FCL's tree, searched by FCL's own collide() for all triangles that a sphere touches. It uses
+/// oriented boxes: collide() uses only these of an OBBRSS, and fits one to each sphere. It
+/// allocates memory during a query, so it is for comparison and not for real time.
 class FclCollideIndex final : public FclModel<fcl::OBBd> {
  public:
   static constexpr std::string_view name = "fcl_collide";
@@ -208,7 +210,7 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
     try {
       if (ask(ball, candidates)) return;
     } catch (const std::exception&) {
-      // No memory for FCL's list, and nothing is in ours yet: it is not for a query to throw.
+      // FCL has no memory for its list, and `candidates` is still empty. A query must not throw.
     }
     BruteForce(shared_mesh()).collect(ball, candidates);
   }
@@ -218,7 +220,7 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
   }
 
  private:
-  /// False where FCL cannot tell.
+  /// Returns false if FCL cannot answer.
   bool ask(const Ball& ball, TriangleBuffer& candidates) const {
     const Box& bounds = mesh().bounds();
     const double lengths =
@@ -228,7 +230,7 @@ class FclCollideIndex final : public FclModel<fcl::OBBd> {
                               coordinate_rounding * (ball.center.cwiseAbs().sum() + ball.radius));
     fcl::Transform3d pose = fcl::Transform3d::Identity();
     pose.translation() = ball.center;
-    // One more than there is room for, so that an overflow shows.
+    // One more than the capacity, so that an overflow is visible.
     const std::size_t room = candidates.capacity() - candidates.size();
     const fcl::CollisionRequestd request(
         std::min(mesh().triangle_count(), room + 1 + thin_.size()));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // FCL's GJK after libccd has assertions that fail near a touch. Debian builds the library with
-// them, and they end the process. The functions are static ones of a header, so this file compiles
-// them without assertions. GJK, EPA and GJKSolver_indep<double> are extern templates: their code is
-// the library's, and this file compiles only their callers for a shape and a triangle.
+// assertions, and they end the process. The functions are static ones of a header, so this file
+// compiles them without assertions. GJK, EPA and GJKSolver_indep<double> are extern templates of
+// the library. This file compiles only their callers for a shape and a triangle.
 #ifndef NDEBUG
 #define NDEBUG
 #endif
@@ -25,24 +25,25 @@ namespace {
 constexpr int budget_of_a_pair = 400;  // support queries; tens are usual
 constexpr unsigned int most_iterations = 200;
 constexpr double tolerance = 1e-12;
-// Between the bounds of a depth. EPA is exact at corners as soon as it ends. With less it may never
-// end.
+// Between the bounds of a depth. EPA is exact at corners when it ends. With a smaller tolerance it
+// may never end.
 constexpr double tolerance_of_depth = 1e-6;
 
-/// Makes an answer from the signed distance of the cores and the direction from the triangle's
-/// point to the core's, or the reverse where they overlap.
+/// Returns an answer from the signed distance of the cores. `direction` is from the triangle's
+/// point to the core's, or the reverse if they overlap.
 NarrowPhaseAnswer answer(double distance, const Vec3& direction, const Vec3& on_triangle,
                          const ConvexTool& tool, const Vec3& position) noexcept {
   const double length = direction.norm();
   const bool usable = std::isfinite(distance) && on_triangle.allFinite() && std::isfinite(length);
-  if (!usable) return NarrowPhaseAnswer::failed("FCL gave what is no number");
-  if (!(length > 0.0)) return NarrowPhaseAnswer::failed("FCL gave no direction");
+  if (!usable) return NarrowPhaseAnswer::failed("FCL returned NaN or infinity");
+  if (!(length > 0.0)) return NarrowPhaseAnswer::failed("FCL returned no direction");
   return {{distance - tool.radius(), direction / length, position + on_triangle}, {}};
 }
 
-// Both get the tool's core, as GJK is most exact on corners. The radius is subtracted afterwards.
+// Both methods get the tool's core, because GJK is most exact on corners. The radius is subtracted
+// afterwards.
 
-/// libccd's GJK and EPA as FCL has rewritten them.
+/// GJK and EPA of libccd, as rewritten in FCL.
 class FclGjkLibccd final : public NarrowPhase {
  public:
   explicit FclGjkLibccd(const ConvexTool& tool) : tool_(tool) {}
@@ -64,7 +65,7 @@ class FclGjkLibccd final : public NarrowPhase {
     ccd_vec3_t first{};
     ccd_vec3_t second{};
     try {
-      // GJKSignedDistance, which calls this, is the library's.
+      // GJKSignedDistance, which calls this function, belongs to the library.
       distance =
           fcl::detail::libccd_extension::ccdGJKSignedDist(&core, &other, &ccd, &first, &second);
     } catch (const std::exception&) {
@@ -102,7 +103,7 @@ class FclGjkIndep final : public NarrowPhase {
 
   NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override {
     if (!is_in_range(position, triangle)) return NarrowPhaseAnswer::failed("out of range");
-    // FCL returns points in the frame of the shape, whatever its documentation says.
+    // FCL returns points in the frame of the shape, contrary to its documentation.
     const Triangle local = relative(triangle, position);
     const fcl::Transform3d here = fcl::Transform3d::Identity();
     double distance = 0.0;
@@ -118,7 +119,7 @@ class FclGjkIndep final : public NarrowPhase {
                                           &distance, &normal)) {
         return NarrowPhaseAnswer::failed("FCL found neither a distance nor an overlap");
       }
-      // The depth has either sign.
+      // The depth may have either sign.
       return answer(-std::abs(distance), normal, on_triangle, tool_, position);
     } catch (...) {
       return NarrowPhaseAnswer::failed("FCL threw");
@@ -127,7 +128,7 @@ class FclGjkIndep final : public NarrowPhase {
 
  private:
   ConvexTool tool_;
-  fcl::Convexd core_;  // without faces: only volumes need them
+  fcl::Convexd core_;  // without faces, which only volumes need
   fcl::detail::GJKSolver_indep<double> solver_;
 };
 

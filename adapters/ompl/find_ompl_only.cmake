@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Makes the target ompl_only of what find_package(ompl) has found: here, and where the installed
-# keepout::ompl is linked. What the package calls its libraries includes some that are not needed.
+# Makes the target ompl_only from the results of find_package(ompl): here, and for users of the
+# installed keepout::ompl. The package's own list of libraries includes some that are not needed.
 
 find_library(KEEPOUT_OMPL_LIBRARY NAMES ompl HINTS ${OMPL_LIBRARY_DIRS})
 mark_as_advanced(KEEPOUT_OMPL_LIBRARY)

@@ -8,9 +8,9 @@
 
 namespace keepout {
 
-/// The number of support queries that a pair of bodies still answers. EPA has no bound of its own,
-/// in libccd or in FCL: it ends when a support point is no better than the last, which near a touch
-/// may never happen. Once the budget is spent both bodies answer with the origin, which is no
+/// The number of support queries that a pair of bodies still answers. EPA has no limit of its own,
+/// in libccd or in FCL. It ends when a support point is no better than the last, which near a touch
+/// may never happen. After the budget is spent, both bodies answer with the origin, which is no
 /// better.
 struct CcdBudget {
   int left;

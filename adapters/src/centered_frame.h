@@ -8,22 +8,20 @@
 
 namespace keepout {
 
-/// A mesh's own frame: the origin amid its bounds, the unit chosen so that no coordinate exceeds
-/// `reach`. For libraries that are less exact, or less general, away from the origin or from the
-/// size of everyday things.
+/// A mesh's own frame: the origin in the middle of its bounds, and a unit for which no coordinate
+/// exceeds `reach`. For libraries that are less exact away from the origin, or at unusual sizes.
 ///
-/// The unit is a power of two, so that only the shift rounds: by 2^-53 of the coordinate that
-/// results.
+/// The unit is a power of two, so only the shift rounds: by 2^-53 of the resulting coordinate.
 class CenteredFrame {
  public:
   /// Precondition: reach is a power of two.
   CenteredFrame(const Box& bounds, double reach) noexcept {
-    // Halved before they are added: the bounds may span more than a double can.
+    // Halved before the addition, because the bounds may span more than the range of a double.
     center_ = 0.5 * bounds.low + 0.5 * bounds.high;
     const double half = (bounds.high - center_).cwiseMax(center_ - bounds.low).maxCoeff();
     int exponent = 0;  // of the power of two above half; a mesh in one point keeps its unit
     if (half > 0.0) std::frexp(half, &exponent);
-    // Beyond these the scale, or its inverse, were no ordinary number.
+    // Beyond these limits the scale or its inverse would overflow or underflow.
     scale_ = reach * std::ldexp(1.0, std::clamp(-exponent, -1000, 900));
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Part of each module: keepout of another version refuses it.
+// A part of each module. Another version of keepout rejects the module.
 #include "keepout/version.h"
 
 extern "C" {

@@ -5,7 +5,7 @@
 
 namespace keepout {
 
-// The libraries that parts need, for the message that a part is absent.
+// The libraries that parts need, for the message about an absent part.
 inline constexpr std::string_view needs_fcl =
     "FCL (install keepout-modules; in the sources, install libfcl-dev and set KEEPOUT_WITH_FCL=ON)";
 inline constexpr std::string_view needs_bullet =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <ostream>
@@ -71,6 +72,11 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
   const FiducialPairs pairs = read_fiducials(options.fiducials);
   const RigidFit fit = fit_of(pairs, options);
   std::string doubt = fit.doubt;
+  const bool is_in_metres = options.unit == LengthUnit::metre;
+  if (std::abs(std::log(fit.scale * (is_in_metres ? 1000.0 : 0.001))) < 0.1) {
+    doubt += is_in_metres ? " If the measured ones are in mm, leave out --measured-in m"
+                          : " If the measured ones are in meters, give --measured-in m";
+  }
   if (doubt.empty() && options.fle) doubt = fit.doubt_of(*options.fle);
   if (!doubt.empty()) std::cerr << "keepout: do not trust it: " << doubt << '\n';
   const double largest = std::ranges::max(fit.residuals);

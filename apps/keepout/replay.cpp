@@ -12,6 +12,7 @@
 #include "shared/clip.h"
 #include "shared/command_line.h"
 #include "shared/named_mesh.h"
+#include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/output_file.h"
 #include "shared/pose_file.h"
@@ -96,8 +97,10 @@ int replay(const ReplayOptions& options, std::ostream& out) {
   for (const auto& [status, count] : counts) out << "  " << status << ": " << count << '\n';
   if (!options.guides.empty()) out << "  limited by guides: " << limited_by_guides << '\n';
   if (number == poses.size()) return EXIT_SUCCESS;
+  std::vector<std::string> kept{options.steps.string()};
+  if (options.planes) kept.push_back(options.planes->string());
   std::cerr << "keepout: stopped; " << grouped(number) << " of " << counted(poses.size(), "step")
-            << " were finished, and are kept in " << options.steps.string() << '\n';
+            << " were finished, and are kept in " << listed(kept) << '\n';
   return exit_interrupted;
 }
 

@@ -25,29 +25,29 @@
 namespace keepout::app {
 namespace {
 
-/// Each mesh once, and the bunny once for each of the sizes.
+/// Returns each mesh once, and the bunny once for each size.
 std::vector<Subject> chosen_subjects(const BenchOptions& options) {
   const bool is_default = options.meshes.empty() && options.triangles.empty();
   std::vector<std::string> meshes = options.meshes;
   if (meshes.empty()) meshes.emplace_back(resampled_mesh);
   std::vector<std::size_t> sizes = options.triangles;
-  // From the paper's smallest bunny to its largest, and on.
+  // From the smallest to the largest bunny of Li et al. (2020), and larger.
   if (is_default) sizes = {51'978, 278'664, 989'376};
   if (is_default && options.full) {
     sizes = {51'978, 104'000, 278'664, 557'000, 989'376, 4'458'624, 17'834'496};
   }
   if (!sizes.empty() && std::ranges::find(meshes, resampled_mesh) == meshes.end()) {
-    throw Error("--triangles is for the mesh that is resampled: name " +
-                std::string(resampled_mesh) + " among the meshes, or leave --triangles out");
+    throw Error("--triangles applies to the resampled mesh only: add " +
+                std::string(resampled_mesh) + " to --mesh, or omit --triangles");
   }
   std::vector<Subject> subjects;
   for (const std::string& mesh : meshes) {
     if (std::ranges::find(subjects, mesh, &Subject::mesh) != subjects.end()) continue;
-    // Tables and pictures know a mesh by its name.
+    // Tables and plots identify a mesh by its name.
     const auto other = std::ranges::find(subjects, label_of({mesh}), label_of);
     if (other != subjects.end()) {
       throw Error("--mesh: '" + other->mesh + "' and '" + mesh +
-                  "' could not be told apart in the report: give one of them another name");
+                  "' would have the same name in the report: rename one of them");
     }
     if (mesh == resampled_mesh) {
       for (const std::size_t size : sizes) subjects.push_back({mesh, size});
@@ -74,7 +74,7 @@ Json record_of(const Benchmark& benchmark, const Comparison& comparison) {
   return record;
 }
 
-/// How well all parts agree; nothing, where the user wants to know about some only, or no more.
+/// Compares the parts. Returns an empty comparison if the user selected parts, or after a stop.
 Comparison comparison_for(const BenchOptions& options, const Subject& subject,
                           const StopSignal& stop, std::ostream& out) {
   if (names_parts(options.selection)) return {};
@@ -93,7 +93,7 @@ Comparison comparison_for(const BenchOptions& options, const Subject& subject,
   return {};
 }
 
-/// Says what there is to measure, and what this build was made without.
+/// Lists the parts that can be measured, and those that this build lacks.
 void list_parts(std::ostream& out) {
   const auto list_absent = [&](std::span<const PeerPart> parts) {
     for (const PeerPart& part : parts) {
@@ -105,24 +105,25 @@ void list_parts(std::ostream& out) {
   out << listing("Rules (--activation)", activation_rules());
   out << listing("Solvers (--solver)", solver_backends());
   list_absent(solver_backends().absent());
-  out << "Meshes (--mesh; a file will do as well):\n ";
+  out << "Meshes (--mesh; or a file):\n ";
   for (const std::string_view mesh : real_meshes()) out << ' ' << mesh;
   out << "\n  --triangles resamples " << resampled_mesh << " to any number of triangles\n";
 }
 
-/// To be called last: it has no use for most of the others.
+/// Must be called after the other options exist, because --speed excludes most of them.
 void add_speed_options(CLI::App& command, BenchOptions& options) {
   SpeedOptions& speed_options = options.speed;
   CLI::Option* speed = command.add_flag(
       "--speed", options.is_speed,
-      "Measure the table of ratios that keepout is held to, in one process on one core; some "
+      "Measure the table of required ratios, in one process on one core; takes some "
       "minutes. With --triangles: one size, for meshes of about a million");
   for (const char* name : {"--list", "--index", "--activation", "--solver", "--mesh", "--radius",
                            "--full", "--queries", "--seconds", "--poses", "--csv"}) {
     speed->excludes(name);
   }
   command
-      .add_option("--steps", speed_options.histogram_steps, "Of --speed: steps of the histogram")
+      .add_option("--steps", speed_options.histogram_steps,
+                  "With --speed: number of steps in the histogram")
       ->type_name("NUMBER")
       ->transform(whole_number(1, most_steps))
       ->needs(speed)
@@ -130,25 +131,24 @@ void add_speed_options(CLI::App& command, BenchOptions& options) {
   command
       .add_option(
           "--largest", speed_options.largest,
-          "Of --speed: also a mesh of so many triangles. 100000000 need 14 GiB, 5 GB of the "
-          "disk, and some minutes")
+          "With --speed: also measure a mesh of this many triangles. 100000000 need 14 GiB of "
+          "memory, 5 GB of disk, and some minutes")
       ->type_name("NUMBER")
       ->transform(whole_number(1000, 200'000'000))
       ->needs(speed);
   command
-      .add_flag("--quick", speed_options.quick,
-                "Of --speed: few of everything, to see that it works")
+      .add_flag("--quick", speed_options.quick, "With --speed: a short run, to test that it works")
       ->needs(speed);
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app, BenchOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "bench",
-      "Time every stage of the step, for indices, rules and solvers side by side; each is held to "
-      "brute force and to our own solver as it is timed");
-  command.add_flag("--list", options.list, "Say what there is to measure, and stop");
+  CLI::App& command = *app.add_subcommand("bench",
+                                          "Time every stage of the step, for indices, rules and "
+                                          "solvers side by side; compare each with "
+                                          "brute force and with keepout's own solver");
+  command.add_flag("--list", options.list, "List what can be measured, and exit");
   const auto add_list = [&](const char* name, std::vector<std::string>& list,
                             const CLI::Validator& known, const char* text) {
     command.add_option(name, list, text)->delimiter(',')->type_name("NAMES")->check(known);
@@ -159,42 +159,44 @@ void add_bench(CLI::App& app, BenchOptions& options) {
            "Rules to measure");
   add_list("--solver", options.selection.solvers, one_of_parts(solver_names(), solver_backends),
            "Solvers to measure");
-  CLI::Option* const mesh = command.add_option("--mesh", options.meshes, "Fixtures, or mesh files")
-                                ->delimiter(',')
-                                ->type_name("NAMES");
+  CLI::Option* const mesh =
+      command.add_option("--mesh", options.meshes, "Sample meshes, or mesh files")
+          ->delimiter(',')
+          ->type_name("NAMES");
   add_load_options(command, options.load);
   for (const char* name : {"--space", "--untagged", "--unit", "--scale", "--flip"}) {
     command.get_option(name)->needs(mesh);
   }
   command
       .add_option("--triangles", options.triangles,
-                  "Sizes to which the bunny is resampled, 150 mm large as in the paper")
+                  "Sizes to which to resample the bunny, 150 mm large as in Li et al. (2020)")
       ->delimiter(',')
       ->type_name("NUMBERS")
       ->transform(whole_number(1000, 200'000'000));
   command
-      .add_option("--radius", options.selection.radii,
-                  "Radii of the motion sphere, in mm; certified looks as far as the motion leads, "
-                  "whatever the radius")
+      .add_option(
+          "--radius", options.selection.radii,
+          "Radii of the motion sphere, in mm; certified searches as far as the motion goes, "
+          "whatever the radius")
       ->delimiter(',')
       ->type_name("MM")
       ->check(length(Zero::refused));
   command.add_flag(
       "--full", options.full,
-      "To 18 million triangles, and the skull of a million: tens of minutes, and 14 GB");
-  command.add_option("--queries", options.queries, "Steps of each combination, at most")
+      "Up to 18 million triangles, and the skull with a million; takes tens of minutes and 14 GB");
+  command.add_option("--queries", options.queries, "Most steps of each combination")
       ->type_name("NUMBER")
       ->transform(whole_number(5, 10'000'000));
   command
-      .add_option(
-          "--seconds", options.seconds,
-          "How long a combination is asked, at most, in each of two rounds: stage by stage, "
-          "and as a whole")
+      .add_option("--seconds", options.seconds,
+                  "Most time for a combination in each of two rounds: stage by stage, "
+                  "and whole steps")
       ->type_name("S")
       ->check(length(Zero::refused));
   command
-      .add_option("--poses", options.poses,
-                  "contact: a tool that slides along the surface; unrelated: as a planner asks")
+      .add_option(
+          "--poses", options.poses,
+          "contact: a tool that slides along the surface; unrelated: all over, as for a planner")
       ->transform(one_of<Poses>({{"contact", Poses::contact}, {"unrelated", Poses::unrelated}}))
       ->default_str("contact");
   add_number(command, "--seed", options.seed, 0, largest_seed, "Seed of the motions");
@@ -203,9 +205,10 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       ->type_name("FILE");
   add_speed_options(command, options);
   command.footer(
-      "Each list is crossed with the others; what is not named is wide_bvh, paper and certified,\n"
-      "active_set, and radii of 5, 1 and 0.25. Without --index, --activation and\n"
-      "--solver: each index, then each solver, with those; and FCL's tree with SLSQP.");
+      "The lists are combined with each other. Defaults: wide_bvh; paper and certified;\n"
+      "active_set; radii of 5, 1 and 0.25. Without --index, --activation and --solver: each "
+      "index,\n"
+      "then each solver, with these defaults; and FCL's tree with SLSQP.");
 }
 
 bool is_right(const Benchmark& benchmark, const Comparison& comparison) {
@@ -231,12 +234,12 @@ int bench(const BenchOptions& options, std::ostream& out) {
   const RecordFiles& files = options.files;
   std::vector<std::string> meshes;
   for (const Subject& subject : plan.subjects) meshes.push_back(subject.mesh);
-  // Also refuses a mesh that does not exist, before the first row.
+  // Also rejects a mesh that does not exist, before the first row.
   std::optional outputs(files.open(meshes, "--mesh"));
 
   const StopSignal stop(keeps_what_is_finished);
   Benchmark benchmark;
-  std::exception_ptr failure;  // of a mesh, after the rows of others
+  std::exception_ptr failure;  // of a mesh, after rows of other meshes
   try {
     run_benchmark(plan, stop, benchmark, out);
   } catch (const std::exception&) {
@@ -251,11 +254,14 @@ int bench(const BenchOptions& options, std::ostream& out) {
   // end. An open file, such as stdout, cannot be replaced: it is written at the end only.
   Json record = record_of(benchmark, {});
   record["complete"] = false;  // until the answers are compared as well
-  if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);
+  const auto write_table = [&] {
+    if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);
+  };
   const bool is_replaced = std::ranges::none_of(
       std::array{files.json, files.csv, files.page},
       [](const auto& file) { return file && entry_of_open_file(*file).has_value(); });
   if (is_replaced) {
+    write_table();
     if (auto* const json = outputs->stream("--json")) print_json(*json, record);
     outputs->commit();
   }
@@ -266,8 +272,9 @@ int bench(const BenchOptions& options, std::ostream& out) {
   }
   if (is_replaced) {
     outputs.reset();
-    outputs.emplace(RecordFiles{files.json, files.page}.open(meshes, "--mesh"));
+    outputs.emplace(files.open(meshes, "--mesh"));
   }
+  write_table();  // again, so that a failure to write names all files
   write_record(*outputs, record, files);
   print_headline(out, benchmark);
   out << "report: " << files.page->string() << '\n';
@@ -279,13 +286,9 @@ int bench(const BenchOptions& options, std::ostream& out) {
   if (!failure && !stop.has_come()) {
     return is_right(benchmark, comparison) ? EXIT_SUCCESS : EXIT_FAILURE;
   }
-  std::vector<std::string> kept{files.page->string()};
-  for (const auto& path : {files.kept_json(), files.csv}) {
-    if (path) kept.push_back(path->string());
-  }
   std::cerr << "keepout: stopped; " << grouped(benchmark.rows.size()) << " of "
             << counted(benchmark.planned, "row") << " were finished, and are kept in "
-            << listed(kept) << '\n';
+            << files.names() << '\n';
   if (failure) std::rethrow_exception(failure);
   return exit_interrupted;
 }

@@ -29,44 +29,44 @@ class App;
 
 namespace keepout::app {
 
-/// One way to put a step together.
+/// The parts of a step.
 struct Combination {
   std::string index, activation, solver;
-  std::optional<double> radius;  // of the motion sphere [mm]; none: as far as motions lead
+  std::optional<double> radius;  // of the motion sphere [mm]; empty: as far as motions go
 
   bool operator==(const Combination&) const = default;
 };
 
-/// What the user asked for; empty lists are up to us.
+/// The user's choice; an empty list selects the default.
 struct Selection {
   std::vector<std::string> indices = {}, activations = {}, solvers = {};
   std::vector<double> radii = {};  // [mm]
 };
 
-/// Whether any part was asked for by name.
+/// Returns true if the user selected any part by name.
 bool names_parts(const Selection& selection);
 
-/// Every combination of what was asked for, and where nothing was, of the reference: wide_bvh, the
-/// rules paper and certified, active_set. If no part was asked for at all: each index with the
-/// reference, each rule and solver with the reference, and what a user of the usual libraries would
-/// put together, FCL's tree with SLSQP.
+/// Returns every combination of the selected parts; an empty list stands for the reference parts:
+/// wide_bvh, the rules paper and certified, active_set. If no part is selected: each index with the
+/// reference, each rule and solver with the reference, and FCL's tree with SLSQP, as from usual
+/// libraries.
 ///
-/// The certified rule looks as far as the motion leads whatever the radius: it is listed once.
-/// Only parts that this build has; sorted by index, so that each is built once.
+/// The certified rule searches as far as the motion goes, whatever the radius: it is listed once.
+/// Contains only parts of this build; sorted by index, so that each index is built once.
 std::vector<Combination> combinations_of(const Selection& selection);
 
 enum class Poses {
   contact,   // a tool that presses on the surface and slides along it, cycle after cycle
-  unrelated  // all over the surface, as a planner asks
+  unrelated  // all over the surface, as for a planner
 };
 
-/// What to measure, and how thoroughly.
+/// The plan of a benchmark.
 struct BenchmarkPlan {
-  std::string command;  // that does it again
+  std::string command;  // the command line that repeats it
   std::vector<Subject> subjects;
-  std::vector<Combination> combinations;  // those of one index together: it is built once
+  std::vector<Combination> combinations;  // sorted by index, so that each is built once
   std::size_t queries = 2500;             // of each combination, at most
-  double seconds = 1.0;                   // after which one is asked no more: see measure()
+  double seconds = 1.0;                   // time for one combination: see measure()
   Poses poses = Poses::contact;
   std::uint64_t seed = 1;  // of the motions, which are the same for all combinations on a mesh
 };
@@ -74,30 +74,30 @@ struct BenchmarkPlan {
 /// One combination of parts on one mesh, as docs/records.md describes a row of `bench`.
 using BenchmarkRow = Json;
 
-/// A row with all of its members: zero, or null for what is not known. A row that is not verified
-/// has no times, and a remark that says why.
+/// Returns a row with all members: zero, or null for unknown values. A row that is not verified has
+/// no times, and its remark gives the reason.
 BenchmarkRow new_row();
 
 struct Benchmark {
   std::string date;     // ISO 8601, UTC
-  std::string command;  // that does it again
+  std::string command;  // the command line that repeats it
   std::uint64_t seed = 0;
   Machine machine;
-  std::map<std::string, std::string> parts = {};    // what each index, rule and solver is
+  std::map<std::string, std::string> parts = {};    // the description of each index, rule and
+                                                    // solver
   std::map<std::string, std::string> remarks = {};  // what an index does more or less than others
-  std::size_t planned = 0;                          // rows; more than there are: it was stopped
-  std::optional<double> others_cores = {};  // that other processes kept busy meanwhile, if known
+  std::size_t planned = 0;                          // rows; more than there are after a stop
+  std::optional<double> others_cores = {};          // that other processes kept busy, if known
   std::vector<BenchmarkRow> rows = {};
 };
 
-/// Measures every combination on every mesh until it is stopped, and prints the machine and a table
-/// as it goes. What cannot be built, or gives a wrong answer, is not timed, and the row's remark
-/// says why. The benchmark gets the rows that are finished, also where this throws Error: for a
-/// mesh that is broken.
+/// Measures every combination on every mesh until it is stopped; prints the machine and a table. A
+/// part that cannot be built or gives a wrong answer is not timed, and the row's remark gives the
+/// reason. Throws Error for a broken mesh; `benchmark` then has the finished rows.
 void run_benchmark(const BenchmarkPlan& plan, const StopSignal& stop, Benchmark& benchmark,
                    std::ostream& out);
 
-/// Tells whether answers are the same, bit for bit: like FNV-1a, but of whole words.
+/// A hash for the bitwise comparison of answers: like FNV-1a, but of whole words.
 class BitHash {
  public:
   void add(std::uint64_t word) {
@@ -112,7 +112,7 @@ class BitHash {
   std::uint64_t value_ = 0xCBF29CE484222325;
 };
 
-/// What a step came to.
+/// The result of a step.
 struct Answer {
   Answer(const Step& step) : status(step.status), motion(step.motion) {}
   bool operator==(const Answer&) const = default;
@@ -121,37 +121,37 @@ struct Answer {
   Vec3 motion;
 };
 
-/// What every index and solver is held to, for one rule and radius on one mesh: brute force, in a
-/// sample of the places; everywhere, the reference's guard, which is held to brute force too.
+/// The expected answers for one rule and radius on one mesh, for all indices and solvers. They come
+/// from the reference constraint, which is compared with brute force at a sample of places.
 class Reference {
  public:
-  /// The guard is one with these settings on an index that is right; its solver is our own. The
-  /// motions must outlive this. Throws Error when the guard's own parts are not right: a fault of
-  /// ours.
+  /// Makes the reference constraint with these settings on a correct index; its solver is keepout's
+  /// own. The motions must outlive this. Throws Error if the constraint's own parts are wrong: a
+  /// bug in keepout.
   Reference(std::shared_ptr<const SpatialIndex> right, std::shared_ptr<const Mesh> mesh,
             const MotionConstraintSettings& settings, std::span<const Motion> motions);
 
-  /// Whether there is room for all triangles in reach. If not, ask no more of it.
+  /// True if all triangles in reach fit the capacity. Otherwise call no other function.
   bool fits() const noexcept { return fits_; }
 
-  /// The step that is expected for a motion.
+  /// Returns the expected step for a motion.
   const Answer& answer(std::size_t motion);
 
-  /// The hash of what a query finds there.
+  /// Returns the hash of the hits of a query for a motion.
   std::uint64_t hits_hash(std::size_t motion);
 
-  /// Whether a motion is accepted for its proof, and not because a solver says that it is the best.
+  /// True if the rule accepts a motion because of its proof, and not because of the solver's claim.
   bool proves_motions() const noexcept { return proves_motions_; }
 
   const Mesh& mesh() const noexcept { return guard_.mesh(); }
 
-  /// Where the rule looks at first, for each motion.
+  /// Returns the ball that the rule searches first, for each motion.
   std::span<const Ball> balls() const noexcept { return balls_; }
 
-  /// Whether the index finds in every sampled ball what brute force finds, to the bit.
+  /// True if the index finds in every sampled ball bitwise the hits of brute force.
   bool is_found_by(const SpatialIndex& index);
 
-  // What a query finds, for whoever makes one.
+  // Buffers for the result of a query.
   TriangleBuffer candidates;
   HitBuffer hits;
 
@@ -168,33 +168,31 @@ class Reference {
   std::span<const Motion> motions_;
   std::vector<Ball> balls_;
   std::vector<Sample> samples_;
-  std::vector<Answer> answers_;             // as far as they have been asked for
-  std::vector<std::uint64_t> hits_hashes_;  // likewise
+  std::vector<Answer> answers_;             // computed on first use
+  std::vector<std::uint64_t> hits_hashes_;  // computed on first use
   bool fits_ = true;
 };
 
-/// Asks the constraint, which is put together as any user has it but takes tips as they are, for
-/// the motions, in order and for so many seconds (or up to four times as many, to come to 1000
-/// steps), stage by stage; then for the same steps as a whole; then the index for all triangles
-/// where the rule looks for them at first. Each answer of each time is held to the reference
-/// afterwards, and unless all are right no time is taken down.
+/// Times a constraint that takes tips as they are, in three rounds. First, stage by stage: steps
+/// for the motions in order, for `seconds`, or up to four times as long if there are fewer than
+/// 1000 steps. Second, the same steps as a whole. Third, the index: all triangles that the rule
+/// searches first. Then compares all answers with the reference. If any is wrong, the row gets no
+/// times.
 ///
-/// Steps must be those of the reference bit for bit if the accuracy of the solver is 0; else within
-/// so much of the length of the motion. A solver may give up, but not be wrong. Under a rule that
-/// proves each motion, another solver's may be worse, of which the row tells. Triangles and their
-/// closest points must be those of the reference bit for bit.
+/// If the solver's accuracy is 0, steps must be bitwise those of the reference; otherwise they must
+/// agree within `accuracy` times the length of the motion. A solver may give up, but must not be
+/// wrong. Triangles and their closest points must be bitwise those of the reference.
 ///
-/// Of the `worse_share` of a row: with a solver other than the reference's, under a rule that
-/// accepts a motion for its proof alone, a motion may be right, but farther from what was asked for
-/// than the reference's, by more than a thousandth of it.
+/// The member `worse_share` of a row counts motions that are correct but worse: farther from the
+/// desired motion than the reference's, by more than a thousandth of it. They occur with other
+/// solvers, under a rule that accepts motions by proof.
 ///
-/// Fills the row from its queries on. Of no use when it was stopped meanwhile.
+/// Fills the row from its queries on. After a stop the row is unusable.
 void measure(MotionConstraint& constraint, double accuracy, std::span<const Motion> motions,
              Reference& reference, double seconds, const StopSignal& stop, BenchmarkRow& row);
 
-/// What is printed for a terminal: where it ran and what the columns mean; the columns' names; line
-/// by line as the rows come in; and, in the end, the headline and how busy other processes kept the
-/// machine.
+/// Output for a terminal: the machine and the columns' meaning; the columns' names; a row; the
+/// headline and the load by other processes.
 void print_machine(std::ostream& out, const Machine& machine);
 void print_table_head(std::ostream& out);
 void print_table_row(std::ostream& out, const BenchmarkRow& row);
@@ -208,16 +206,16 @@ struct Pair {
 inline constexpr std::array pairs{Pair{"wide_bvh", "active_set"},
                                   Pair{"fcl_obbrss", "nlopt_slsqp"}};
 
-/// The rows that the headline compares, of those timed without a remark: on the largest mesh, with
-/// the largest sphere there, under one rule. Null if there is none.
+/// The rows that the headline compares: timed, without a remark, on the largest mesh, with the
+/// largest sphere there, under one rule. Null if no row qualifies.
 struct Ranking {
   const BenchmarkRow* fastest = nullptr;
   const BenchmarkRow* slowest = nullptr;
 };
 Ranking ranking_of(const Benchmark& benchmark);
 
-/// Returns how many groups of rows that differ only in the index made the same steps, as far as
-/// their motions are the same, and how many rows are not compared.
+/// Compares rows that differ only in the index. Returns how many groups made the same steps, as far
+/// as their motions are the same, and how many rows are not compared.
 Json step_groups_of(const Benchmark& benchmark);
 
 /// Returns how many rows have wrong answers.
@@ -232,26 +230,26 @@ bool is_right(const Benchmark& benchmark, const Comparison& comparison);
 /// are wrong.
 std::string headline(const Benchmark& benchmark);
 
-/// The record of it, as docs/records.md describes it.
+/// Returns the record, as docs/records.md describes it.
 Json json_of(const Benchmark& benchmark);
 
-/// The rows, one a line, below a line of names; what was not measured is empty. Each says where it
-/// was measured, so that files can be put together.
+/// Writes a line of names and a line for each row; values that were not measured are empty. Each
+/// row has its machine, so that files can be combined.
 void write_csv(std::ostream& out, const Benchmark& benchmark);
 
-/// Of `bench --speed` alone.
+/// Options of `bench --speed` only.
 struct SpeedOptions {
-  std::optional<std::size_t> largest = {};  // triangles of a third mesh; none: left out
+  std::optional<std::size_t> largest = {};  // triangles of a third mesh; empty: none
   std::size_t histogram_steps = 10'000'000;
-  bool quick = false;  // few of everything
+  bool quick = false;  // a short run
 };
 
 struct BenchOptions {
-  bool list = false;      // what there is to measure, and no more
+  bool list = false;      // only list the parts that can be measured
   bool is_speed = false;  // the table of ratios instead: see bench_speed()
   SpeedOptions speed;
-  std::vector<std::string> meshes;     // fixtures or files; empty: the bunny
-  LoadOptions load = {};               // of the meshes that are named
+  std::vector<std::string> meshes;     // sample meshes or files; empty: the bunny
+  LoadOptions load = {};               // of the named meshes
   std::vector<std::size_t> triangles;  // sizes of the bunny; empty: up to `full`
   Selection selection;
   bool full = false;  // to 18 million triangles, and the skull; tens of minutes
@@ -260,31 +258,30 @@ struct BenchOptions {
   Poses poses = Poses::contact;
   std::uint64_t seed = 1;
   RecordFiles files = {.json = {}, .page = "keepout-bench.html"};
-  std::string command;  // that does it again
+  std::string command;  // the command line that repeats it
 };
 
 /// Adds `keepout bench` and its options to the command line.
 void add_bench(CLI::App& app, BenchOptions& options);
 
-/// Measures every combination that was asked for on every mesh, prints a table as it goes, compares
-/// the parts' answers on the first mesh, and writes a report and files. Throws Error before any
-/// work when one could not be written, or there is no mesh of a name.
+/// Measures every selected combination on every mesh, prints a table, compares the parts' answers
+/// on the first mesh, and writes a report and files. Throws Error before any work if a file cannot
+/// be written, or if a mesh does not exist.
 ///
-/// Gives the exit status: 0; failure if the answers of a row are wrong, or if the parts disagree;
-/// or exit_interrupted when a signal stopped it. The rows that were finished are then written all
-/// the same, marked as incomplete, and stderr tells what was kept and where; where there is none,
-/// nothing is written. The same goes for a mesh that turns out to be broken: its error is thrown
-/// after the rows of those before it are written.
+/// Returns the exit status: 0; failure if the answers of a row are wrong or the parts disagree;
+/// exit_interrupted after a signal. After a signal it writes the finished rows, marked as
+/// incomplete, and reports the files on stderr; without finished rows it writes nothing. If a mesh
+/// is broken, it writes the rows of the meshes before it, and then throws the mesh's Error.
 int bench(const BenchOptions& options, std::ostream& out);
 
-/// Measures the table of ratios that the engine is held to, prints it as it goes, and writes a
-/// report and JSON, if asked for. What falls short is said, and is no error. A wish to stop ends it
-/// after the family of rows at hand: what is measured is written, and said to be a part. The exit
-/// status. Throws Error before any work when a file could not be written, or a fixture is missing.
+/// Measures the table of required ratios, prints it, and writes a report and JSON if requested.
+/// Reports ratios that fall short; they are not an error. A stop takes effect after the current
+/// family of rows; the output is then marked as incomplete. Returns the exit status. Throws Error
+/// before any work if a file cannot be written, or if a sample mesh is missing.
 int bench_speed(const BenchOptions& options, std::ostream& out);
 
 /// Times all indices, rules and solvers on the mesh of a simulation, quickly, and compares their
-/// answers. A signal stops it, and it keeps what is finished.
+/// answers. After a signal it keeps the finished rows.
 PartTimings time_parts(const SimulateOptions& options, const std::shared_ptr<const Mesh>& mesh,
                        const StopSignal& stop, std::ostream& out);
 

@@ -45,7 +45,7 @@ struct PublishedRate {
 constexpr std::array<PublishedRate, 2> published_rates = {
     {{51978, 25991, 7.73}, {989376, 493460, 0.180}}};
 
-/// "  1.2 % worse"; nothing where there are none.
+/// Returns text such as "  1.2 % worse"; empty for 0.
 std::string share(double value, const char* of_what) {
   return value > 0.0 ? "  " + rounded(100.0 * value, 2) + " % " + of_what : "";
 }
@@ -59,7 +59,7 @@ Column<Row> column(const char* key, const char* heading, int width,
   return {key, [key](const Row& row) { return row[key]; }, heading, width, text};
 }
 
-/// A percentile of the step.
+/// Returns a column for a percentile of the step.
 Column<Row> of_step(const char* percentile, const char* heading) {
   return {"", [percentile](const Row& row) { return row["step_us"][percentile]; }, heading, 8,
           figure_text};
@@ -67,7 +67,7 @@ Column<Row> of_step(const char* percentile, const char* heading) {
 
 const Column<Row> bar{"", [](const Row&) { return Json("|"); }, "|", 1};
 
-/// What is measured; and what comes of it, which the table has only of rows that were timed.
+/// The conditions of a row, and its figures; the table shows figures only for timed rows.
 const Columns<Row> name_columns{
     column("radius", "r mm", -6,
            [](const Json& mm) { return mm.is_null() ? "motion" : trimmed(mm.get<double>()); }),
@@ -193,10 +193,10 @@ std::string headline(const Benchmark& benchmark) {
 void print_machine(std::ostream& out, const Machine& machine) {
   out << machine.processor << ", " << counted(machine.cores, "core") << ", SIMD target "
       << machine.simd << '\n'
-      << "build in s, and the cores that it kept busy; times in us, medians unless said\n"
-         "collect, query: what the index proposes, and all triangles where the rule looks; for "
-         "every index the same work, apart from the step\n"
-         "find, activate, solve: stages of the step; '-' where the rule searches the tree by "
+      << "build in s, and the cores that it kept busy; times in us, medians unless stated\n"
+         "collect, query: candidates of the index, and all triangles in the rule's region; the "
+         "same work for every index, apart from the step\n"
+         "find, activate, solve: stages of the step; '-' if the rule searches the tree "
          "itself\n";
 }
 
@@ -263,7 +263,7 @@ void write_csv(std::ostream& out, const Benchmark& benchmark) {
   Json rows = benchmark.rows;
   for (Json& row : rows) {
     row.erase("hashes_of_first");
-    // The same columns whatever was timed, so that files can be put together.
+    // Always the same columns, so that files can be combined.
     for (auto& [key, value] : row.items()) {
       if (!key.ends_with("_us") || !value.is_null()) continue;
       value = {{"p50", nullptr}, {"p99", nullptr}, {"p999", nullptr}, {"max", nullptr}};

@@ -15,15 +15,15 @@
 namespace keepout::app {
 namespace {
 
-/// Brute force is asked about so many of the motions: tens of milliseconds each.
+/// The number of motions for brute force, which takes tens of milliseconds for each.
 constexpr std::size_t sample_count = 8;
 
-/// JSON has no 64-bit whole numbers that every reader keeps.
+/// Many readers of JSON do not keep whole numbers of 64 bits.
 std::string hexadecimal(std::uint64_t value) {
   return formatted("%016llx", static_cast<unsigned long long>(value));
 }
 
-/// Of what a query finds, to the last bit.
+/// Returns a hash of all bits of a query's result.
 std::uint64_t hash_of(std::span<const Hit> hits) {
   BitHash hash;
   for (const Hit& hit : hits) {
@@ -36,19 +36,19 @@ std::uint64_t hash_of(std::span<const Hit> hits) {
 }
 
 /// Of each query and step. [us]
-struct Times {
+struct TimesOfStages {
   std::vector<double> collect, query, step, step_query, activate, solve;
 };
 
-/// So many steps are asked for whatever the time, that medians and 99.9 % compare; unless it takes
-/// so many times the time that there is.
+/// At least this many steps, so that medians and 99.9 % percentiles compare; but at most `patience`
+/// times the given time.
 constexpr std::size_t enough_steps = 1000;
 constexpr double patience = 4.0;
 
-/// So many that even the slowest has a median.
+/// At least this many, so that even the slowest has a median.
 constexpr std::size_t fewest_steps = 5;
 
-/// A wrong answer; one that is withheld is not.
+/// Returns true for a wrong answer; a missing answer is not wrong.
 bool is_wrong(const Answer& got, const Answer& expected, double accuracy, const Motion& motion,
               bool proven) {
   if (accuracy == 0.0) return !(got == expected);
@@ -57,16 +57,16 @@ bool is_wrong(const Answer& got, const Answer& expected, double accuracy, const 
   return !((got.motion - expected.motion).norm() <= accuracy * motion.desired.norm());
 }
 
-/// Right, but short of the reference by more than a thousandth of the motion.
+/// Returns true if a right motion falls short of the reference by more than a thousandth.
 bool is_worse(const Answer& got, const Answer& expected, const Motion& motion) {
   return is_ok(got.status) && is_ok(expected.status) &&
          (got.motion - motion.desired).norm() >
              (expected.motion - motion.desired).norm() + 1e-3 * motion.desired.norm();
 }
 
-/// As many as there is time for.
+/// Makes as many steps as there is time for.
 std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const Motion> motions,
-                                  double seconds, const StopSignal& stop, Times& times) {
+                                  double seconds, const StopSignal& stop, TimesOfStages& times) {
   std::vector<Answer> answers;
   double spent = 0.0;  // [us]
   for (const Motion& motion : motions) {
@@ -82,9 +82,9 @@ std::vector<Answer> ask_by_stages(MotionConstraint& constraint, std::span<const 
   return answers;
 }
 
-/// All of them, as a control loop would ask.
+/// Makes all steps, as a control loop does.
 std::vector<Answer> ask(MotionConstraint& constraint, std::span<const Motion> motions,
-                        const StopSignal& stop, Times& times, double& planes_mean) {
+                        const StopSignal& stop, TimesOfStages& times, double& planes_mean) {
   std::vector<Answer> answers;
   std::size_t planes = 0;
   for (const Motion& motion : motions) {
@@ -99,7 +99,7 @@ std::vector<Answer> ask(MotionConstraint& constraint, std::span<const Motion> mo
   return answers;
 }
 
-/// How many answers are wrong; the row gets what can be said of all.
+/// Returns the number of wrong answers; writes the figures of all answers into the row.
 std::size_t judge(std::span<const Answer> answers, std::span<const Motion> motions,
                   Reference& reference, double accuracy, BenchmarkRow& row) {
   BitHash hash;
@@ -123,10 +123,10 @@ std::size_t judge(std::span<const Answer> answers, std::span<const Motion> motio
   return wrong;
 }
 
-/// How many queries found something else than the reference. Whatever the index has decided or
-/// computed already, all do the same work: candidates, exact test, closest points, sorted.
+/// Returns the number of queries with another result than the reference. All indices do the same
+/// work, whatever they have computed already: candidates, exact test, closest points, sorting.
 std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Reference& reference,
-                              const StopSignal& stop, Times& times, BenchmarkRow& row) {
+                              const StopSignal& stop, TimesOfStages& times, BenchmarkRow& row) {
   // Before any is timed, so that caches are the same for the first index as for the last.
   std::vector<std::uint64_t> expected;
   for (std::size_t i = 0; i < count; ++i) expected.push_back(reference.hits_hash(i));
@@ -173,7 +173,7 @@ Reference::Reference(std::shared_ptr<const SpatialIndex> right, std::shared_ptr<
     const Answer expected = exhaustive.step(motions_[motion]);
     if (Answer(guard_.step(motions_[motion])) != expected) {
       throw Error(
-          "the steps of the reference are not those of brute force: this is a fault in "
+          "the steps of the reference are not those of brute force: this is a bug in "
           "keepout; please report it");
     }
   }
@@ -215,7 +215,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
     row["wrong"] = true;
     return;
   }
-  Times times;
+  TimesOfStages times;
   const std::vector<Answer> staged = ask_by_stages(constraint, motions, seconds, stop, times);
   const std::span<const Motion> asked = motions.first(staged.size());
   double planes_mean = 0.0;
@@ -224,7 +224,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
   row["queries"] = asked.size();
   row["planes_mean"] = planes_mean;
   std::size_t wrong = judge(answers, asked, reference, accuracy, row);
-  // The same parts that were asked for the same: whatever differs is wrong in one of the two.
+  // The same constraint made these steps twice, so a difference is an error.
   for (std::size_t i = 0; i < asked.size(); ++i) wrong += staged[i] == answers[i] ? 0 : 1;
   const std::size_t missed =
       ask_for_triangles(constraint.index(), asked.size(), reference, stop, times, row);
@@ -248,7 +248,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
   if (constraint.makes_queries()) row["step_query_us"] = timing_of(times.step_query);
   row["activate_us"] = timing_of(times.activate);
   row["solve_us"] = timing_of(times.solve);
-  // A median of finding nothing says nothing, and a solver that gives up early only looks fast.
+  // Without hits the median is meaningless, and a solver that gives up early only looks fast.
   if (row["reaching_share"] < 0.5) {
     row["remark"] = "not ranked: no triangle is in reach of more than half of the motions";
   } else if (row["unsolved_share"] > 0.01) {

@@ -31,7 +31,7 @@ constexpr const char* usual_solver = "nlopt_slsqp";
 using Names = std::vector<std::string>;
 using Radii = std::vector<double>;
 
-/// Appends every combination of these, each once, of parts that there are.
+/// Appends every combination of these parts that this build has, each once.
 void add(std::vector<Combination>& all, const Names& index_names, const Names& rules,
          const Names& solvers, const Radii& radii) {
   const std::vector<std::optional<double>> any(radii.begin(), radii.end()), none(1);
@@ -55,20 +55,20 @@ Names or_else(const Names& asked, const Names& otherwise) {
   return asked.empty() ? otherwise : asked;
 }
 
-/// Room for every step that shall be timed.
+/// Capacity for every step that is timed.
 constexpr Capacity bench_capacity{
     .triangles = std::size_t{1} << 18, .planes = std::size_t{1} << 16, .variables = 3};
 
 constexpr double margin = 0.2;  // of the certified rule, and from the tip to the surface [mm]
 
-/// What an index takes, by its name, as seen on another mesh. [bytes per triangle]
+/// The memory of an index, by its name, as measured on another mesh. [bytes per triangle]
 using MemoryTaken = std::map<std::string, double>;
 
 /// One mesh, and the same motions for every combination.
 class Trial {
  public:
-  /// All but the subject must outlive this; `memory` is added to. Throws Error when there is no
-  /// such mesh.
+  /// All arguments but `subject` must outlive this; build() adds to `memory`. Throws Error if the
+  /// mesh does not exist.
   Trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
         const StopSignal& stop)
       : subject_(subject),
@@ -79,15 +79,17 @@ class Trial {
         reference_index_(std::make_shared<const PdTree>(loaded_.mesh)) {
     Random random(plan.seed);
     const MotionKind kind{.clearance = margin};
-    motions_ = plan.poses == Poses::contact
-                   ? contact_motions(*loaded_.mesh, *reference_index_, plan.queries, kind, random)
-                   : unrelated_motions(*loaded_.mesh, plan.queries, kind, random);
+    motions_ = naming(subject, [&] {
+      return plan.poses == Poses::contact
+                 ? contact_motions(*loaded_.mesh, *reference_index_, plan.queries, kind, random)
+                 : unrelated_motions(*loaded_.mesh, plan.queries, kind, random);
+    });
   }
 
-  /// The mesh, and what reading its file took.
+  /// Returns the mesh, and the time to read its file.
   const LoadedSubject& loaded() const noexcept { return loaded_; }
 
-  /// Builds the index unless the combination before had the same. Of no use once it was stopped.
+  /// Builds the index unless the last combination had the same. After a stop the row is unusable.
   BenchmarkRow measure(const Combination& combination) {
     if (row_["index"] != combination.index) build(combination.index);
     BenchmarkRow row = row_;
@@ -96,7 +98,8 @@ class Trial {
     row["solver"] = combination.solver;
     if (!index_) return row;
 
-    // The certified rule looks only where the motion leads, and the paper's take the tip as it is.
+    // The certified rule searches as far as the motion goes; the paper's rule takes the tip as it
+    // is.
     MotionConstraintSettings settings{
         .activation = combination.activation,
         .options = {.radius = combination.radius.value_or(5.0),
@@ -123,7 +126,7 @@ class Trial {
 
  private:
   void build(const std::string& index) {
-    index_.reset();  // two large ones need not fit
+    index_.reset();  // two large indices may not fit in memory
     const std::size_t triangles = loaded_.mesh->triangle_count();
     row_ = new_row();
     row_.update({{"mesh", label_of(subject_)},
@@ -133,7 +136,7 @@ class Trial {
                  {"load_cores", loaded_.cores},
                  {"index", index}});
     const auto count = static_cast<double>(triangles);
-    constexpr double while_building = 1.5;  // some hold more then
+    constexpr double while_building = 1.5;  // some use more memory while they build
     if (const auto taken = memory_.find(index); taken != memory_.end()) {
       const double needed = while_building * taken->second * count;
       const auto available = static_cast<double>(available_memory());
@@ -166,9 +169,8 @@ class Trial {
   std::vector<Motion> motions_;
   std::shared_ptr<const SpatialIndex> reference_index_;
   std::map<std::pair<std::string, double>, Reference> references_;  // of each rule and radius
-  std::shared_ptr<const SpatialIndex> index_;                       // at hand; null: not built
-  BenchmarkRow row_ =
-      new_row();  // so much of it as is the same for all combinations with that index
+  std::shared_ptr<const SpatialIndex> index_;                       // null: not built
+  BenchmarkRow row_ = new_row();  // the members that all combinations with this index share
 };
 
 void run_trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& memory,
@@ -184,7 +186,7 @@ void run_trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& m
   print_table_head(out);
   for (const Combination& combination : plan.combinations) {
     progress.show(combination.index + " " + combination.activation + " " + combination.solver);
-    BenchmarkRow row = trial.measure(combination);
+    BenchmarkRow row = naming(subject, [&] { return trial.measure(combination); });
     progress.interrupt();
     if (stop.has_come()) return;
     print_table_row(out, row);
@@ -194,7 +196,7 @@ void run_trial(const Subject& subject, const BenchmarkPlan& plan, MemoryTaken& m
   }
 }
 
-/// An empty record of this machine, and of the parts that are measured.
+/// Returns an empty record of this machine and of the parts that are measured.
 Benchmark new_benchmark(const BenchmarkPlan& plan) {
   Benchmark benchmark{.date = date_now(),
                       .command = plan.command,
@@ -239,7 +241,7 @@ std::vector<Combination> combinations_of(const Selection& selection) {
     add(all, {reference_index}, {"paper", certified_rule}, solver_names(), radii);
     add(all, {usual_index}, {"paper"}, {usual_solver}, radii);
   }
-  // By index, as the table has them.
+  // By index, in the order of the table.
   std::ranges::stable_sort(all, {}, [](const Combination& combination) {
     const auto& table = index_backends();
     return std::ranges::find(table, combination.index, &IndexBackend::name) - table.begin();
@@ -253,7 +255,7 @@ void run_benchmark(const BenchmarkPlan& plan, const StopSignal& stop, Benchmark&
   const UsedCores used;
   print_machine(out, benchmark.machine);
   out.flush();
-  // Also where a mesh is broken.
+  // Also if a mesh is broken.
   const std::shared_ptr<void> at_the_end(nullptr,
                                          [&](void*) { benchmark.others_cores = used.others(); });
   MemoryTaken memory;

@@ -20,7 +20,7 @@
 namespace keepout::app {
 namespace {
 
-/// An error in two digits, and "0" where there is none at all.
+/// Returns an error with two digits, or "0" if it is exactly 0.
 std::string small(const Json& value) {
   return value == 0.0 ? "0" : formatted("%.1e", value.get<double>());
 }
@@ -96,7 +96,7 @@ std::size_t sum(const auto& rows, auto count) {
   return result;
 }
 
-/// All but brute force, which they are held to.
+/// Returns all indices but brute force, which is the reference.
 std::vector<std::string> indices_to_compare() {
   std::vector<std::string> all = index_names();
   std::erase(all, "brute_force");
@@ -134,17 +134,17 @@ std::string headline(const Comparison& comparison) {
 
 void print(std::ostream& out, const Comparison& comparison) {
   if (!comparison.indices.empty()) {
-    out << "\nIndices in motion constraints, held to brute force (closest points: to exact "
+    out << "\nIndices in motion constraints, compared with brute force (closest points: with exact "
            "arithmetic)\n";
     print_rows(out, index_columns, comparison.indices);
   }
   if (!comparison.solvers.empty()) {
-    out << "\nSolvers on recorded problems, held to active_set and the KKT conditions\n";
+    out << "\nSolvers on recorded problems, compared with active_set and the KKT conditions\n";
     print_rows(out, solver_columns, comparison.solvers);
     print_outcomes(out, comparison.solvers);
   }
   if (!comparison.narrow_phases.empty()) {
-    out << "\nNarrow phases, held to our exact kernel; touching: to within " << touch_text
+    out << "\nNarrow phases, compared with the exact kernel; touching: within " << touch_text
         << ", on either side\n";
     print_rows(out, narrow_phase_columns, comparison.narrow_phases);
   }
@@ -193,39 +193,41 @@ Comparison compare_parts(const std::string& mesh_name, const std::shared_ptr<con
 }
 
 void add_compare(CLI::App& app, CompareOptions& options) {
-  CLI::App& command = *app.add_subcommand(
-      "compare",
-      "Hold all parts that can take each other's place to each other and to the truth, on the same "
-      "input: indices, solvers, narrow phases");
+  CLI::App& command = *app.add_subcommand("compare",
+                                          "Compare all parts that can replace each other with each "
+                                          "other and with a reference, on the same "
+                                          "input: indices, solvers, narrow phases");
   command.add_option("MESH", options.mesh, std::string(mesh_help))->capture_default_str();
   add_load_options(command, options.load);
   add_number(command, "--poses", options.extent.poses, 6, 1'000'000,
              "Poses for the indices, under each rule");
   add_number(command, "--problems", options.extent.problems, 10, 1'000'000,
              "Recorded problems for the solvers");
-  add_number(command, "--pairs", options.extent.pairs, 10, 1'000'000,
-             "Pairs of tool and triangle for the narrow phases, of each kind: apart, overlapping, "
-             "and touching, which is within " +
-                 std::string(touch_text) + " of a touch, on either side");
+  add_number(
+      command, "--pairs", options.extent.pairs, 10, 1'000'000,
+      "Pairs of tool and triangle for the narrow phases, of each relation: apart, overlapping, "
+      "and touching (within " +
+          std::string(touch_text) + " of contact)");
   add_number(command, "--seed", options.extent.seed, 0, largest_seed,
              "Seed of poses, problems and pairs");
   options.files.add_to(command);
   command.footer(
-      "The exit status is 0 only if all indices agree to the bit and no solver is wrong; 130 "
+      "The exit status is 0 only if all indices are bitwise identical and no solver is wrong; 130 "
       "after\n"
-      "Ctrl-C, which keeps the rows that are finished.");
+      "Ctrl-C, which keeps the finished rows.");
 }
 
 int compare(const CompareOptions& options, std::ostream& out) {
   OutputFiles outputs = options.files.open({options.mesh});
   const Subject subject{.mesh = options.mesh, .load = options.load};
-  // Until the first question is asked, as while the mesh is read and the poses are drawn, there is
-  // nothing to keep.
+  // While the mesh is read and the poses are drawn, there are no results to keep yet.
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   const std::shared_ptr<const Mesh> mesh = make_mesh(subject);
-  const Comparison comparison = compare_parts(label_of(subject), mesh, options.extent, [&stop] {
-    stop.keep_from_now_on();
-    return stop.has_come();
+  const Comparison comparison = naming(subject, [&] {
+    return compare_parts(label_of(subject), mesh, options.extent, [&stop] {
+      stop.keep_from_now_on();
+      return stop.has_come();
+    });
   });
   print(out, comparison);
   const CompareExtent& extent = options.extent;

@@ -21,7 +21,7 @@
 namespace keepout::app {
 namespace {
 
-/// What an index came to at one pose.
+/// The result of an index at one pose.
 struct Finding {
   std::vector<Hit> hits;  // after the exact kernel, sorted
   std::vector<HalfSpace> planes;
@@ -30,10 +30,10 @@ struct Finding {
   bool repeats = false;  // a candidate came twice
 };
 
-/// What one index came to under one rule.
+/// The results of one index under one rule.
 struct Findings {
   IndexAgreement row;
-  std::vector<Finding> at = {};  // each pose; kept of brute force alone
+  std::vector<Finding> at = {};  // each pose; kept for brute force only
 };
 
 std::vector<Motion> motions_of(const IndexComparison& comparison) {
@@ -56,14 +56,15 @@ std::vector<Motion> motions_of(const IndexComparison& comparison) {
   return motions;
 }
 
-/// The part of the one set of triangles that is missing in the other.
+/// Returns the number of triangles of one set that are missing in the other.
 std::size_t missing(const std::vector<Hit>& of, const std::vector<Hit>& in) {
   return static_cast<std::size_t>(std::ranges::count_if(of, [&](const Hit& hit) {
     return !std::ranges::binary_search(in, hit.triangle, {}, &Hit::triangle);
   }));
 }
 
-/// The largest angle between planes of the same number. [rad] Half a turn if the numbers differ.
+/// Returns the largest angle between planes with the same position [rad]; half a turn if their
+/// numbers differ.
 double plane_angle(const std::vector<HalfSpace>& one, const std::vector<HalfSpace>& other) {
   if (one.size() != other.size()) return std::numbers::pi;
   double worst = 0.0;
@@ -75,7 +76,7 @@ double plane_angle(const std::vector<HalfSpace>& one, const std::vector<HalfSpac
   return worst;
 }
 
-/// How far distances and closest points are off, by exact arithmetic.
+/// Returns the largest error of distances and closest points, by exact arithmetic.
 double closest_point_error(const Mesh& mesh, const Vec3& center, const std::vector<Hit>& hits) {
   double worst = 0.0;
   for (const Hit& hit : hits) {
@@ -88,12 +89,12 @@ double closest_point_error(const Mesh& mesh, const Vec3& center, const std::vect
   return worst;
 }
 
-/// To the last bit: of normals, offsets and the triangles that called for them.
+/// Compares normals, offsets and source triangles bitwise.
 bool are_same(const HalfSpace& a, const HalfSpace& b) {
   return a.normal == b.normal && a.offset == b.offset && a.source == b.source;
 }
 
-/// Whether `some` are `all`, or some of them in their order.
+/// Returns true if `some` are a subsequence of `all`.
 bool are_among(const std::vector<HalfSpace>& some, const std::vector<HalfSpace>& all) {
   auto next = all.begin();
   for (const HalfSpace& plane : some) {
@@ -109,7 +110,7 @@ void compare(const Finding& got, const Finding& expected, IndexAgreement& agreem
   agreement.invented += missing(got.hits, expected.hits) + (got.repeats ? 1 : 0);
   agreement.step_difference =
       std::max(agreement.step_difference, (got.motion - expected.motion).norm());
-  // A rule that searches may leave out planes that no motion in question comes near.
+  // A rule that searches may leave out planes that no possible motion reaches.
   const bool same_planes = are_among(got.planes, expected.planes) &&
                            (agreement.searched || got.planes.size() == expected.planes.size());
   if (!same_planes) {
@@ -135,8 +136,8 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
   const std::vector<Motion> motions = motions_of(comparison);
   Progress progress("compare indices", motions.size() * comparison.activations.size() *
                                            (comparison.indices.size() + 1));
-  // One pose after the other, as a program would ask, held to the truth unless that is what is
-  // sought; nothing when it was stopped.
+  // Asks one pose after the other, as a program would, and compares with the truth if it is given.
+  // Returns empty after a stop.
   const auto ask = [&](const std::string& name, const std::shared_ptr<const SpatialIndex>& index,
                        const std::string& rule,
                        const Findings* truth = nullptr) -> std::optional<Findings> {
@@ -152,7 +153,7 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
                               .searched = !guard.makes_queries()}};
     const auto find = [&](std::size_t i) -> Finding {
       const Motion& motion = motions[i];
-      const bool fits = around.gather({motion.tip, reach});  // unless some come twice
+      const bool fits = around.gather({motion.tip, reach});  // unless an index returns some twice
       const Step step = guard.step(motion);
       TriangleBuffer& candidates = around.candidates();
       std::ranges::sort(candidates);
@@ -165,7 +166,7 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
     double& worst = findings.row.closest_point_error;
     if (truth != nullptr) worst = truth->row.closest_point_error;
     const auto judge = [&](std::size_t i, Finding found) {
-      // Exact arithmetic takes long: once where the hits are the same.
+      // Exact arithmetic is slow: use it once for identical hits.
       if (truth == nullptr || !std::ranges::equal(found.hits, truth->at[i].hits, is_same)) {
         worst = std::max(worst, closest_point_error(*mesh, motions[i].tip, found.hits));
       }
@@ -188,7 +189,7 @@ std::vector<IndexAgreement> compare_indices(const IndexComparison& comparison,
     expected.emplace(rule, *std::move(truth));
   }
   for (const std::string& name : comparison.indices) {
-    // One at a time: of a large mesh they need not fit all at once.
+    // One index at a time: for a large mesh, all may not fit in memory.
     const std::shared_ptr<const SpatialIndex> index = index_backends().named(name).make(mesh);
     for (const std::string& rule : comparison.activations) {
       std::optional<Findings> got = ask(name, index, rule, &expected.at(rule));

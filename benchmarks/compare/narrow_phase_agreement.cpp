@@ -15,7 +15,7 @@
 namespace keepout::app {
 namespace {
 
-/// The tip of a drill: a cone of twelve sides on a prism of twelve.
+/// Returns the tip of a drill: a cone with twelve sides on a prism with twelve.
 ConvexTool drill() {
   std::vector<Vec3> points{Vec3(0, 0, -1.5)};
   for (int i = 0; i < 12; ++i) {
@@ -36,10 +36,10 @@ std::vector<std::pair<std::string_view, ConvexTool>> tools_to_compare() {
 
 constexpr double overlapping = 1e-3;    // at least [mm]
 constexpr double farthest_apart = 5.0;  // [mm]
-constexpr double deepest_wanted = 1.5;  // what is asked for; what comes of it may be less [mm]
+constexpr double deepest_wanted = 1.5;  // target; the result may be less [mm]
 constexpr std::size_t orientations = 16;
 
-/// How a pair relates, and the signed distance to aim at.
+/// The relation of a pair, and how to draw its target distance.
 struct Relation {
   std::string_view name;
   double (*wanted)(Random&);
@@ -60,7 +60,7 @@ constexpr Relation relations[] = {
 };
 
 struct Pair {
-  std::size_t tool;  // which of the orientations
+  std::size_t tool;  // the number of the orientation
   Vec3 position;
   Triangle triangle;
   Separation exact;
@@ -75,8 +75,8 @@ std::vector<ConvexTool> turned(const ConvexTool& tool, Random& random) {
   return tools;
 }
 
-/// From somewhere off the triangle along the normal there, to the distance wanted. Returns fewer
-/// pairs if it was stopped.
+/// Moves each tool from a random place along the separation normal to the target distance. Returns
+/// fewer pairs after a stop.
 std::vector<Pair> make_pairs(const Mesh& mesh, const std::vector<ConvexTool>& tools,
                              const Relation& relation, std::size_t count, Random& random,
                              const Stopped& stopped) {
@@ -96,7 +96,7 @@ std::vector<Pair> make_pairs(const Mesh& mesh, const std::vector<ConvexTool>& to
   return pairs;
 }
 
-/// Returns nothing if it was stopped.
+/// Returns empty after a stop.
 std::optional<NarrowPhaseAgreement> agreement_of(const NarrowPhaseBackend& backend,
                                                  const std::vector<ConvexTool>& tools,
                                                  const std::vector<Pair>& pairs, Progress& progress,
@@ -125,7 +125,7 @@ std::optional<NarrowPhaseAgreement> agreement_of(const NarrowPhaseBackend& backe
   const std::optional<Timing> timing = ask_all(pairs.size(), progress, stopped, ask, judge);
   if (!timing) return std::nullopt;
   row.us = *timing;
-  const Timing spread = timing_of(errors);  // errors have ranks as times do
+  const Timing spread = timing_of(errors);  // timing_of() ranks any numbers
   row.median_error = spread.p50;
   row.worst_error = spread.max;
   return row;

@@ -22,7 +22,7 @@
 namespace keepout::app {
 namespace {
 
-/// Of an arm: some joints turn, and move the tip by their lever, others slide.
+/// Returns the Jacobian of a random arm, with revolute and prismatic joints.
 TipJacobian::Matrix random_jacobian(Random& random) {
   TipJacobian::Matrix jacobian(3, 7);
   for (Eigen::Index c = 0; c < jacobian.cols(); ++c) {
@@ -31,7 +31,7 @@ TipJacobian::Matrix random_jacobian(Random& random) {
   return jacobian;
 }
 
-/// What the solver that all are compared to makes of a problem.
+/// The answer of the reference solver to a problem.
 struct Expected {
   SolveStatus status;
   Eigen::VectorXd u;
@@ -41,7 +41,7 @@ Eigen::VectorXd vector_of(std::span<const double> values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// Room for the largest of the problems.
+/// Reserves capacity for the largest of the problems.
 template <class S>
 void reserve(S& solver, const std::vector<RecordedProblem>& problems) {
   Eigen::Index variables = 0, rows = 0;
@@ -60,13 +60,13 @@ std::vector<RecordedProblem> problems_of(const std::shared_ptr<const Mesh>& mesh
       record_problems(mesh, rule, comparison.problems, comparison.seed, stopped);
   Random random(comparison.seed + 1);
   for (RecordedProblem& problem : problems) {
-    constexpr double contradictory = 0.1;  // share of them
+    constexpr double contradictory = 0.1;  // fraction of the problems
     if (random.uniform() < contradictory) contradict(problem, random);
   }
   return problems;
 }
 
-/// Returns the solutions of the problems; fewer if it was stopped.
+/// Returns the solutions of the problems; fewer after a stop.
 std::vector<Expected> references_of(const std::vector<RecordedProblem>& problems,
                                     const Stopped& stopped) {
   ActiveSet solver;
@@ -81,7 +81,7 @@ std::vector<Expected> references_of(const std::vector<RecordedProblem>& problems
   return references;
 }
 
-/// How far the tip ends from where the reference leads it, relative to the motion.
+/// Returns the distance between the ends of both motions, relative to the motion.
 double difference(const RecordedProblem& problem, const Solution& solution,
                   const Expected& reference) {
   if (reference.status != SolveStatus::optimal) return 0.0;
@@ -90,7 +90,7 @@ double difference(const RecordedProblem& problem, const Solution& solution,
   return apart == 0.0 ? 0.0 : apart / reach;
 }
 
-/// Returns what a library claimed and what was found; of our own solvers, the status.
+/// Returns a library's claim and our finding; for our own solvers, the status.
 std::string outcome(const Solver& solver, SolveStatus status) {
 #if KEEPOUT_HAS_NLOPT
   if (const auto* nlopt = dynamic_cast<const NloptSolver*>(&solver)) {
@@ -103,7 +103,7 @@ std::string outcome(const Solver& solver, SolveStatus status) {
   return std::string(name(status));
 }
 
-/// Takes one answer down.
+/// Adds one answer to the row.
 void judge(const RecordedProblem& problem, const Expected& reference, SolveStatus status,
            const Solution& solution, double accuracy, SolverAgreement& row) {
   switch (status) {
@@ -132,10 +132,10 @@ std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& 
   constexpr int approach = 10, strokes_at_once = 64, cycles = 30;
   constexpr double margin = 0.2;  // [mm]
   constexpr double radius = 5.0;  // [mm] as in the paper
-  // A hundred times what it takes if every cycle in contact poses one.
+  // A hundred times the number needed if every cycle in contact yields a problem.
   const std::size_t most_strokes = 100 * (count / (cycles - approach) + 1);
   std::vector<RecordedProblem> posed, kept;
-  // Both record into one: damped for the joints, not so for the tip.
+  // Both guards record into one list: damped for joints, undamped for the tip.
   const auto guard_of = [&](double damping) {
     return MotionConstraint(mesh, std::make_unique<PdTree>(mesh), make_activation(rule),
                             std::make_unique<RecordingSolver>(std::make_unique<ActiveSet>(), posed),
@@ -149,10 +149,11 @@ std::vector<RecordedProblem> record_problems(const std::shared_ptr<const Mesh>& 
 
   for (std::size_t stroke = 0; kept.size() < count;) {
     if (stroke >= most_strokes) {
-      throw Error("of " + std::to_string(count) + " problems in contact only " +
-                  std::to_string(kept.size()) + " were posed, under " + rule +
-                  ", by motions of 0.05 to 0.2 mm half a millimeter off the mesh: is it in another "
-                  "unit, or too large or too narrow for them? Scale it to millimeters");
+      throw Error(
+          "of " + std::to_string(count) + " problems in contact only " +
+          std::to_string(kept.size()) + " were found, under " + rule +
+          ", with motions of 0.05 to 0.2 mm half a millimeter from the mesh: is it in another "
+          "unit, or too large or too narrow for them? Scale it to millimeters");
     }
     for (const Vec3& start : surface_points(*mesh, strokes_at_once, 0.5, random)) {
       if (stopped()) return kept;

@@ -15,10 +15,10 @@
 namespace keepout::app {
 namespace {
 
-/// Of all threads of this process. [s]
+/// Returns the processor time of all threads of this process. [s]
 double own_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Of everything on all cores since the machine was started. [s]
+/// Returns the busy time of all cores since the machine started. [s]
 std::optional<double> all_time() {
   std::ifstream file("/proc/stat");
   std::string name;
@@ -45,7 +45,7 @@ double UsedCores::own() const { return (own_time() - own_start_) / seconds(); }
 std::optional<double> UsedCores::others() const {
   const std::optional<double> all = all_time();
   if (!all || !all_start_) return std::nullopt;
-  // The system counts in hundredths of a second.
+  // The system counts in hundredths of a second, so the difference may be negative.
   return std::max(0.0, (*all - *all_start_ - (own_time() - own_start_)) / seconds());
 }
 

@@ -8,39 +8,51 @@
 #include <string>
 #include <string_view>
 
+#include "keepout/error.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/mesh/mesh.h"
 
 namespace keepout::app {
 
-/// A mesh to be measured on.
+/// A mesh to measure on.
 struct Subject {
-  std::string mesh;           // the name of a real fixture, or a file
-  std::size_t triangles = 0;  // the bunny, scaled and resampled to so many; 0: as it is in the file
+  std::string mesh;           // the name of a sample mesh, or a file
+  std::size_t triangles = 0;  // the bunny scaled and resampled to this size; 0: as in the file
   LoadOptions load = {};
 };
 
-/// The mesh of which a curve over the number of triangles is made: the paper's.
+/// The mesh for curves over the number of triangles, as in Li et al. (2020).
 inline constexpr std::string_view resampled_mesh = "bunny";
 
-/// What to call its mesh: a file without its folder.
+/// Returns the name of the mesh; for a file without its directory.
 std::string label_of(const Subject& subject);
 
-/// "bunny, 989,376 triangles".
+/// Returns text such as "bunny, 989,376 triangles".
 std::string title_of(const Subject& subject);
 
-/// How many cores were busy since it was made, in the mean: with this process, and with others.
+/// Returns work(). Puts the name of the mesh before the text of an Error.
+template <class Work>
+auto naming(const Subject& subject, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(label_of(subject) + ": " + error.what());
+  }
+}
+
+/// Measures how many cores this process and others have kept busy since the object was made.
 class UsedCores {
  public:
   UsedCores();
 
-  /// The time since. [s]
+  /// Returns the time since then. [s]
   double seconds() const;
 
-  /// Cores that all threads of this process kept busy.
+  /// Returns the mean number of cores that all threads of this process kept busy.
   double own() const;
 
-  /// Cores that other processes kept busy; nothing where the system does not tell.
+  /// Returns the mean number of cores that other processes kept busy; empty if the system does not
+  /// report it.
   std::optional<double> others() const;
 
  private:
@@ -49,18 +61,19 @@ class UsedCores {
   std::optional<double> all_start_;  // [s]
 };
 
-/// A mesh, and what reading its file took, before anything is resampled.
+/// A mesh, and the time to read its file, before resampling.
 struct LoadedSubject {
   std::shared_ptr<const Mesh> mesh;
   double seconds;  // [s]
-  double cores;    // kept busy meanwhile, in the mean
+  double cores;    // mean number of busy cores
 };
 
-/// Reads or makes it: the bunny 150 mm large, as in the paper. Throws Error.
+/// Reads a mesh and resamples it if required: the bunny is 150 mm large, as in Li et al. (2020).
+/// Throws Error.
 LoadedSubject load(const Subject& subject);
 std::shared_ptr<const Mesh> make_mesh(const Subject& subject);
 
-/// A copy, to be changed.
+/// Returns a copy that may be changed.
 Surface surface_of(const Mesh& mesh);
 
 }  // namespace keepout::app

@@ -35,7 +35,7 @@ class ContinuousCollision : public Sweep {
     fcl::ContinuousCollisionRequestd request;
     request.ccd_solver_type = fcl::CCDC_NAIVE;
     request.num_max_iterations = static_cast<std::size_t>(intervals) + 1;
-    request.toc_err = 0.5 / intervals;  // asks for no fewer
+    request.toc_err = 0.5 / intervals;  // small enough for all intervals
     fcl::ContinuousCollisionResultd result;
     fcl::continuousCollide(&mesh_, at_rest, at_rest, &ball_, from, to, request, result);
     return result.is_collide ? std::max(0.0, result.time_of_contact - 1.0 / intervals) : 1.0;

@@ -11,7 +11,8 @@
 #include "keepout/error.h"
 #include "sweep.h"
 
-// Debian ships Bullet in both precisions, and the one links with headers set for the other.
+// Debian ships Bullet in both precisions; headers and library of different precision link without
+// an error.
 static_assert(sizeof(btScalar) == sizeof(double), "Bullet is used in double precision");
 static_assert(sizeof(keepout::Vec3) == 3 * sizeof(double) &&
               sizeof(keepout::Corners) == 3 * sizeof(int));
@@ -48,18 +49,18 @@ class ConvexSweep : public Sweep {
   }
 
  private:
-  std::vector<Vec3> points_;  // the shape reads both lists
+  std::vector<Vec3> points_;  // the shape refers to both lists
   std::vector<Corners> corners_;
   btTriangleIndexVertexArray arrays_;
   btBvhTriangleMeshShape shape_;
-  mutable btCollisionObject object_;  // Bullet asks for one that it might change
+  mutable btCollisionObject object_;  // Bullet wants an object that it may change
   btSphereShape ball_;
 };
 
 }  // namespace
 
 std::unique_ptr<Sweep> convex_sweep(const Mesh& mesh, double radius) {
-  // In Bullet's tree 21 bits hold the number of a triangle.
+  // Bullet's tree stores the number of a triangle in 21 bits.
   constexpr std::size_t most_triangles = std::size_t{1} << 21;
   if (mesh.triangle_count() > most_triangles) throw Error("more triangles than Bullet can number");
   return std::make_unique<ConvexSweep>(mesh, radius);

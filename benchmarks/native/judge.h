@@ -15,29 +15,28 @@
 
 namespace keepout::peers {
 
-/// Points or motions, a row each. [length]
+/// Points or motions, one in each row. [length]
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 using RowsRef = Eigen::Ref<const Rows>;
 
-/// Says what became of a tip, with arithmetic and search of its own: the oracle, for many motions
-/// at once. The answers do not depend on their order; the time is least where each is near the
-/// last.
+/// Judges many motions of a tip with the oracle, whose arithmetic and search are independent. The
+/// answers do not depend on the order of the motions; it is fastest if each is near the last.
 class Judge {
  public:
   explicit Judge(const std::shared_ptr<const Mesh>& mesh)
       : oracle_(mesh), closed_(oracle_.inside(oracle_.tree()->bounds().low).has_value()) {}
 
-  /// Whether there is an inside.
+  /// Returns true if the mesh has an inside.
   bool closed() const { return closed_; }
 
-  /// Of each point from the mesh, less than 0 inside of a closed one. [length]
+  /// Returns the distance of each point from the mesh, below 0 inside a closed mesh. [length]
   Eigen::VectorXd distances(const RowsRef& points) {
     require_finite(points.allFinite());
     Eigen::VectorXd out(points.rows());
     bool is_inside = false;
     for (Eigen::Index i = 0; i < points.rows(); ++i) {
       const Vec3 point = points.row(i);
-      // A way that does not touch the mesh leads to no other side of it.
+      // A segment that does not touch the mesh stays on one side of it.
       const bool may_differ =
           i == 0 || (closed_ && oracle_.check(points.row(i - 1), point, 0.0).crosses);
       if (closed_ && may_differ) is_inside = *oracle_.inside(point);
@@ -47,8 +46,8 @@ class Judge {
     return out;
   }
 
-  /// Of each straight motion from the mesh at its nearest: 0 if and only if it touches, and
-  /// infinite where it is more than `reach`. The less the reach, the faster. [length]
+  /// Returns the least distance of each straight motion from the mesh: 0 if and only if it touches,
+  /// infinite if it is more than `reach`. A smaller reach is faster. [length]
   Eigen::VectorXd least_distances(const RowsRef& starts, const RowsRef& ends, double reach) {
     Eigen::VectorXd out(require_pairs(starts, ends));
     require_finite(starts.allFinite() && ends.allFinite());
@@ -57,7 +56,7 @@ class Judge {
     for (Eigen::Index i = 0; i < starts.rows(); ++i) {
       const oracle::Segment motion{starts.row(i), ends.row(i)};
       near.clear();
-      const double at_start = oracle_.distance(motion.from);  // of the whole way it is no more
+      const double at_start = oracle_.distance(motion.from);  // an upper bound for the motion
       tree.collect_within(std::min(reach, at_start), motion, near);
       double least = at_start;
       for (const TriangleId t : near) {
@@ -70,7 +69,7 @@ class Judge {
     return out;
   }
 
-  /// Which straight motions touch the mesh, exactly.
+  /// Returns which straight motions touch the mesh, exactly.
   Eigen::Array<bool, Eigen::Dynamic, 1> crossings(const RowsRef& starts, const RowsRef& ends) {
     Eigen::Array<bool, Eigen::Dynamic, 1> out(require_pairs(starts, ends));
     for (Eigen::Index i = 0; i < starts.rows(); ++i) {
@@ -79,8 +78,8 @@ class Judge {
     return out;
   }
 
-  /// The best safe step, what it costs, and what a safe one costs at least: oracle/best_step.h.
-  /// Throws Error if the tip is on the mesh.
+  /// Returns the best safe step, its cost, and a lower bound of the cost of any safe step:
+  /// oracle/best_step.h. Throws Error if the tip is on the mesh.
   std::tuple<Vec3, double, double> best_step(const Vec3& tip, const Vec3& desired, double margin) {
     require_finite(tip.allFinite() && desired.allFinite());
     if (oracle_.distance(tip) == 0.0) throw Error("a tip on the mesh has no best step");
@@ -93,7 +92,7 @@ class Judge {
   }
 
  private:
-  /// Returns their number.
+  /// Returns the number of pairs.
   static Eigen::Index require_pairs(const RowsRef& starts, const RowsRef& ends) {
     if (starts.rows() != ends.rows()) throw Error("each start needs an end, and each end a start");
     return starts.rows();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module keepout_peers: what judges the experiments, what keepout is held against, and on what.
+// The module keepout_peers: judge, libraries for comparison, and meshes of the experiments.
 #include <pybind11/eigen.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -36,36 +36,37 @@ Mesh mesh_of(const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triang
 }
 
 void bind_judge(py::module_& module) {
-  py::class_<Judge>(module, "Judge", R"(
-Judges the motions of a tip past a mesh with exact arithmetic, and shares nothing with keepout.
+  py::class_<Judge>(module, "Judge", R"(Judges the motions of a tip beside a mesh with exact
+arithmetic. Shares no code with keepout.
 
-Judge(vertices, triangles): (n, 3) and (m, 3). One for each thread. Motions that are near each other
-are judged fastest in their order. Lengths are in the unit of the mesh.)")
+Judge(vertices, triangles): (n, 3) and (m, 3). Use one for each thread. It is fastest if each motion
+is near the last. Lengths are in the unit of the mesh.)")
       .def(py::init([](const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles) {
              return Judge(std::make_shared<const Mesh>(mesh_of(vertices, triangles)));
            }),
            "vertices"_a, "triangles"_a, Unlocked())
-      .def_property_readonly("closed", &Judge::closed, "Whether the mesh has an inside.")
+      .def_property_readonly("closed", &Judge::closed, "True if the mesh has an inside.")
       .def("distances", &Judge::distances, "points"_a, Unlocked(),
-           "Of (n, 3) points from the mesh: (n,), less than 0 inside of a closed one.")
+           "Returns the distances of (n, 3) points from the mesh: (n,), below 0 inside a closed\n"
+           "mesh.")
       .def("least_distances", &Judge::least_distances, "starts"_a, "ends"_a,
            "reach"_a = std::numeric_limits<double>::infinity(), Unlocked(),
-           "Of n straight motions from the mesh: (n,), 0 if and only if one touches, infinite "
-           "where it "
-           "is more than `reach`; the less that is, the faster.")
+           "Returns the least distances of n straight motions from the mesh: (n,), 0 if and\n"
+           "only if a motion touches it, infinite if it is more than `reach`. A smaller reach\n"
+           "is faster.")
       .def("crossings", &Judge::crossings, "starts"_a, "ends"_a, Unlocked(),
-           "Which of n straight motions touch the mesh: (n,) of bool, exact.")
+           "Returns which of n straight motions touch the mesh: (n,) of bool, exact.")
       .def("best_step", &Judge::best_step, "tip"_a, "desired"_a, "margin"_a, Unlocked(),
-           "The motion nearest to the desired one on whose whole way the tip keeps the margin, "
-           "what it "
-           "costs, |motion - desired|, and what any such costs at least; found by branch and "
-           "bound.");
+           "Returns the motion nearest to the desired one that keeps the margin along its whole\n"
+           "path; its cost, |motion - desired|; and a lower bound of the cost of any such\n"
+           "motion. Uses branch and bound.");
 }
 
 void bind_sweeps(py::module_& module) {
-  py::class_<Sweep>(module, "Sweep", "What another library says of a ball that moves past a mesh.")
+  py::class_<Sweep>(module, "Sweep", "Another library's answer for a ball that moves past a mesh.")
       .def("time_of_impact", &Sweep::time_of_impact, "tip"_a, "motion"_a,
-           "The share of the motion that the ball is said to be free for: from 0 to 1.");
+           "Returns the fraction of the motion, 0 to 1, for which the library reports the ball\n"
+           "as free.");
   const auto add = [&](const char* name, auto make, const char* doc) {
     module.def(
         name,
@@ -77,8 +78,8 @@ void bind_sweeps(py::module_& module) {
         "vertices"_a, "triangles"_a, "radius"_a, Unlocked(), doc);
   };
   add("continuous_collision", &continuous_collision,
-      "FCL's continuous collision of a ball with a mesh, by places all along the motion.");
-  add("convex_sweep", &convex_sweep, "Bullet's sweep of a ball past a mesh.");
+      "Returns FCL's continuous collision of a ball with a mesh, at places along the motion.");
+  add("convex_sweep", &convex_sweep, "Returns Bullet's sweep of a ball past a mesh.");
 }
 
 std::vector<std::pair<std::string, std::string>> named_meshes() {
@@ -91,7 +92,7 @@ std::vector<std::pair<std::string, std::string>> named_meshes() {
   return out;
 }
 
-/// The vertices and the triangles of a mesh, as arrays.
+/// Returns the vertices and the triangles of a mesh as arrays.
 std::pair<Rows, CornerRows> arrays_of(const Mesh& mesh) {
   Rows vertices(mesh.vertex_count(), 3);
   for (VertexId v = 0; v < mesh.vertex_count(); ++v) vertices.row(v) = mesh.vertex(v);
@@ -125,16 +126,19 @@ py::list all_counterexamples() {
 
 PYBIND11_MODULE(keepout_peers, module) {
   using namespace keepout::peers;
-  module.doc() = "What the experiments hold keepout against, and what judges them.";
+  module.doc() = "The libraries that the experiments compare keepout with, and the judge.";
   py::register_local_exception<keepout::Error>(module, "Error", PyExc_ValueError);
   bind_judge(module);
   bind_sweeps(module);
   module.def("named_meshes", &named_meshes,
-             "Name and kind of each mesh that keepout names: solid, sheet, broken; or real.");
+             "Returns name and kind of each mesh that keepout names: solid, sheet, broken or\n"
+             "real.");
   module.def("counterexamples", &all_counterexamples,
-             "Meshes and motions on which some reading of the paper's Algorithm 1 fails: name, "
-             "vertices, triangles, tip, desired motion and radius of the motion sphere of each.");
+             "Returns meshes and motions on which some reading of Algorithm 1 of Li et al.\n"
+             "(2020) fails: for each its name, vertices, triangles, tip, desired motion and\n"
+             "radius of the motion sphere.");
   module.def(
       "named_mesh", &named_mesh, "name"_a, Unlocked(),
-      "Its vertices, (n, 3) in mm, and triangles, (m, 3). ValueError: unknown, or not prepared.");
+      "Returns its vertices, (n, 3) in mm, and triangles, (m, 3). Raises ValueError if the name\n"
+      "is unknown or the mesh is not prepared.");
 }

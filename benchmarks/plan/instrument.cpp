@@ -26,22 +26,23 @@ constexpr int cycles_of_the_hand = 3000;
 constexpr int looked_at_each = 20;         // [cycles]
 constexpr double speed_of_the_hand = 4.0;  // see Attacker
 constexpr double least_advance = 30;       // [mm]
-constexpr double finer_than = 2.0;         // the farthest place is not looked for [mm]
-constexpr std::size_t most_starts = 100;   // to each problem that is asked for
+constexpr double finer_than = 2.0;         // increments of the advance that are ignored [mm]
+constexpr std::size_t most_starts = 100;   // for each requested problem
 
-/// The verdict on a path of joint motions.
+/// The oracle's judgement of a path of joint motions.
 struct JointPathVerdict {
   std::size_t motions = 0;
   std::size_t too_close = 0;  // in which a body comes closer than margin - band - 3 tau
-  std::size_t entering = 0;   // of them, those in which the mesh reaches into a body
+  std::size_t entering = 0;   // of these, motions in which the mesh penetrates a body
   std::size_t unproven = 0;   // motions that `prove` does not prove clear in pieces of 1 mm
-  /// The least clearance of all bodies; below 0, how deep the mesh reaches into one. Infinite where
-  /// none came as near as the margin. [mm]
+  /// The least clearance of all bodies; below 0, how deep the mesh penetrates one. Infinite if no
+  /// body came within the margin. [mm]
   double clearance = std::numeric_limits<double>::infinity();
 };
 
-constexpr double between_places = 0.05;  // a point's way from one judged place to the next [mm]
-constexpr double piece_length = 1.0;     // of the motion that is proven at once [mm]
+constexpr double between_places = 0.05;  // longest displacement of a point between judged places
+                                         // [mm]
+constexpr double piece_length = 1.0;     // longest displacement that is proved at once [mm]
 
 using Positions = std::vector<double>;
 
@@ -57,7 +58,7 @@ Positions increment(const Positions& from, const Positions& to) {
   return dq;
 }
 
-/// Returns a length that no point of a body exceeds on its way. [mm]
+/// Returns an upper bound of the path length of every point of a body. [mm]
 double longest_way(const Instrument& instrument, const Positions& from, const Positions& to) {
   ChainState state;
   instrument.chain().forward_kinematics(from, state);
@@ -69,8 +70,8 @@ double longest_way(const Instrument& instrument, const Positions& from, const Po
   return longest;
 }
 
-/// Judges each motion between neighbors of `path`: by the oracle, at places between which no point
-/// of a body goes farther than 0.05 mm, and by the guard's `prove`, in pieces.
+/// Judges each motion between neighbors of `path` by the oracle, at places between which no point
+/// of a body moves more than 0.05 mm. Also judges it by the guard's `prove`, in pieces.
 JointPathVerdict judge_joint_path(oracle::InstrumentOracle& oracle, InstrumentConstraint& guard,
                                   std::span<const std::vector<double>> path) {
   JointPathVerdict verdict;
@@ -105,12 +106,12 @@ JointPathVerdict judge_joint_path(oracle::InstrumentOracle& oracle, InstrumentCo
   return verdict;
 }
 
-/// Where the hand leads an instrument from a beginning, if that is far enough and in the way of the
-/// straight motion.
+/// Moves an instrument from a start by a simulated operator. Returns a problem if it gets far
+/// enough and the straight motion there passes through the mesh.
 std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& start,
                                            Random& random) {
   const Instrument instrument = on.robot.make(start.base);
-  // A period so long that a hand is not slowed down by the limits of velocity.
+  // The long period keeps velocity limits from slowing the operator down.
   InstrumentConstraint guard = make_instrument_constraint(
       on.scene.mesh(), on.scene.shared_index(), instrument,
       {.options = {.margin = 2.1 * on.margin, .band = 0.1 * on.margin, .period = 0.1}});
@@ -148,7 +149,7 @@ std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& sta
   return problem;
 }
 
-/// All checkers ask the same guards.
+/// All checkers use the same guards.
 class InstrumentPlanning final : public Planning {
  public:
   InstrumentPlanning(const PlanOptions& options, Scene scene)
@@ -156,19 +157,20 @@ class InstrumentPlanning final : public Planning {
 
   const Scene& scene() const override { return on_.scene; }
 
-  /// Draws problems, each with a solution that keeps twice the margin:
+  /// Draws problems, each with a solution that maintains twice the margin:
   ///
-  /// 1. The instrument begins before a random place of the surface, 5 to 20 mm off it (find_start).
-  /// 2. From there a hand pushes, slides and turns it about (Attacker), for 3000 certified steps.
-  /// 3. The goal is the place on its way that is farthest ahead, along the tool as it is at the
-  ///    start, among those to which the straight motion of the joints leads through the mesh; to
-  ///    within some 2 mm. Unless it is 30 mm ahead, another beginning is tried.
+  /// 1. The instrument starts 5 to 20 mm from a random place of the surface (find_start).
+  /// 2. From there a simulated operator pushes, slides and turns it (Attacker), for 3000 certified
+  ///    steps.
+  /// 3. The goal is the place visited that is farthest ahead, along the tool's direction at the
+  ///    start, to within about 2 mm. Only places count to which the straight joint motion passes
+  ///    through the mesh. If the goal is less than 30 mm ahead, another start is tried.
   std::vector<PlanningProblem> draw(const StopSignal& stop) override {
     Random random(options_->seed);
     const std::size_t count = options_->problems;
     std::vector<PlanningProblem> problems;
     for (std::size_t i = 0; i < most_starts * count && problems.size() < count; ++i) {
-      // The hand begins with more than it is to keep.
+      // The operator starts with more than the required margin.
       const auto start = on_.start(random, 2.1);
       if (!start) break;
       if (stop.has_come()) return problems;

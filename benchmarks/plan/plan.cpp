@@ -34,7 +34,7 @@ namespace {
 namespace base = ompl::base;
 namespace geometric = ompl::geometric;
 
-/// Time spent in checking. What is checked on the way of a check is part of it.
+/// The time spent in checks. A check inside a check is not counted twice.
 struct CheckTimer {
   bool running = false;
   double seconds = 0.0;
@@ -74,7 +74,7 @@ class TimedMotions final : public base::MotionValidator {
   CheckTimer* timer_;
 };
 
-/// The timer must outlive the space.
+/// Returns a space with timed checks. The timer must outlive the space.
 base::SpaceInformationPtr space_with(Planning& planning, const Checker& checker,
                                      CheckTimer& timer) {
   const auto space = std::make_shared<base::SpaceInformation>(planning.space());
@@ -91,7 +91,7 @@ base::SpaceInformationPtr space_with(Planning& planning, const Checker& checker,
   return space;
 }
 
-/// One of ompl_planners. Throws Error for another name.
+/// Returns the planner of one of the names ompl_planners. Throws Error for another name.
 base::PlannerPtr named_planner(const std::string& name, const base::SpaceInformationPtr& space) {
   if (name == "RRTConnect") return std::make_shared<geometric::RRTConnect>(space);
   if (name == "RRT") return std::make_shared<geometric::RRT>(space);
@@ -100,7 +100,7 @@ base::PlannerPtr named_planner(const std::string& name, const base::SpaceInforma
   throw Error("plan: there is no planner '" + name + "'");
 }
 
-/// With the range of the options, unless the planner has no such thing.
+/// Returns a planner with the range of the options, if the planner has a range.
 base::PlannerPtr planner_of(Planning& planning, const Checker& checker, const PlanOptions& options,
                             const base::SpaceInformationPtr& space) {
   const base::PlannerPtr planner =
@@ -118,18 +118,18 @@ base::ProblemDefinitionPtr definition_of(const PlanningProblem& problem,
   std::ranges::copy(problem.goal, to->values);
   const auto definition = std::make_shared<base::ProblemDefinition>(space);
   definition->setStartAndGoalStates(from, to);
-  // Planners that go on for a shorter path are to stop at the first.
+  // Planners that optimize must stop at their first path.
   const auto objective = std::make_shared<base::PathLengthOptimizationObjective>(space);
   objective->setCostThreshold(objective->infiniteCost());
   definition->setOptimizationObjective(objective);
   return definition;
 }
 
-/// What became of a search for a path.
+/// The result of a search for a path.
 struct SolvedPath {
   Path states = {};               // empty unless solved
   double seconds = 0.0;           // of the planner, and of the simplifier
-  double checking_seconds = 0.0;  // of these, in checks
+  double checking_seconds = 0.0;  // of these, the time in checks
   std::uint64_t checks = 0;       // of motions
 };
 
@@ -142,13 +142,14 @@ void add_steering(const base::Planner& planner, SolvedPath& path) {
   if (ways != properties.end()) path.checks += std::stoull(ways->second());
 }
 
-/// Has the planner of the options look for its first path under a checker, in a space of its own,
-/// and simplifies it if the options say so. The same seed yields the same path, unless time runs
-/// out. Not for two threads at once: OMPL's seed is the process's.
+/// Searches for the first path with the planner of the options under a checker, in a new space, and
+/// simplifies it if the options say so. The same seed gives the same path unless time runs out. Not
+/// thread-safe: OMPL has one seed for the process.
 SolvedPath solve(Planning& planning, const Checker& checker, const PlanningProblem& problem,
                  const PlanOptions& options, std::uint64_t seed, const StopSignal& stop_signal) {
-  ompl::msg::noOutputHandler();  // also of its complaint that a seed is set anew, which is meant
-  ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(1 + seed % 0x7FFFFFFF));  // 0 would be none
+  ompl::msg::noOutputHandler();  // hides OMPL's warning about a changed seed, which is intended
+  ompl::RNG::setSeed(
+      static_cast<std::uint_fast32_t>(1 + seed % 0x7FFFFFFF));  // 0 would not set a seed
   CheckTimer timer;
   const base::SpaceInformationPtr space = space_with(planning, checker, timer);
   const base::PlannerPtr planner = planner_of(planning, checker, options, space);
@@ -179,7 +180,7 @@ SolvedPath solve(Planning& planning, const Checker& checker, const PlanningProbl
   return result;
 }
 
-/// Runs the planner of the options, and has the path judged.
+/// Runs the planner of the options and judges the path.
 Json run_planner(const PlanOptions& options, Planning& planning, const PlanningProblem& problem,
                  const Checker& checker, std::size_t repetition, const StopSignal& stop) {
   const bool is_tip = options.robot.empty();
@@ -200,7 +201,7 @@ Json run_planner(const PlanOptions& options, Planning& planning, const PlanningP
   run["seconds"] = path.seconds;
   run["checking_seconds"] = path.checking_seconds;
   run["checks"] = path.checks;
-  // A run that is not solved has the same members, null, but no path.
+  // An unsolved run has the same members, null, but no path.
   Json found = planning.judge(is_solved ? path.states : Path{problem.start});
   if (!is_solved) {
     for (const char* list : {"path", "too_near"}) found.erase(list);
@@ -210,7 +211,7 @@ Json run_planner(const PlanOptions& options, Planning& planning, const PlanningP
   return run;
 }
 
-/// All runs on a mesh, up to a stop.
+/// Adds all runs on a mesh, up to a stop.
 void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
              const StopSignal& stop, Json& runs) {
   const std::string& mesh = planning.scene().name();
@@ -222,7 +223,7 @@ void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
       for (std::size_t i = 0; i < options.repetitions(); ++i) {
         if (stop.has_come()) return;
         Json run = run_planner(options, planning, problem, checker, i, stop);
-        // Cut short it tells nothing.
+        // A run that was stopped has no result.
         if (stop.has_come() && !run["solved"]) return;
         runs.push_back(std::move(run));
         stop.keep_from_now_on();
@@ -236,15 +237,16 @@ void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
 
 int plan(const PlanOptions& options, std::ostream& out) {
   OutputFiles outputs = options.files.open(options.meshes);
-  // After the files, which a signal removes that ends the process.
+  // After the files: if a signal ends the process, they are removed.
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   std::vector<std::filesystem::path> meshes = options.meshes;
   if (meshes.empty()) meshes = {"airway", "skull"};
   std::vector<std::unique_ptr<Planning>> plannings;
   for (const auto& mesh : meshes) {
-    Scene scene(mesh.filename().string(), load_named_mesh(mesh).mesh, "wide_bvh");
+    const std::shared_ptr<const Mesh> loaded = load_named_mesh(mesh).mesh;
+    require_area(mesh.string(), *loaded);
     const auto make = options.robot.empty() ? planning_of_a_tip : planning_of_an_instrument;
-    plannings.push_back(make(options, std::move(scene)));
+    plannings.push_back(make(options, Scene(mesh.filename().string(), loaded, "wide_bvh")));
   }
   const std::size_t total =
       plannings.size() * options.problems * checkers_of(options).size() * options.repetitions();

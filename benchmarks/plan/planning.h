@@ -19,37 +19,38 @@
 
 namespace keepout::app {
 
-/// How a planner learns whether a motion is valid.
+/// The method that checks motions for a planner.
 struct Checker {
   enum class Kind : std::uint8_t {
     sampled,    // OMPL's own: places along the motion, each by its exact distance from the mesh
-    widened,    // the same with half the way between places added to the clearance: a proof, too
-    certified,  // keepout's motion validator: the whole of it is proven
+    widened,    // as sampled, with half the spacing of places added to the clearance: a proof as
+                // well
+    certified,  // keepout's motion validator: proves the whole motion
     sliding     // keepout's projecting steer, in a planner of its own with two trees
   };
   Kind kind = Kind::certified;
-  double resolution = 0.0;  // if sampled: between places, in shares of the space's extent
+  double resolution = 0.0;  // if sampled: spacing of places, as a fraction of the space's extent
 
-  /// "sampled 1 %", "widened 1 %", "certified", "sliding".
+  /// Returns "sampled 1 %", "widened 1 %", "certified" or "sliding".
   std::string name() const;
-  /// True if keepout answers for its paths.
+  /// True if keepout proves its paths.
   bool is_keepouts() const noexcept { return kind == Kind::certified || slides(); }
   bool slides() const noexcept { return kind == Kind::sliding; }
 };
 
-/// States that straight motions join: of a tip its coordinates [mm], of an instrument the positions
-/// of its joints.
+/// States with straight motions between them: the coordinates of a tip [mm], or the joint positions
+/// of an instrument.
 using Path = std::vector<std::vector<double>>;
 
-/// From where to where a tip or an instrument is to be led.
+/// The start and the goal for a tip or an instrument.
 struct PlanningProblem {
   std::size_t number = 0;  // from 1
   std::vector<double> start = {}, goal = {};
   Pose base = {};     // of the instrument
-  Json members = {};  // of its runs in the record: all of this, and how hard it is
+  Json members = {};  // of its runs in the record: these values, and measures of difficulty
 };
 
-/// What a planner asks in a space; without `motions` it samples, as OMPL does by itself.
+/// The checks of a planner in a space; without `motions`, OMPL samples motions itself.
 struct Checks {
   ompl::base::StateValidityCheckerPtr states;
   ompl::base::MotionValidatorPtr motions = {};
@@ -60,18 +61,18 @@ class Planning {
  public:
   virtual ~Planning() = default;
   virtual const Scene& scene() const = 0;
-  /// True if the mesh is planned within, not around.
+  /// Returns true if the plan is within the mesh, not around it.
   virtual bool is_within() const { return false; }
-  /// Draws the problems, by a rule that knows no planner; each has a solution. Throws Error if it
+  /// Draws the problems by a rule that uses no planner; each has a solution. Throws Error if it
   /// finds too few. After a stop, returns those drawn so far.
   virtual std::vector<PlanningProblem> draw(const StopSignal& stop) = 0;
-  /// Makes what checks and judges the runs of a problem, which must outlive them.
+  /// Prepares the checks and the judge of a problem. The problem must outlive its runs.
   virtual void open(const PlanningProblem& problem) = 0;
   virtual ompl::base::StateSpacePtr space() const = 0;
   virtual Checks checks(const ompl::base::SpaceInformationPtr& space, const Checker& checker) = 0;
-  /// Makes the planner of a checker that slides; null: such a checker has none here.
+  /// Returns the planner of a sliding checker; null without one.
   virtual ompl::base::PlannerPtr sliding(const ompl::base::SpaceInformationPtr&) { return {}; }
-  /// Returns what the oracle finds on a path of one state or more, by its name in the record.
+  /// Returns the oracle's findings on a path of one state or more, by their names in the record.
   virtual Json judge(const Path& path) = 0;
 };
 
@@ -82,43 +83,42 @@ std::unique_ptr<Planning> planning_of_an_instrument(const PlanOptions& options, 
 /// The scene of a plan for a tip: a mesh, and its free side.
 struct TipScene {
   Scene scene;
-  bool is_within = false;     // planned within the mesh, not around it
-  bool starts_below = false;  // only in the lowest tenth of the bounds, along z
+  bool is_within = false;     // plan within the mesh, not around it
+  bool starts_below = false;  // starts only in the lowest tenth of the bounds, along z
   Box bounds = {};            // of the state space [mm]
 };
 
-/// Draws problems for a tip, each with a solution that keeps the clearance:
+/// Draws problems for a tip, each with a solution that maintains the clearance:
 ///
-/// 1. A grid of 1/200 of the mesh's diagonal, or of 1/300 of the bounds, is flooded (FreeCells):
-/// around the mesh from a corner
-///    of the bounds, within it from the widest of 1000 places drawn in it, in its lowest tenth
-///    where starts are below.
-/// 2. Start and goal are drawn evenly among the cells reached that are no farther from the mesh
-///    than five times the clearance; starts as the scene has it.
-/// 3. A pair is taken when the way along the grid is at least a quarter of the diagonal long and
-///    1.3 times as long as in the open, and the straight way from one to the other touches the
-///    mesh.
-/// Returns those drawn so far after a stop.
+/// 1. Floods a grid of 1/200 of the mesh's diagonal, or of 1/300 of the bounds (FreeCells). Around
+///    a mesh it starts at a corner of the bounds. Within a mesh it starts at the widest of 1000
+///    random places, in the lowest tenth if `starts_below`.
+/// 2. Draws start and goal evenly from the reached cells that are no farther from the mesh than
+///    five times the clearance; starts as the scene requires.
+/// 3. Takes a pair if the straight motion touches the mesh. The path along the grid must be at
+///    least a quarter of the diagonal, and 1.3 times as long as in free space.
+///
+/// After a stop, returns the problems so far.
 std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, std::size_t count,
                                            std::uint64_t seed, const StopSignal& stop);
 
 /// The checkers that are compared: for a tip sampled at each resolution, the same widened, then
-/// both of keepout's; for an instrument sampled and certified.
+/// both of keepout's; for an instrument sampled and certified. No two have the same name.
 std::vector<Checker> checkers_of(const PlanOptions& options);
 
 // A run is an entry of the record's "runs": one planner on one problem under one checker.
 
-/// True if the oracle finds nothing wrong with the path of a run that is solved.
+/// Returns true if the oracle finds no fault in the path of a solved run.
 bool is_valid(const Json& run);
 
-/// True if the checker of a run is one of keepout's.
+/// Returns true if the checker of a run is one of keepout's.
 bool is_keepouts(const Json& run);
 
-/// The record of it: see docs/records.md. `complete`: it was not stopped.
+/// Returns the record: see docs/records.md. `complete`: it was not stopped.
 Json record_of(const PlanOptions& options, std::span<const std::unique_ptr<Planning>> plannings,
                Json runs, bool complete);
 
-/// A row for each mesh and checker, in the order of the runs.
+/// Prints a row for each mesh and checker, in the order of the runs.
 void print_summaries(std::ostream& out, const Json& runs);
 
 }  // namespace keepout::app

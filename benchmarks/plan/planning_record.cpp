@@ -51,7 +51,7 @@ Json median(std::vector<double> values) {
 Json least(std::vector<double> values) {
   return values.empty() ? Json() : Json(std::ranges::min(values));
 }
-/// Returns the greatest depth, of clearances.
+/// Returns the greatest depth from clearances.
 Json deepest(std::vector<double> values) {
   return values.empty() ? 0.0 : std::max(0.0, -std::ranges::min(values));
 }
@@ -60,7 +60,7 @@ Json valid(const Group& runs) {
       runs, [](const Json* run) { return run->at("solved") && is_valid(*run); }));
 }
 
-/// A duration in the unit that suits it; "-" for null.
+/// Returns a duration in a suitable unit; "-" for null.
 std::string duration_text(const Json& seconds) {
   return seconds.is_null() ? "-" : in_ascii(time_text(1e6 * seconds.get<double>()));
 }
@@ -152,7 +152,12 @@ std::vector<Checker> checkers_of(const PlanOptions& options) {
   std::vector<Checker> all;
   for (const Kind kind : {Kind::sampled, Kind::widened}) {
     if (kind == Kind::widened && !is_tip) continue;
-    for (const double resolution : options.resolutions) all.push_back({kind, resolution});
+    for (const double resolution : options.resolutions) {
+      const Checker checker{kind, resolution};
+      // Runs are counted by the name of their checker.
+      if (std::ranges::find(all, checker.name(), &Checker::name) != all.end()) continue;
+      all.push_back(checker);
+    }
   }
   all.push_back({Kind::certified});
   if (is_tip) all.push_back({Kind::sliding});

@@ -18,13 +18,13 @@ namespace {
 
 namespace base = ompl::base;
 
-/// Sides are not asked about: a certified motion never changes them, whichever way the mesh is
-/// wound, so a tree that starts within stays within.
+/// Tips are not classified: a certified motion never changes the side, whatever the winding, so a
+/// tree that starts within the mesh stays within it.
 constexpr Inside sides = Inside::taken_as_is;
 
-/// The validity checker that a user of OMPL would write: no triangle within the clearance, by the
-/// fastest index here. It does not classify positions: a tree starts on the right side, so that
-/// would only cost time. For one thread.
+/// The validity checker that a user of OMPL would write: no triangle is within the clearance, by
+/// the fastest index here. It does not classify positions, which would only cost time: a tree
+/// starts on the right side. For one thread.
 class ClearPlaces final : public base::StateValidityChecker {
  public:
   ClearPlaces(const base::SpaceInformationPtr& space, const Scene& scene, double clearance)
@@ -74,7 +74,7 @@ class TipPlanning final : public Planning {
                                                  .margin = options_->margin},
                                      .inside = sides});
     });
-    // The same, but for a solver that does not search where a motion is held back.
+    // As above, but with a solver that does not search for other motions.
     validating_ = std::make_shared<GuardPool>([this] {
       return MotionConstraint(scene().mesh(), scene().shared_index(),
                               std::make_unique<CertifiedRule>(), std::make_unique<StraightOnly>(),
@@ -97,7 +97,7 @@ class TipPlanning final : public Planning {
       const std::shared_ptr<GuardPool>& guards = checker.slides() ? steering_ : validating_;
       return {make_state_validity_checker(space, guards), make_motion_validator(space, guards)};
     }
-    // Between two places so far apart no distance falls by more than half of it.
+    // Between two places at this spacing, a distance falls by at most half the spacing.
     const double apart = checker.resolution * space->getStateSpace()->getMaximumExtent();
     const bool is_widened = checker.kind == Checker::Kind::widened;
     const double clearance = options_->clearance() + (is_widened ? 0.5 * apart : 0.0);
@@ -108,16 +108,16 @@ class TipPlanning final : public Planning {
     return make_sliding_connect(space, steering_);
   }
 
-  /// Over the whole of each straight piece.
+  /// Judges the whole of each straight piece.
   Json judge(const Path& path) override {
     std::vector<Vec3> points;
     for (const std::vector<double>& tip : path) points.emplace_back(tip.data());
     oracle::SafetyOracle oracle = scene().oracle();
-    // No piece is farther off than its ends, so the search for the nearest need not reach farther.
+    // A piece is no farther from the mesh than its ends, which bounds the search.
     double clearance = std::numeric_limits<double>::infinity();
     for (const Vec3& point : points) clearance = std::min(clearance, oracle.distance(point));
     bool enters = false;
-    std::size_t bad_pieces = 0;  // that touch the mesh or come too near
+    std::size_t bad_pieces = 0;  // pieces that touch the mesh or come too close
     double length = 0.0;
     for (std::size_t i = 1; i < points.size(); ++i) {
       const oracle::Finding finding =
@@ -138,7 +138,7 @@ class TipPlanning final : public Planning {
   }
 
  private:
-  /// The least distance that docs/certified-step.md promises of the clearance: m - 3 tau. [mm]
+  /// Returns the least distance that docs/certified-step.md promises: m - 3 tau. [mm]
   double least_distance() const {
     // The tip may be 10 mm beyond the mesh along each axis.
     const Vec3 farthest(scene().farthest() + 30.0, 0.0, 0.0);
@@ -147,9 +147,9 @@ class TipPlanning final : public Planning {
                                                      farthest);
   }
 
-  /// The lengths of a path that is not valid that come too near: to half a millimeter.
+  /// Returns the parts of an invalid path that come too close, to half a millimeter.
   Json lengths_too_near(const std::vector<Vec3>& points) const {
-    constexpr double longest = 0.5;  // of what is judged at once [mm]
+    constexpr double longest = 0.5;  // of a judged piece [mm]
     oracle::SafetyOracle oracle = scene().oracle();
     Json lengths = Json::array();
     bool was_bad = false;
@@ -176,7 +176,7 @@ class TipPlanning final : public Planning {
 }  // namespace
 
 std::unique_ptr<Planning> planning_of_a_tip(const PlanOptions& options, Scene scene) {
-  // From the throat up into nose and sinuses, unless the user names a mesh.
+  // The airway: from the throat up into nose and sinuses, unless the user names a mesh.
   const bool is_airway = options.meshes.empty() && scene.name() == "airway";
   TipScene where{.scene = std::move(scene),
                  .is_within = is_airway || options.inside,

@@ -14,7 +14,8 @@ namespace keepout::app {
 namespace {
 
 constexpr double cells_of_diagonal = 200.0;
-constexpr double most_cells_of_side = 300.0;  // of the bounds, which are wide around a small mesh
+constexpr double most_cells_of_side = 300.0;  // of the bounds, which may be much wider than a small
+                                              // mesh
 constexpr double nearest_clearances = 5.0;
 constexpr double least_way = 0.25;  // of the diagonal
 constexpr double least_detour = 1.3;
@@ -28,7 +29,7 @@ Vec3 draw(const Box& box, Random& random) {
   return {x, y, z};
 }
 
-/// The widest of some places in the bounds and within the mesh.
+/// Returns the widest of some places in the bounds and within the mesh.
 Vec3 widest_within(Scene& scene, const Box& bounds, Random& random) {
   Vec3 widest = bounds.center();
   double distance = -1.0;
@@ -38,7 +39,7 @@ Vec3 widest_within(Scene& scene, const Box& bounds, Random& random) {
     const std::optional<bool> inside = scene.oracle().inside(point);
     if (!inside) {
       throw Error(scene.name() +
-                  ": the mesh is open, so nothing is within it; 'keepout inspect' tells more");
+                  ": the mesh is open, so it has no inside; 'keepout inspect' shows where");
     }
     if (!*inside) continue;
     ++found;
@@ -51,15 +52,15 @@ Vec3 widest_within(Scene& scene, const Box& bounds, Random& random) {
   return widest;
 }
 
-/// The places of a grid that a tip can reach from one of them. A cell is free when it is at least
-/// the clearance and half a spacing from the mesh: then the straight way between neighbors keeps
-/// the clearance, so what is reached can be reached indeed. No planner has a part in it.
+/// The cells of a grid that a tip can reach from one of them. A free cell is at least the clearance
+/// and half a spacing away from the mesh. Then the straight motion between neighbors maintains the
+/// clearance, so every reached cell is truly reachable. No planner is involved.
 class FreeCells {
  public:
   using Cell = std::uint32_t;
 
-  /// Floods from the cell nearest to `from`. Nothing is reached when it is not free. `told`: up to
-  /// where distances from the mesh are of interest [length]. Ends early after a stop.
+  /// Floods from the cell nearest to `from`; reaches no cell if that one is not free. `told`:
+  /// distances from the mesh are computed up to this limit [length]. Ends early after a stop.
   FreeCells(Scene& scene, const Box& bounds, double spacing, double clearance, double told,
             const Vec3& from, const StopSignal& stop)
       : low_(bounds.low),
@@ -71,10 +72,15 @@ class FreeCells {
     const double needed = clearance + 0.5 * spacing;
     const double reach = std::max(needed, told);
     TriangleBuffer candidates(scene.mesh()->triangle_count());
+    const Box mesh = scene.mesh()->bounds();
     const auto distance_of = [&](const Vec3& point, double guess) {
+      // Most cells are beside the box of a small mesh, or far from its triangles.
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      const Vec3 beside = (mesh.low - point).cwiseMax(point - mesh.high);
+      if (beside.maxCoeff() > reach) return infinity;
       candidates.clear();
-      scene.index().collect({point, reach}, candidates);  // far off, as most are: soon told
-      if (candidates.view().empty()) return std::numeric_limits<double>::infinity();
+      scene.index().collect({point, reach}, candidates);
+      if (candidates.view().empty()) return infinity;
       return scene.nearest(point, std::min(guess, reach)).closest.distance;
     };
     const auto look = [&](Cell cell, double guess) {
@@ -95,30 +101,47 @@ class FreeCells {
   }
 
   const std::vector<Cell>& reached() const noexcept { return reached_; }
-  double distance(Cell cell) const noexcept { return distance_[cell]; }  // infinite: not told
+  double distance(Cell cell) const noexcept { return distance_[cell]; }  // infinite: far away
 
   Vec3 center(Cell cell) const noexcept {
     const Place at = place(cell);
     return low_ + spacing_ * Vec3(at[0], at[1], at[2]);
   }
 
-  /// The length of the shortest way along the grid to each cell, in steps; max(): none.
-  std::vector<std::uint32_t> steps_from(Cell cell) const {
-    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> steps(distance_.size(), none);
-    std::vector<Cell> queue{cell};
-    steps[cell] = 0;
-    for (std::size_t i = 0; i < queue.size(); ++i) {
-      for_each_neighbor(queue[i], [&](Cell next) {
-        if (distance_[next] < 0.0F || steps[next] != none) return;
-        steps[next] = steps[queue[i]] + 1;
-        queue.push_back(next);
+  /// Returns the length of the shortest path along the grid between two reached cells, in steps. By
+  /// A* (Hart, Nilsson, Raphael 1968): where the way is open, it visits few cells more than the
+  /// path has.
+  std::uint32_t steps_between(Cell from, Cell to) {
+    // Cells whose path through them may be as short as any that is left, and 2 steps longer: no
+    // step changes that length by anything else.
+    std::vector<Cell> open{from}, later;
+    std::vector<Cell> seen{from};
+    std::uint32_t length = steps_in_the_open(from, to);
+    steps_.resize(distance_.size(), unknown);
+    steps_[from] = 0;
+    while (steps_[to] > length) {
+      if (open.empty()) {
+        length += 2;
+        open.swap(later);
+        continue;
+      }
+      const Cell cell = open.back();
+      open.pop_back();
+      const std::uint32_t here = steps_[cell];
+      if (here + steps_in_the_open(cell, to) < length) continue;  // it was visited meanwhile
+      for_each_neighbor(cell, [&](Cell next) {
+        if (distance_[next] < 0.0F || steps_[next] <= here + 1) return;
+        if (steps_[next] == unknown) seen.push_back(next);
+        steps_[next] = here + 1;
+        (here + 1 + steps_in_the_open(next, to) > length ? later : open).push_back(next);
       });
     }
+    const std::uint32_t steps = steps_[to];
+    for (const Cell cell : seen) steps_[cell] = unknown;
     return steps;
   }
 
-  /// The steps between two cells if all were free.
+  /// Returns the steps between two cells if all were free.
   std::uint32_t steps_in_the_open(Cell a, Cell b) const noexcept {
     std::uint32_t steps = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -133,6 +156,7 @@ class FreeCells {
 
   static constexpr float not_looked_at = -1.0F;
   static constexpr float not_free = -2.0F;
+  static constexpr std::uint32_t unknown = std::numeric_limits<std::uint32_t>::max();
 
   static std::uint32_t count(double length, double spacing) {
     return 1 + static_cast<std::uint32_t>(std::floor(length / spacing));
@@ -154,8 +178,9 @@ class FreeCells {
   Vec3 low_;
   double spacing_;
   std::uint32_t nx_, ny_, nz_;
-  std::vector<float> distance_;  // of the reached; < 0: not looked at, or not free
+  std::vector<float> distance_;  // of reached cells; < 0: not visited, or not free
   std::vector<Cell> reached_;
+  std::vector<std::uint32_t> steps_;  // to each cell, while a path is searched
 };
 
 }  // namespace
@@ -171,7 +196,7 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
   if (where.starts_below) start_box.high.z() = start_box.low.z() + 0.1 * start_box.size().z();
   const Vec3 from = where.is_within ? widest_within(scene, start_box, random) : where.bounds.low;
   const double near_enough = nearest_clearances * clearance;
-  const FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from, stop);
+  FreeCells cells(scene, where.bounds, spacing, clearance, near_enough, from, stop);
   std::vector<FreeCells::Cell> near, starts;
   for (const FreeCells::Cell cell : cells.reached()) {
     if (cells.distance(cell) > near_enough) continue;
@@ -189,7 +214,7 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
     const Vec3 a = cells.center(start);
     const Vec3 b = cells.center(goal);
     if (a == b || !oracle.check(a, b, 0.0).crosses) continue;
-    const std::uint32_t steps = cells.steps_from(start)[goal];
+    const std::uint32_t steps = cells.steps_between(start, goal);
     const double detour =
         static_cast<double>(steps) / static_cast<double>(cells.steps_in_the_open(start, goal));
     if (steps * spacing < least_way * diagonal || detour < least_detour) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loop that the Python module is held against, bit for bit and in time: steps over poses from a
-// file, in C++ and on one thread.
+// The C++ loop that the Python module is compared with, bitwise and in time: steps over poses from
+// a file, on one thread.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +15,7 @@
 
 namespace {
 
-/// As they are on the disk.
+/// The layout of the file.
 struct Pose {
   double tip[3];
   double desired[3];
@@ -65,7 +65,7 @@ int main(int argc, char** argv) try {
                     static_cast<double>(step.status),
                     static_cast<double>(step.planes.size())};
     }
-    // Of the processor, so that what else the machine does counts for less.
+    // Processor time, which other load on the machine affects less.
     const double taken = 1e9 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     best = std::min(best, taken / static_cast<double>(poses.size()));
   }

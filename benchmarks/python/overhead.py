@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a step costs from Python beside the same step from C++, and what two threads gain.
+"""Compares the time of a step from Python with that from C++, and measures the gain of two threads.
 
 After ./test, or ninja -C build/release keepout_python keepout_cpp_loop:
 
     PYTHONPATH=build/release/python python3 benchmarks/python/overhead.py MESH
 
-The poses are alike for all; answers are held to those of C++, bit for bit, before anything is told.
-Times are of the processor, but for two threads, whose are by the clock; the least of several passes,
-taken in turn. `--build` names another build directory.
+All variants get the same poses. The answers must be bitwise those of C++ before the script prints a time. Times are
+processor times, except for two threads, which are wall-clock times. Each is the least of several passes, which
+alternate. `--build` names another build directory.
 """
 
 import argparse
@@ -37,7 +37,7 @@ random = np.random.default_rng(1)
 
 
 def poses_outside(spread):
-    """Up to `spread` off the surface, on its free side; motions of 0.2 in any direction."""
+    """Returns tips up to `spread` from the surface, on its free side, and motions of about 0.2 in any direction."""
     at = random.integers(0, len(mesh), options.poses)
     tips = mesh.vertices[mesh.triangles[at, 0]]
     tips = tips + mesh.normals[at] * random.uniform(0.55, spread, (options.poses, 1))
@@ -45,14 +45,14 @@ def poses_outside(spread):
 
 
 def taken_by(function):
-    """Seconds of wall clock, and of all processors together."""
+    """Returns the seconds of wall clock and of all processors together."""
     wall, cpu = time.perf_counter(), time.process_time()
     function()
     return time.perf_counter() - wall, time.process_time() - cpu
 
 
 def path():
-    """A tip that wanders: each pose is where the step before led, as in a control loop."""
+    """Returns poses of moving tips: each pose is where the step before ended, as in a control loop."""
     tips, _ = poses_outside(2.0)
     starts = tips[:: max(1, options.poses // 50)][:50]
     cycles = options.poses // len(starts)
@@ -95,7 +95,7 @@ def measure(title, tips, desired, memory):
             times = [float(cpp_ns), taken_by(batch)[1], taken_by(batch)[0], taken_by(single)[1]]
             if independent:
                 wall, cpu = taken_by(lambda: guard.steps(tips, desired, threads=2, out=two))
-                times += [wall, -cpu / wall]  # of the processors in use, the most
+                times += [wall, -cpu / wall]  # the most processors in use
             passes.append(times)
         answers = np.fromfile(files[1]).reshape(-1, 5)
     assert np.array_equal(out.motion.view(np.int64), answers[:, :3].copy().view(np.int64))

@@ -19,7 +19,7 @@ constexpr double narrowest = 1e-3;         // a tracker cannot measure a turn ab
 constexpr double widest_residual = 0.1;    // the largest for fiducials in the right order
 constexpr double largest_scale_off = 0.1;  // the largest for fiducials in the right unit
 
-[[noreturn]] void refuse(const std::string& what) { throw Error("fit_rigid: " + what); }
+[[noreturn]] void refuse(const std::string& what) { throw Error(what); }
 
 std::string numbered(const char* name, std::size_t i) {
   return std::string(name) + "[" + std::to_string(i) + "]";
@@ -125,6 +125,9 @@ double RigidFit::estimated_fle() const noexcept {
 }
 
 std::string RigidFit::doubt_of(double fle) const {
+  if (!(fle > 0.0 && std::isfinite(fle))) {
+    throw Error("doubt_of: fle must be above 0 and finite, not " + text_of(fle));
+  }
   const auto count = static_cast<double>(residuals.size());
   const double freedom = 3.0 * count - 6.0;
   // The quantile of 99.9 % (Wilson, Hilferty 1931).
@@ -144,7 +147,10 @@ RigidFit fit_rigid(std::span<const Vec3> measured, std::span<const Vec3> model,
            " of the model; each needs the other of its pair");
   }
   if (count < 3) {
-    refuse(std::to_string(count) + " pairs; three determine a rotation, more show how good it is");
+    refuse(
+        "a registration needs at least three pairs of points, not in a line, and five or more "
+        "show how good it is; there are " +
+        std::to_string(count));
   }
   check_points(measured, "measured");
   check_points(model, "model");

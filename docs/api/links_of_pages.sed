@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# What doxygen 1.9.4 reads in place of a page of docs/. It knows no anchors of headings: links lead to
-# the page; and no bold code. What is no page of the site, such as a source or a folder, keeps its words
-# only.
+# The filter for pages of docs/ in doxygen 1.9.4. It supports neither anchors of headings, so links lead to the page,
+# nor bold code. A link to a file outside the site, such as a source or a directory, keeps its words only.
 s~\*\*(`[^`]+`)\*\*~\1~g
 s~\]\(([^)#]+\.md)#[^)]*\)~](\1)~g
 s~\[([^]]*)\]\(#[^)]*\)~\1~g

@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# What doxygen reads in place of a header: a comment that follows a member on its line belongs to it,
-# so that headers need no `///<`.
+# The filter for headers: a comment that follows a member on its line documents it, so headers need no `///<`.
 s#^([[:space:]]*[^/[:space:]][^/]*[;,A-Za-z0-9_)}])[[:space:]]+// #\1  ///< #

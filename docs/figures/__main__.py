@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the measured figures of the pages from the records in docs/records:
+"""Writes the measured figures of the pages from the records in docs/records.
 
-    python3 docs/figures                      writes all pages
-    python3 docs/figures --check              exits 1 if a page differs from its records, and for what checks.py says
-    python3 docs/figures --names              prints all figures that there are
-    python3 docs/figures --show FILE          prints the figures of a command's --json
-    python3 docs/figures --keep NAME FILE...  keeps a command's --json as a record, then writes all pages
+    python3 docs/figures                      writes all pages.
 
-A record belongs to the commit that it was measured at: HEAD, or --commit. With --output-of COMMAND the
-file is what a program printed. docs/records.md says how to measure each record again.
+    python3 docs/figures --check              exits with 1 if checks.py finds a fault.
+
+    python3 docs/figures --names              prints all figures.
+
+    python3 docs/figures --show FILE          prints the figures of a command's --json.
+
+    python3 docs/figures --keep NAME FILE...  keeps a command's --json as a record, then writes all pages.
+
+A record belongs to the commit at which it was measured: HEAD, or --commit. With --output-of COMMAND the
+file contains the output of a program. docs/records.md explains how to measure each record again.
 """
 
 import argparse
@@ -19,7 +23,7 @@ import sys
 import checks
 import pages
 import records
-import speed  # noqa: F401, registers what it prints
+import speed  # noqa: F401, registers its figures
 import values
 
 
@@ -55,7 +59,7 @@ def main():
         try:
             written = pages.filled(text, figures)
         except KeyError as error:
-            sys.exit(f"{path}: there is no figure {error}: see --names")
+            sys.exit(f"{path}: unknown figure {error}: see --names")
         if written != text:
             path.write_text(written, encoding="utf-8")
             print(f"{path.relative_to(records.ROOT)}: written from the records")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What `python3 docs/figures --check` finds wrong:
+"""The faults that `python3 docs/figures --check` finds.
 
 1. A page differs from its records.
 2. A row of a table has another number of cells than its header.
@@ -36,16 +36,16 @@ def uneven_rows(text):
 
 
 def of_page(text, figures):
-    """Yields what is wrong with a page."""
+    """Yields the faults of a page."""
     yield from (f"{line}: a row has another number of cells than its header" for line in uneven_rows(text))
     if unknown := [name for name in pages.names_of(text) if name not in figures]:
-        yield f" there are no figures {', '.join(unknown)}"
+        yield f" unknown figures {', '.join(unknown)}"
     elif pages.filled(text, figures) != text:
         yield " differs from its records: run 'python3 docs/figures'"
 
 
 def all_of(kept, figures):
-    """Yields what is wrong with the pages and the records."""
+    """Yields the faults of the pages and the records."""
     printed = set()
     for path in pages.of_tree(records.ROOT):
         inner = path.relative_to(records.ROOT)
@@ -58,6 +58,6 @@ def all_of(kept, figures):
     yield from (f"docs/records/{name}: no page prints it" for name in kept if name not in printed)
     for name, one in kept.items():
         if not records.is_in_history(one["commit"]):
-            print(f"skipped: the age of {name}, as its commit {one['commit']} is not in git's history here")
+            print(f"skipped the age of {name}: its commit {one['commit']} is not in git's history here")
         elif why := records.staleness(name, one):
             yield f"docs/records/{name}: {why}"

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The figures of the pages, between markers that readers do not see:
+"""The figures of the pages, between markers that readers do not see.
 
     <!--NAME-->TEXT<!--/-->                             in a line
     <!--NAME-->                                         or lines, up to <!--/--> on a line of its own
 
-NAME is one of the names that values.py makes of the records.
+NAME is the name of a figure in values.py.
 """
 
 import re
@@ -16,7 +16,7 @@ FIGURE = re.compile(r"<!--([a-z0-9_]+\.[a-z0-9_.]+)-->(.*?)<!--/-->", re.S)
 
 
 def filled(text, values):
-    """Returns a page's text with all of its figures as the records have them. Raises KeyError."""
+    """Returns the text of a page with all figures from the records. Raises KeyError for an unknown figure."""
 
     def figure(match):
         value = values[match[1]]
@@ -43,7 +43,7 @@ def of_tree(root, names=("*.md",)):
 
 
 def blank(match):
-    """Returns as many lines, without words."""
+    """Returns the same number of lines, without words."""
     return re.sub(r"[^\n]", " ", match[0])
 
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The committed records: docs/records/NAME.json.gz, the source of every measured figure of the pages.
 
-A record is what a command wrote with --json, without its traces, or the text that a program printed
-(kind "output"). Around it stand its commit, its sources (the directories whose change makes it stale), and
-the fingerprint of the steps that it was measured with (docs/records/steps.txt).
+A record contains what a command wrote with --json, without its traces, or the output of a program (kind "output"). It
+also has its commit, its sources (the directories whose change makes it stale), and the fingerprint of the steps at
+that time (docs/records/steps.txt).
 """
 
+import collections
 import datetime
 import gzip
 import json
@@ -20,13 +21,13 @@ RECORDS = ROOT / "docs" / "records"
 MOST_DAYS = 30
 MOST_LINES = 5000
 
-# No page prints a time of these records. They hold as long as all steps are bitwise the same.
+# Records without printed times. They are valid as long as all steps are bitwise the same.
 RESULTS = {"certified_excess", "moving_meshes", "simulate_psm", "simulate_psm_20", "verify_guides",
            "verify_linearized", "verify_psm", "verify_scenarios", "verify_tip"}
 
 TIP = ["engine", "solvers", "factory"]
 INSTRUMENT = TIP + ["robot"]
-# `apps/keepout/NAME` is where `benchmarks/NAME` lay before.
+# `apps/keepout/NAME` is the former directory of `benchmarks/NAME`.
 SOURCES = {
     "simulate": TIP + ["apps/keepout/operators", "apps/keepout/simulate"],
     "simulate_robot": INSTRUMENT + ["apps/keepout/operators", "apps/keepout/simulate", "oracle"],
@@ -40,7 +41,7 @@ SOURCES = {
     "output": INSTRUMENT + ["adapters"],
 }
 
-# Traces of single cycles, paths, pictures: what a record is large by.
+# Traces of single cycles, paths, pictures: the parts that make a record large.
 TRACES = {"strokes", "hand", "drawn", "crossings", "path", "too_near", "bins", "hashes_of_first", "svg",
           "anomalies", "base_position", "base_rotation"}
 
@@ -75,8 +76,8 @@ def merged(found):
 def keep(name, paths, commit, output_of=None):
     """Stores the record of a file, or of several with rows, as docs/records/NAME.json.gz.
 
-    With `output_of`, the files are what this command printed; a line "machine: ..." names the machine.
-    Raises ValueError if a run was interrupted.
+    With `output_of`, the files contain the output of this command; a line "machine: ..." names the machine. Raises
+    ValueError if a run was interrupted.
     """
     if output_of:
         text = "".join(pathlib.Path(path).read_text(encoding="utf-8") for path in paths)
@@ -92,7 +93,7 @@ def keep(name, paths, commit, output_of=None):
                 raise ValueError(f"{path}: the run was interrupted: run it to its end")
         record = without_traces(merged(found))
         if record["keepout_record"] in ("plan", "plan_robot"):
-            del record["runs"]  # the summaries have them all
+            del record["runs"]  # the summaries contain their figures
     kept = {"steps": steps(), "commit": git("rev-parse", "--short=10", commit).strip(),
             "sources": SOURCES[record["keepout_record"]], "record": record}
     RECORDS.mkdir(exist_ok=True)
@@ -101,9 +102,17 @@ def keep(name, paths, commit, output_of=None):
 
 
 def read_all():
-    """Returns the kept records by name."""
-    return {path.name.removesuffix(".json.gz"): json.loads(gzip.decompress(path.read_bytes()))
-            for path in sorted(RECORDS.glob("*.json.gz"))}
+    """Returns the kept records by name, with the names that version 0.3 has for what they name."""
+    records = {}
+    for path in sorted(RECORDS.glob("*.json.gz")):
+        text = gzip.decompress(path.read_bytes()).decode()
+        for former, name in (("fallback", "truncated"), ("yielding", "degraded"), ("linearised", "linearized"),
+                             ("held back by the surface", "limited by the surface"),
+                             ("that are held back", "that the surface limits")):
+            text = re.sub(rf"\b{former}\b", name, text)
+        text = re.sub(r'(\d |"unit": ")us\b', r"\1µs", text)
+        records[path.name.removesuffix(".json.gz")] = json.loads(text)
+    return records
 
 
 def steps():
@@ -112,7 +121,7 @@ def steps():
 
 
 def is_in_history(commit):
-    """Returns true if this is a git checkout with all of its history, and the commit is in it."""
+    """Returns true if this is a git checkout with full history that contains the commit."""
     try:
         git("merge-base", "--is-ancestor", commit, "HEAD")
         return git("rev-parse", "--is-shallow-repository").strip() == "false"
@@ -121,15 +130,19 @@ def is_in_history(commit):
 
 
 def changed_code(diff):
-    """Returns how many lines of C++ code a diff adds and removes, without comments and includes."""
-    lines, is_code = 0, False
+    """Returns the number of lines of C++ code that a diff adds and removes.
+
+    Comments, includes and lines that only moved, or whose comment alone changed, do not count.
+    """
+    changed, is_code = {"+": collections.Counter(), "-": collections.Counter()}, False
     for line in diff.splitlines():
         if line.startswith(("--- ", "+++ ")):
-            is_code = line.endswith((".cpp", ".h"))
+            is_code = line.endswith((".cpp", ".h")) or (line[0] == "+" and is_code)
         elif is_code and line.startswith(("+", "-")):
-            text = line[1:].strip()
-            lines += bool(text) and not text.startswith(("//", "#include"))
-    return lines
+            code = line[1:].split("//")[0].strip()
+            if code and not code.startswith("#include"):
+                changed[line[0]][code] += 1
+    return sum(((changed["+"] - changed["-"]) + (changed["-"] - changed["+"])).values())
 
 
 def staleness(name, kept):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the pages print of `bench` and `bench --speed`."""
+"""The figures of the records of `bench` and `bench --speed`."""
 
 from values import grouped, number, of_kind, share, table
 
@@ -15,7 +15,7 @@ def side(measured):
     return f"{measured['name']} {' / '.join(texts)}{' ms' if in_ms else ''}"
 
 
-# Figures that pages print alone, and the rows of the README: by the beginnings of `work` and `compared`.
+# Figures that pages print alone, and the rows of the README, by the start of `work` and `compared`.
 NAMED = {
     "step_5": ("whole step, paper's rule, r = 5 mm", ""),
     "step_1": ("whole step, paper's rule, r = 1 mm", ""),
@@ -48,7 +48,7 @@ SUMMARY = {
 
 
 def named_rows(rows):
-    """Returns the rows of NAMED that the run has."""
+    """Returns the rows of NAMED that exist in the run."""
     found = {}
     for name, (work, compared) in NAMED.items():
         of_it = [row for row in rows if row["work"].startswith(work)
@@ -124,7 +124,7 @@ def median(row, stage):
 
 
 def index_table(rows):
-    """Returns the rows that differ in the index alone: Li et al.'s rule with our solver."""
+    """Returns the rows that differ only in the index: the rule of Li et al. (2020) with our solver."""
     radii = sorted({row["radius"] for row in rows if row["radius"]})
     kept = {}
     for row in rows:
@@ -141,7 +141,7 @@ def index_table(rows):
 
 
 def solver_table(rows):
-    """Returns the rows that differ in the solver alone, on one index."""
+    """Returns the rows that differ only in the solver, on one index."""
     solvers = {row["solver"] for row in rows if row["solver"] != "active_set"}
     index = next((row["index"] for row in rows if row["solver"] in solvers), None)
     body = [[f"`{row['solver']}`", f"`{row['activation']}`", f"{row['radius']:g}" if row["radius"] else "-",

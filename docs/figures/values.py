@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the pages print of each record: a table or a number for each name.
+"""The figures of each record: a table or a number for each name.
 
-A function of this file belongs to one kind of record, and yields names and texts. A figure's full name
-is that of the record, a dot, and the name that its function yields.
+Each function handles one kind of record, and yields names and texts. The full name of a figure is the name of the
+record, a dot, and the name that the function yields.
 """
 
 MEASURED_BY = {}
@@ -24,7 +24,7 @@ def of_records(kept):
         figures[f"{name}.commit"] = one["commit"]
         figures[f"{name}.command"] = f"`{record['command'].replace('keepout ', './run ')}`"
         machine = record.get("machine") or next(iter(record.get("shards", [])), {}).get("machine")
-        if isinstance(machine, str):  # of a shard of a campaign, or printed
+        if isinstance(machine, str):  # the machine of a shard of a campaign, or the printed one
             text = machine.replace("GNU", "GCC")
             figures[f"{name}.machine"] = f"{text}, {record['date'][:10]}, commit {one['commit']}"
         elif machine:
@@ -37,7 +37,7 @@ def of_records(kept):
 
 
 def number(value, digits=3):
-    """Returns a number of so many significant digits, and with separators of thousands."""
+    """Returns a number with this many significant digits, and with separators of thousands."""
     if value is None:
         return "-"
     if value == 0:
@@ -63,7 +63,7 @@ def table(columns, rows, left=1):
 
 
 def grouped(rows, *keys):
-    """Returns the rows by their values of these keys, or of this key, in the order of the first ones."""
+    """Returns the rows grouped by their values of these keys (or of one key), in the order of the first rows."""
     groups = {}
     for row in rows:
         groups.setdefault(tuple(row[key] for key in keys) if len(keys) > 1 else row[keys[0]], []).append(row)
@@ -218,7 +218,7 @@ def plan_robot(record):
 
 
 def plan_numbers(record):
-    """Yields sums over the meshes for each checker, and its time beside that of `certified`."""
+    """Yields sums over the meshes for each checker, and its time relative to that of `certified`."""
     summaries = grouped(record["summaries"], "checker")
     certified = {its["mesh"]: its for its in summaries["certified"]}
     for checker, of_it in summaries.items():
@@ -236,7 +236,7 @@ def plan_numbers(record):
 
 @of_kind("output")
 def output(record):
-    """Yields the Markdown table that a program printed. A header that it repeats is left out."""
+    """Yields the Markdown table that a program printed, without repeated headers."""
     lines = record["text"].splitlines()
     yield "table", "\n".join(dict.fromkeys(line for line in lines if line.startswith("|")))
 
@@ -275,5 +275,5 @@ def compare(record):
 
 
 def short(value):
-    """Returns a number of two digits, as a power of ten where it is small."""
+    """Returns a number with two digits; a small one as a power of ten."""
     return "0" if value == 0 else f"{value:.1e}" if abs(value) < 0.01 else f"{value:.2g}"

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t block_size = std::size_t{1} << 20;
 
-/// Calls prepare(offset, block) for every block before its digest is taken.
+/// Calls prepare(offset, size) for every block before its digest is computed.
 template <class Prepare>
 Digest digest_of_blocks(std::span<const std::byte> bytes, const Prepare& prepare) {
   std::vector<Digest> digests((bytes.size() + block_size - 1) / block_size);

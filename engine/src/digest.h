@@ -9,7 +9,7 @@
 
 namespace keepout {
 
-/// 128 bits that tell contents apart: damage is found, malice is not.
+/// A digest of 128 bits. It detects damage, not malice.
 struct Digest {
   std::uint64_t low = 0;
   std::uint64_t high = 0;
@@ -19,12 +19,12 @@ struct Digest {
 
 Digest digest_of(std::span<const std::byte> bytes);
 
-// Made of the digests of blocks, on as many threads as there are processors.
+// Returns a digest of the digests of blocks, computed on one thread for each processor.
 
 Digest shared_digest_of(std::span<const std::byte> bytes);
 
-/// Reads bytes from `offset` on, and gives them their shared digest; false if they are not all to
-/// be had.
+/// Reads bytes from `offset` on, and computes their shared digest. Returns false if the file has
+/// too few bytes.
 bool read_with_digest(const ReadOnlyFile& file, std::uint64_t offset, std::span<std::byte> bytes,
                       Digest& digest);
 

@@ -17,8 +17,8 @@ std::filesystem::path temporary_beside(const std::filesystem::path& path) {
   return temporary;
 }
 
-/// Returns the reason why no file can be put there: replacing a pipe or a device would remove it.
-/// No error if there is a file, or nothing.
+/// Returns the reason why no file can be put at a path, or no error if there is a regular file or
+/// nothing. Replacing a pipe or a device would remove it.
 std::errc obstacle_at(const std::filesystem::path& path) {
   if (path.filename().empty()) return std::errc::invalid_argument;
   std::error_code ignored;
@@ -35,7 +35,7 @@ std::filesystem::path follow_links(std::filesystem::path path, std::error_code& 
   for (int links = 0; std::filesystem::is_symlink(path, missing); ++links) {
     if (links == most_links) error = std::make_error_code(std::errc::too_many_symbolic_link_levels);
     if (error) break;
-    // An absolute target takes the place of the whole.
+    // An absolute target replaces the whole path.
     path = path.parent_path() / std::filesystem::read_symlink(path, error);
   }
   return path;
@@ -83,7 +83,7 @@ std::error_code FileReplacement::commit() {
 
 void FileReplacement::note_failure() {
   if (file_ || error_) return;
-  // Streams do not say why, but the system that they asked last did.
+  // Streams give no cause of a failure, but errno has that of the last system call.
   error_ = errno != 0 ? std::error_code(errno, std::generic_category())
                       : std::make_error_code(std::errc::io_error);
 }

@@ -11,9 +11,9 @@
 
 namespace keepout {
 
-/// Makes a vector of that size, in huge pages where it is large and the system has them: they are
-/// faster to get, and to look up in. The system clears them on as many threads as there are
-/// processors, not on the one that fills the vector with zeros.
+/// Returns a vector of a size, in huge pages if it is large and the system has them. Huge pages are
+/// faster to allocate and to access. The system clears them on all processors, not only on the
+/// thread that fills the vector with zeros.
 template <class T>
 std::vector<T> vector_in_huge_pages(std::size_t size) {
   constexpr std::uintptr_t huge = std::uintptr_t{2} << 20;
@@ -22,7 +22,7 @@ std::vector<T> vector_in_huge_pages(std::size_t size) {
   const auto begin = (reinterpret_cast<std::uintptr_t>(items.data()) + huge - 1) / huge * huge;
   const auto end = reinterpret_cast<std::uintptr_t>(items.data() + size) / huge * huge;
   if (begin < end) {
-    // Only a wish: that it cannot be had is no error.
+    // A hint to the system, which may fail without harm.
     madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
     share_blocks((end - begin) / huge, processors(), [&] {
       return [&](std::size_t block) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Brings chosen lanes to the front. Included once for each kind of processor: see foreach_target.h
-// of Highway.
+// Moves chosen lanes to the front. Included once for each SIMD target: see foreach_target.h of
+// Highway.
 
 #ifndef KEEPOUT_LANE_ORDERS
 #define KEEPOUT_LANE_ORDERS
@@ -12,8 +12,8 @@
 
 namespace keepout {
 
-/// For each choice of so many lanes, a bit each: the numbers of those chosen, then of the others.
-/// Not in the function that reads it: there GCC 12 copies it to the stack, all of it, each time.
+/// For each choice of lanes, one bit each: the numbers of the chosen lanes, then of the others. It
+/// is not in the function that reads it, because GCC 12 would then copy it to the stack each time.
 template <std::size_t Lanes>
 alignas(64) inline constexpr auto lane_orders = [] {
   std::array<std::array<std::uint8_t, Lanes>, std::size_t{1} << Lanes> orders{};
@@ -43,8 +43,8 @@ alignas(64) inline constexpr auto lane_orders = [] {
 
 #include <hwy/highway.h>
 
-// What hn::Compress does: one instruction on AVX-512. Where it takes a table, ours is used, for
-// that of Highway 1.0 is declared in a function.
+// Does the work of hn::Compress, which is one instruction on AVX-512. Other targets use a table.
+// Highway 1.0 declares its table in a function, so this file has its own.
 #undef KEEPOUT_PACKS_BY_TABLE
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3
 #define KEEPOUT_PACKS_BY_TABLE 1
@@ -57,7 +57,7 @@ namespace keepout::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A choice among the 32-bit lanes of vectors, found once and made in as many of them as need be.
+/// A choice of 32-bit lanes, found once and applied to any number of vectors.
 class LanePacking {
  public:
   using Tag = hn::CappedTag<std::uint32_t, 16>;
@@ -74,10 +74,10 @@ class LanePacking {
 #endif
   }
 
-  /// How many are chosen.
+  /// Returns the number of chosen lanes.
   HWY_INLINE std::size_t count() const { return count_; }
 
-  /// The chosen lanes in their order, then anything.
+  /// Returns the chosen lanes in their order; the other lanes are undefined.
   template <class V>
   HWY_INLINE V operator()(V values) const {
     const hn::DFromV<V> d;
@@ -90,9 +90,9 @@ class LanePacking {
 
  private:
 #if KEEPOUT_PACKS_BY_TABLE
-  hn::Vec<Tag> how_;  // the lane that each comes from
+  hn::Vec<Tag> how_;  // the source of each lane
 #else
-  hn::Mask<Tag> how_;  // the lanes that are chosen
+  hn::Mask<Tag> how_;  // the chosen lanes
 #endif
   std::size_t count_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Points and directions in the lanes of wide registers: sixteen at a time, or as many as the
-// processor can. Included once for each kind of processor: see foreach_target.h of Highway.
+// Points and directions in the lanes of wide registers, sixteen or as many as the processor has.
+// Included once for each SIMD target: see foreach_target.h of Highway.
 #if defined(KEEPOUT_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KEEPOUT_LANES_INL_H
 #undef KEEPOUT_LANES_INL_H

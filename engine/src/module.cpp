@@ -15,7 +15,7 @@
 
 namespace keepout {
 
-#ifdef __EMSCRIPTEN__  // pages have no modules
+#ifdef __EMSCRIPTEN__  // web pages have no modules
 
 bool has_module(const char*) { return false; }
 const void* table_in_module(const char*, const char*) { return nullptr; }
@@ -26,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the folders of the program and of the library that holds this function.
+/// Returns the directories of the program and of the library that contains this function.
 std::vector<fs::path> own_folders() {
   std::vector<fs::path> folders;
   std::error_code error;
@@ -38,7 +38,7 @@ std::vector<fs::path> own_folders() {
   return folders;
 }
 
-/// Returns the file of a module; empty if there is none.
+/// Returns the file of a module; empty if it is absent.
 fs::path file_of(const char* module) {
   const std::string name = std::string(module) + ".so";
   std::error_code error;
@@ -58,20 +58,20 @@ fs::path file_of(const char* module) {
   return {};
 }
 
-/// Returns the handle of a module that is loaded; null if there is none. Throws Error.
+/// Returns the handle of a loaded module; null if its file is absent. Throws Error.
 void* load(const char* module) {
   const fs::path file = file_of(module);
   if (file.empty()) return nullptr;
-  // Never unloaded: the program holds functions of it.
+  // Never unloaded, because the program holds its functions.
   void* const handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (handle == nullptr) {
     throw Error("the module " + file.string() + " cannot be loaded: " + dlerror());
   }
   const auto* const version = static_cast<const char*>(dlsym(handle, "keepout_module_version"));
   if (version == nullptr || std::string_view(version) != KEEPOUT_VERSION) {
-    throw Error("the module " + file.string() + " is of " +
-                (version == nullptr ? "no keepout" : "keepout " + std::string(version)) +
-                ", and this is keepout " + KEEPOUT_VERSION + "; install both of one version");
+    throw Error("the module " + file.string() + " belongs to " +
+                (version == nullptr ? "no version of keepout" : "keepout " + std::string(version)) +
+                ", and this is keepout " + KEEPOUT_VERSION + "; install the same version of both");
   }
   return handle;
 }
@@ -86,7 +86,7 @@ const void* table_in_module(const char* module, const char* table) {
   const std::scoped_lock lock(mutex);
   const auto found = loaded.find(std::string_view(module));
   void* const handle = found == loaded.end() ? load(module) : found->second;
-  if (handle == nullptr) return nullptr;  // it may come: the folder is searched again next time
+  if (handle == nullptr) return nullptr;  // searched again next time, as it may be installed
   loaded.emplace(module, handle);
   return dlsym(handle, table);
 }

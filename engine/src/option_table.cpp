@@ -16,7 +16,7 @@ std::string digits_of(Number number) {
   std::array<char, 32> digits;  // the longest double has 24
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
   std::string text(digits.data(), end);
-  std::erase(text, '+');  // 1e15, and below 1e9
+  std::erase(text, '+');  // Exponents without a plus sign or leading zeros, such as 1e15.
   if (const std::size_t zero = text.find("e0"); zero != std::string::npos) text.erase(zero + 1, 1);
   return text;
 }
@@ -36,7 +36,7 @@ bool contains(const Range& range, double number) {
   return (number >= range.least && number <= range.most) || (range.has_zero && number == 0.0);
 }
 
-/// Reads a whole text as a number; false if it is none.
+/// Reads a whole text as a number. Returns false if it is not a number.
 template <class Number>
 bool read(const std::string& text, Number& number) {
   const char* const last = text.data() + text.size();
@@ -89,7 +89,7 @@ OptionValue OptionText::parsed(const std::string& text) const {
   std::int64_t whole = 0;
   if (kind == OptionKind::number && read(text, number)) value = number;
   if (kind == OptionKind::whole_number) {
-    constexpr double most = 9007199254740992.0;  // 2^53: above it, doubles leave numbers out
+    constexpr double most = 9007199254740992.0;  // 2^53: above it, doubles skip numbers
     const bool has_exponent = text.find_first_of("eE") != std::string::npos;
     if (read(text, whole)) value = whole;
     if (has_exponent && read(text, number) && number == std::floor(number) &&

@@ -14,16 +14,17 @@
 
 namespace keepout {
 
-/// As many threads as there are processors to run on.
+/// Returns the number of processors, at least 1.
 inline unsigned processors() noexcept { return std::max(1u, std::thread::hardware_concurrency()); }
 
-/// The number of threads to use where the caller asks for `wanted`, 0 being all there are.
+/// Returns the number of threads for a caller's option `wanted`, where 0 means one for each
+/// processor.
 inline unsigned thread_count(unsigned wanted) noexcept {
   return wanted != 0 ? wanted : processors();
 }
 
-/// What goes wrong in the blocks of a shared work. Of several failures the one of the lowest block
-/// counts, which is the one that a single thread would have met.
+/// The failures in the blocks of a shared task. The failure of the lowest block counts, because a
+/// single thread would have met that one.
 class BlockFailures {
  public:
   void add(std::size_t block) noexcept {
@@ -39,8 +40,8 @@ class BlockFailures {
     if (exception_) std::rethrow_exception(exception_);
   }
 
-  /// Lets the blocks pass one after the other: true when it is this one's turn; false if an earlier
-  /// one failed.
+  /// Waits for the turn of a block, as blocks pass in order. Returns true at its turn, and false if
+  /// an earlier block failed.
   bool await_turn(std::size_t block) noexcept {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return turn_ == block || first_ < block; });
@@ -61,21 +62,21 @@ class BlockFailures {
   std::exception_ptr exception_;
 };
 
-/// Runs work() on up to `threads` threads at once, this one among them. It must not throw.
+/// Runs work() on up to `threads` threads at once, including this one. work() must not throw.
 template <class Work>
 void on_threads(unsigned threads, const Work& work) {
   std::vector<std::jthread> others;
   try {
     while (others.size() + 1 < threads) others.emplace_back(work);
   } catch (const std::system_error&) {
-    // No more threads are to be had: those there are do it all.
+    // The system has no more threads, so the present ones do all the work.
   }
   work();
 }
 
-/// Works through blocks 0 to `blocks` - 1, handed out in this order. Each thread has a worker of
-/// its own, made by make_worker(), and calls work_on(worker, block, failures) as long as that is
-/// true. Throws what the lowest block threw that failed; later blocks may then have been left out.
+/// Processes blocks 0 to `blocks` - 1, handed out in this order. Each thread makes a worker with
+/// make_worker(), and calls work_on(worker, block, failures) until it returns false. Rethrows the
+/// exception of the lowest block that failed; later blocks may then be missing.
 template <class MakeWorker, class WorkOn>
 void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_worker,
                   const WorkOn& work_on) {
@@ -95,7 +96,7 @@ void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_w
   failures.rethrow();
 }
 
-/// The same for a worker that is called: worker(block).
+/// Like share_blocks(), for workers that are called as worker(block).
 template <class MakeWorker>
 void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_worker) {
   share_blocks(blocks, threads, make_worker, [](auto& worker, std::size_t block, BlockFailures&) {
@@ -104,8 +105,8 @@ void share_blocks(std::size_t blocks, unsigned threads, const MakeWorker& make_w
   });
 }
 
-/// Calls work(begin, end) for ranges that make up 0 to `size`, each of `share` items but for the
-/// last one. Throws what the lowest range threw that failed.
+/// Calls work(begin, end) for ranges that together are 0 to `size`. Each has `share` items, except
+/// the last. Rethrows the exception of the lowest range that failed.
 template <class Work>
 void share_ranges(std::size_t size, unsigned threads, std::size_t share, const Work& work) {
   share_blocks((size + share - 1) / share, threads, [&] {
@@ -113,7 +114,7 @@ void share_ranges(std::size_t size, unsigned threads, std::size_t share, const W
   });
 }
 
-/// How many of a mesh's vertices or triangles are worked on at a time.
+/// The number of a mesh's vertices or triangles in a block.
 constexpr std::size_t share_size = std::size_t{1} << 13;
 
 template <class Work>
@@ -121,8 +122,8 @@ void share_ranges(std::size_t size, unsigned threads, const Work& work) {
   share_ranges(size, threads, share_size, work);
 }
 
-/// Runs both, at the same time if `threads` > 1 and the system has a thread to give. Throws what
-/// the first threw, or else the other.
+/// Runs both functions, at the same time if `threads` > 1 and the system has a thread. Rethrows the
+/// exception of the first function, or else that of the second.
 template <class One, class Other>
 void run_both(unsigned threads, const One& one, const Other& other) {
   if (threads <= 1) {
@@ -134,9 +135,9 @@ void run_both(unsigned threads, const One& one, const Other& other) {
                [&] { return [&](std::size_t block) { block == 0 ? one() : other(); }; });
 }
 
-/// The same as share_blocks for a worker of three parts: prepare(block) and finish(block) run side
-/// by side with those of other blocks, commit(block) between them alone, and in the order of the
-/// blocks.
+/// Like share_blocks(), for workers of three parts. prepare(block) and finish(block) run in
+/// parallel with those of other blocks. commit(block) runs between them, one block at a time and in
+/// order.
 template <class MakeWorker>
 void share_blocks_in_order(std::size_t blocks, unsigned threads, const MakeWorker& make_worker) {
   share_blocks(blocks, threads, make_worker,

@@ -10,7 +10,7 @@
 namespace keepout {
 
 ReadOnlyFile::ReadOnlyFile(const std::filesystem::path& path) noexcept
-    // To open a pipe would wait for somebody to write.
+    // Without O_NONBLOCK, opening a pipe would wait for a writer.
     : descriptor_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   struct stat status;
   if (descriptor_ >= 0 && fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) {

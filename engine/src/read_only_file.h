@@ -7,8 +7,8 @@
 
 namespace keepout {
 
-/// A regular file, open for reading at any place by any number of threads. It is read and never
-/// mapped: one that is cut short meanwhile gives an error, not a signal.
+/// A regular file that any number of threads may read at any offset. It is read and never mapped,
+/// so a file that is truncated meanwhile gives an error, not a signal.
 class ReadOnlyFile {
  public:
   explicit ReadOnlyFile(const std::filesystem::path& path) noexcept;
@@ -18,10 +18,10 @@ class ReadOnlyFile {
 
   bool is_open() const noexcept { return descriptor_ >= 0; }
 
-  /// As it was when opened. [bytes]
+  /// Returns the size when the file was opened. [bytes]
   std::uint64_t size() const noexcept { return size_; }
 
-  /// Reads `size` bytes from `offset` on; false if they are not all to be had.
+  /// Reads `size` bytes from `offset` on. Returns false if the file has too few bytes.
   bool read(std::uint64_t offset, void* to, std::size_t size) const noexcept;
 
  private:

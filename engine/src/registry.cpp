@@ -8,10 +8,10 @@
 namespace keepout {
 namespace {
 
-// A shorter piece is in too many names.
+// A shorter piece is part of too many names.
 constexpr std::size_t shortest_piece = 3;
 
-/// What is alike looks alike.
+/// Returns a word in lower case with '-' for '_', so that similar words compare as equal.
 std::string folded(std::string_view word) {
   std::string text(word);
   for (char& letter : text) {
@@ -21,10 +21,10 @@ std::string folded(std::string_view word) {
   return text;
 }
 
-/// How many letters must be put in, left out, exchanged or swapped with their neighbor to turn one
+/// Returns the number of letters to insert, delete, replace or swap with a neighbor to turn one
 /// word into the other (optimal string alignment).
 std::size_t edit_distance(const std::string& a, const std::string& b) {
-  // Rows of the table: from the first i letters of `a` to the first j of `b`.
+  // Rows of the table: from the first i letters of `a` to the first j letters of `b`.
   std::vector<std::size_t> before_last(b.size() + 1);
   std::vector<std::size_t> last(b.size() + 1);
   std::vector<std::size_t> row(b.size() + 1);

@@ -12,7 +12,7 @@
 namespace keepout {
 namespace {
 
-/// A bit for each that can be chosen; the fastest is the lowest.
+/// Returns a bit for each target that can be chosen; the lowest is the fastest.
 std::uint64_t supported() noexcept {
   return static_cast<std::uint64_t>(hwy::SupportedTargets() & HWY_TARGETS);
 }
@@ -22,7 +22,7 @@ void choose(std::uint64_t targets) noexcept {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-/// All that there are, whatever was chosen.
+/// Returns a bit for each target of this processor, whatever was chosen.
 std::uint64_t all() noexcept {
   const auto chosen = static_cast<std::uint64_t>(hwy::SupportedTargets());
   hwy::SetSupportedTargetsForTest(0);
@@ -54,7 +54,8 @@ void use_simd_target(std::string_view name) {
     known += known.empty() ? "" : ", ";
     known += target;
   }
-  throw Error("there is no SIMD target '" + std::string(name) + "' here; there are " + known);
+  throw Error("there is no SIMD target '" + std::string(name) + "' on this processor; it has " +
+              known);
 }
 
 }  // namespace keepout

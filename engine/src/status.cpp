@@ -26,12 +26,13 @@ constexpr std::array outcomes{
             {"constraints limit the motion to the nearest one that they allow: `limits` names them",
              "constraints limit the motion to the nearest one that they allow: `limits` names them",
              never}},
-    Outcome{"recovering",
-            {"the tip was nearer than the margin, inside, or out of a guide's region: the motion "
-             "leads it back",
-             "a body was nearer than the margin, or a guide was out of its region: the motion "
-             "leads it back",
-             never}},
+    Outcome{
+        "recovering",
+        {"the tip was nearer than the margin, inside, or outside a guide's region: the motion "
+         "moves it back",
+         "a body was nearer than the margin, or a guided part was outside its region: the motion "
+         "moves it back",
+         never}},
     Outcome{"truncated",
             {"only a shorter motion could be proved: `limits` names what stops the rest",
              "only a shorter motion could be proved: `limits` names what stops the rest", never}},
@@ -39,7 +40,7 @@ constexpr std::array outcomes{
             {never,
              "a mesh approaches faster than the instrument can retreat: the motion is proved to "
              "maintain less than the certified clearance, see `clearance_fraction`; slow the mesh "
-             "down, or make room",
+             "down, or move the instrument away",
              never}},
     Outcome{"infeasible",
             {"no motion satisfies all planes and rows: the tip is nearer than the margin on "
@@ -72,7 +73,7 @@ constexpr std::array outcomes{
              "InstrumentCapacity::triangles or planes (max_triangles, max_planes in Python), or "
              "simplify the mesh",
              "more triangles or planes than the capacity holds: lower the radius of the polytope, "
-             "or raise Capacity::triangles or planes"}},
+             "or raise Capacity::triangles or planes (max_triangles, max_planes in Python)"}},
     Outcome{"unsolved",
             {"the search ended without a motion that could be proved: ask for a shorter motion, or "
              "one in another direction",
@@ -81,7 +82,7 @@ constexpr std::array outcomes{
              never}},
     Outcome{"inside",
             {"the tip is on the forbidden side, deeper than `deepest`, or a Jacobian, rows, a "
-             "guide or too small a `recovery` keep it from being led out: lead it out by hand, or "
+             "guide or too small a `recovery` prevent its escape: move it out by hand, or "
              "by steps without them; if it is outside, the mesh is wound inside out",
              "a body is on the forbidden side: move it out by hand; if it is outside, the mesh is "
              "wound inside out",
@@ -110,7 +111,7 @@ constexpr std::array outcomes{
              "motion, simplify the mesh, or raise InstrumentCapacity::work_units (max_work_units "
              "in Python)",
              "the work budget ended before the polytope was complete: lower the radius of the "
-             "polytope, or raise Capacity::work_units"}},
+             "polytope, or raise Capacity::work_units (max_work_units in Python)"}},
     Outcome{"unsupported",
             {never, never,
              "the rule guards a whole tool, and planes around its tip would not guard the rest: "

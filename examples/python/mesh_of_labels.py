@@ -11,6 +11,7 @@ and writes the space of the mesh (SPACE=LPS or SPACE=RAS). The normals point out
 
 import argparse
 import gzip
+import math
 import re
 import sys
 import zlib
@@ -32,6 +33,9 @@ NRRD_TYPES = {
     **dict.fromkeys(["ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"], "u2"),
     **dict.fromkeys(["int", "signed int", "int32", "int32_t"], "i4"),
     **dict.fromkeys(["uint", "unsigned int", "uint32", "uint32_t"], "u4"),
+    **dict.fromkeys(["longlong", "long long", "long long int", "int64", "int64_t"], "i8"),
+    **dict.fromkeys(["signed long long", "signed long long int"], "i8"),
+    **dict.fromkeys(["ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"], "u8"),
 }
 MILLIMETERS = {"meter": 1000.0, "mm": 1.0, "micron": 0.001, "unknown": 1.0}
 
@@ -61,8 +65,13 @@ def read_nifti(path):
     return np.asanyarray(image.dataobj), np.diag([scale, scale, scale, 1.0]) @ image.affine
 
 
-def vector(text):
-    return np.array([float(number) for number in text.strip("() ").split(",")])
+def vectors(fields, name, count):
+    """Returns the vectors of a field as columns (3, count)."""
+    try:
+        parts = re.findall(r"\(([^()]*)\)", fields[name])
+        return np.array([[float(number) for number in part.split(",")] for part in parts]).reshape(count, 3).T
+    except ValueError:
+        raise Unreadable(f"has '{name}: {fields[name]}', not {count} of three numbers in brackets") from None
 
 
 def read_nrrd(path):
@@ -88,9 +97,12 @@ def read_nrrd(path):
     units = set(re.findall(r'"(.*?)"', fields.get("space units", "")))
     if units - {"mm"}:
         raise Unreadable(f"has lengths in {', '.join(sorted(units))}; save it in mm")
-    if len(fields["sizes"].split()) != 3:
-        raise Unreadable(f"has {len(fields['sizes'].split())} axes, not 3; export it as one label map "
+    sizes = fields["sizes"].split()
+    if len(sizes) != 3:
+        raise Unreadable(f"has {len(sizes)} axes, not 3; export it as one label map "
                          "(3D Slicer: Segmentations, Export/import models and labelmaps)")  # fmt: skip
+    if not all(size.isascii() and size.isdecimal() for size in sizes):
+        raise Unreadable(f"has 'sizes: {fields['sizes']}', not three whole numbers")
     kind = NRRD_TYPES.get(fields["type"])
     if kind is None:
         raise Unreadable(f"has numbers of the type '{fields['type']}', not integers, so it is no label map")
@@ -106,13 +118,14 @@ def read_nrrd(path):
         data = gzip.decompress(data)
     elif fields["encoding"] != "raw":
         raise Unreadable(f"is encoded as '{fields['encoding']}'; save it as raw or gzip")
-    shape = [int(size) for size in fields["sizes"].split()]
+    shape = [int(size) for size in sizes]
+    needed = math.prod(shape) * int(kind[1])
+    if len(data) != needed:
+        raise Unreadable(f"has {len(data)} bytes for {' x '.join(sizes)} voxels, which take {needed}; copy it again")
     labels = np.frombuffer(data, (">" if fields.get("endian") == "big" else "<") + kind)
-    if labels.size != np.prod(shape):
-        raise Unreadable(f"has {labels.size} numbers for {' x '.join(map(str, shape))} voxels; copy it again")
     matrix = np.eye(4)
-    matrix[:3, :3] = np.column_stack([vector(part) for part in re.findall(r"\([^)]*\)", fields["space directions"])])
-    matrix[:3, 3] = vector(fields["space origin"])
+    matrix[:3, :3] = vectors(fields, "space directions", 3)
+    matrix[:3, 3:] = vectors(fields, "space origin", 1)
     return labels.reshape(shape, order="F"), NRRD_SPACES[fields["space"].lower()] @ matrix
 
 
@@ -121,10 +134,12 @@ def chosen_label(labels, label):
     if labels.dtype.kind not in "iuf" or not np.isfinite(labels).all():
         raise Unreadable(f"has voxels that are no labels ({labels.dtype.name}, or NaN)")
     present = np.unique(labels[labels != 0])
+    if len(present) == 0:
+        raise Unreadable("has no labels: all of its voxels are 0")
     if label is None and len(present) == 1:
         return present[0]
     if label is None or label not in present:
-        names = ", ".join(f"{number:g}" for number in present[:20]) or "none"
+        names = ", ".join(f"{number:g}" for number in present[:20])
         names += f" and {len(present) - 20} more" if len(present) > 20 else ""
         raise Unreadable(f"has the labels {names}; choose one of them with --label")
     return label
@@ -192,13 +207,18 @@ def main():
             raise Unreadable("has spacings, directions or an origin that place no voxels; save it again")
         label = chosen_label(labels, given.label)
         vertices, triangles = surface_of(labels, SPACES[given.space] @ matrix, label, given.smooth)
-        write_ply(given.mesh, vertices, triangles, [f"SPACE={given.space}", f"label {label:g}"])
     except ImportError as error:
         sys.exit(f"{error}: install python3-nibabel and python3-skimage")
     except (gzip.BadGzipFile, EOFError, zlib.error) as error:
         sys.exit(f"{given.labels}: is damaged ({error}); copy it again")
     except (Unreadable, OSError, OverflowError, ValueError) as error:
         sys.exit(f"{given.labels}: {error}")
+    except MemoryError:
+        sys.exit(f"{given.labels}: is larger than the memory of this machine; crop it to the label")
+    try:
+        write_ply(given.mesh, vertices, triangles, [f"SPACE={given.space}", f"label {label:g}"])
+    except OSError as error:
+        sys.exit(f"{given.mesh}: cannot be written ({error.strerror})")
     size = " x ".join(f"{length:.1f}" for length in np.ptp(vertices, axis=0))
     print(f"{given.mesh}: label {label:g}, {len(triangles)} triangles, {size} mm, in {given.space}")
 

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a library of collision detection offers: go as far as is free, and stop there.
+"""A rule from a library of collision detection: move until contact, and stop there.
 
-The motion is shortened to the share after which a ball of the margin's radius touches, and never
-turned. With a corridor, the desired motion is first brought into it. A tip that is in contact or
-deeper gets what the library says of it: FCL tells such a ball to be in collision from the start, so
-that it stays where it is for good; Bullet lets it go wherever it does not come nearer. How either
-is asked is in benchmarks/native/sweep.h.
+The motion is shortened to the fraction at which a ball of the margin's radius makes contact, and never turned. With a
+corridor, the desired motion is first projected into it. A tip in contact or deeper gets the library's answer. FCL
+reports a collision from the start, so the tip never moves again. Bullet allows motions that do not approach.
+benchmarks/native/sweep.h describes the queries.
 """
 from __future__ import annotations
 
@@ -19,20 +18,20 @@ from ..experiment import Array
 from .projection import corridor_planes, nearest_motion
 from .rule import Task
 
-#: Both need a ball; a margin of 0 is one of this radius. [mm]
+#: Both libraries need a ball; for a margin of 0 it has this radius. [mm]
 LEAST_RADIUS = 0.001
 
 
 @lru_cache(maxsize=2)
 def _model(library: str, mesh: keepout.Mesh, radius: float) -> Any:
-    """The mesh as a library has it, which takes long to build and serves all trials on it."""
+    """Returns the library's model of the mesh, which takes long to build and serves all trials on it."""
     import keepout_peers
 
     return getattr(keepout_peers, library)(mesh.vertices, mesh.triangles, radius)
 
 
 class StopAtContact:
-    """`library`: the function of keepout_peers that makes what tells when there is contact."""
+    """`library`: the name of the function of keepout_peers that makes the library's Sweep."""
 
     def __init__(self, task: Task, index: keepout.Index, library: str) -> None:
         self._corridor = task.corridor

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rules that keepout itself has: all faces, the paper's, and the certified one."""
+"""keepout's own rules: all faces, that of Li et al. (2020), and the certified one."""
 from __future__ import annotations
 
 import keepout
@@ -23,6 +23,6 @@ class KeepoutRule:
             self._guard.set_guides([keepout.Guide.point("corridor", slab)])
 
     def step(self, tip: Array, desired: Array) -> Array:
-        """Zero wherever keepout refuses the motion; a step's status says why."""
+        """Returns zero if keepout rejects the motion; the status of the step has the reason."""
         motion: Array = self._guard.step(tip, desired).motion
         return motion

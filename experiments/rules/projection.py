@@ -9,12 +9,12 @@ from scipy.optimize import nnls
 from ..experiment import Array
 from .rule import Corridor
 
-#: A half space of motions d: normal . d >= offset.
+#: A half-space of motions d: normal . d >= offset.
 Plane = tuple[Array, float]
 
 
 def nearest_motion(desired: Array, planes: list[Plane]) -> Array | None:
-    """The d nearest to `desired` with normal . d >= offset for each plane; None where there is none.
+    """Returns the d nearest to `desired` with normal . d >= offset for each plane, or None if there is no such d.
 
     Least distance programming (Lawson and Hanson, "Solving Least Squares Problems", 1974, chapter 23).
     """
@@ -34,12 +34,12 @@ def nearest_motion(desired: Array, planes: list[Plane]) -> Array | None:
 
 
 def corridor_planes(corridor: Corridor | None, tip: Array) -> list[Plane]:
-    """Those that keep a tip within the corridor, and lead it back without haste if it is outside."""
+    """Returns the planes that keep a tip within the corridor; a tip outside moves no farther out."""
     if corridor is None:
         return []
     normal = np.array(corridor.normal)
     beside = float(normal @ (tip - np.array(corridor.point)))
-    low = min(0.0, beside + corridor.half_width)  # outside already: it may stay, but not go farther
+    low = min(0.0, beside + corridor.half_width)  # outside already: it may stay, but not move farther out
     high = min(0.0, corridor.half_width - beside)
     return [
         (normal, -(beside + corridor.half_width) if low == 0.0 else 0.0),
@@ -48,10 +48,10 @@ def corridor_planes(corridor: Corridor | None, tip: Array) -> list[Plane]:
 
 
 def is_outside(hits: keepout.Hits, normals: Array) -> bool:
-    """Told by the sum of the normals of the triangles that have the nearest point; True without hits.
+    """Decides by the sum of the normals of the triangles that have the nearest point; True without hits.
 
-    That is the pseudonormal of Baerentzen and Aanaes (2005) but for the weights by angle, and as right
-    where the faces around the point do not turn by more than a right angle. A tip on the surface is outside.
+    This is the pseudonormal of Baerentzen and Aanaes (2005) without the weights by angle. It is as correct if the
+    faces around the point turn by no more than a right angle. A tip on the surface is outside.
     """
     if not len(hits):
         return True

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a rule is: it takes where the tip is and how it is to move, and says how it may."""
+"""The interface of a rule: from the tip and its desired motion, it returns the allowed motion."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import numpy as np
 from ..experiment import Array
 
 
-#: A tip nearer than the margin is led off it by so much in a cycle at the most, by each rule [mm].
+#: With each rule, a tip closer than the margin retreats by at most this in a cycle [mm].
 RECOVERY = 0.05
 
 
@@ -26,10 +26,10 @@ class Corridor:
 
 @dataclass(frozen=True)
 class Task:
-    """What a rule is to do: keep the tip, a ball of no size, `margin` [mm] off a mesh.
+    """The task of a rule: keep the tip, a point, `margin` [mm] away from a mesh.
 
-    `radius` [mm] is that of the motion sphere: no desired motion is longer. A corridor is kept
-    besides, if there is one.
+    `radius` [mm] is that of the motion sphere: no desired motion is longer. The tip must also stay in the corridor,
+    if there is one.
     """
 
     mesh: keepout.Mesh
@@ -39,8 +39,8 @@ class Task:
 
 
 class Rule(Protocol):
-    """One for each trial: a rule may remember what happened. Add one of your own here and in modes.py."""
+    """One for each trial: a rule may remember earlier cycles. Add your own here and in modes.py."""
 
     def step(self, tip: Array, desired: Array) -> Array:
-        """The allowed motion, (3,) in mm, for a tip at `tip` that is to move by `desired`."""
+        """Returns the allowed motion, (3,) in mm, for a tip at `tip` and a desired motion `desired`."""
         ...

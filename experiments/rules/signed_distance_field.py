@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is mostly used today: distances on a grid of voxels, and one plane from their gradient.
+"""The method that most systems use today: distances on a grid of voxels, and one plane from their gradient.
 
-The distance of each voxel is exact; what is between them is interpolated, and what is thinner than
-they are is lost. The rule is that of a single active constraint: the tip moves no farther towards
-the surface than the field says there is room (Bowyer, Davies, Rodriguez y Baena, "Active
-constraints/virtual fixtures: a survey", 2014; as a linear inequality Marinho et al., "Dynamic
-active constraints for surgical robots using vector-field inequalities", 2019).
+The distance at each voxel is exact; distances between voxels are interpolated, and anatomy thinner than a voxel is
+lost. The rule is that of a single active constraint: the tip moves towards the surface by no more than the field's
+distance. Sources: Bowyer, Davies, Rodriguez y Baena, "Active constraints/virtual fixtures: a survey", 2014; as a
+linear inequality Marinho et al., "Dynamic active constraints for surgical robots using vector-field inequalities",
+2019.
 """
 from __future__ import annotations
 
@@ -21,26 +21,26 @@ from ..sides import lattice_is_solid
 from .projection import Plane, corridor_planes, nearest_motion
 from .rule import RECOVERY, Task
 
-#: A grid has no more voxels: 800 MB of single precision.
+#: A grid has at most this many voxels: 800 MB in single precision.
 MOST_VOXELS = 200_000_000
 
-#: What is sampled around a mesh or a corridor [mm].
+#: The sampled border around a mesh or a corridor [mm].
 AROUND = 5.0
 
-#: How far a corridor is sampled from its point [mm].
+#: The distance up to which a corridor is sampled from its point [mm].
 FAR_ALONG = 40.0
 
 
 class VoxelGrid:
     """Signed distances [mm], negative in the solid, at the corners of cubes of `cell` mm.
 
-    Of an open mesh, which has no solid, the distances have no sign.
+    An open mesh has no solid, so its distances have no sign.
     """
 
     def __init__(
         self, mesh: keepout.Mesh, index: keepout.Index, cell: float, low: ArrayLike, high: ArrayLike
     ) -> None:
-        """Samples the box from `low` to `high`, (3,) each, which is rounded up to whole cells.
+        """Samples the box from `low` to `high`, (3,) each, rounded up to whole cells.
 
         Raises ValueError for a box that is empty or has more than MOST_VOXELS.
         """
@@ -60,16 +60,16 @@ class VoxelGrid:
         if self.is_signed:
             solid = lattice_is_solid(mesh, self.low, self.cell, shape)
             np.negative(self.values, out=self.values, where=solid)
-        self._flat = self.values.reshape(-1).data  # a memoryview gives plain floats, and at once
+        self._flat = self.values.reshape(-1).data  # a memoryview returns plain floats, which is fast
         self._strides = (shape[1] * shape[2], shape[2])
 
     @property
     def memory(self) -> int:
-        """In bytes."""
+        """The memory [bytes]."""
         return self.values.nbytes
 
     def look(self, x: float, y: float, z: float) -> tuple[float, float, float, float]:
-        """The interpolated distance, and its gradient; infinitely far outside of the grid."""
+        """Returns the interpolated distance and its gradient; infinity outside the grid."""
         cell, (low_x, low_y, low_z), shape = self.cell, self.low.tolist(), self.values.shape
         u, v, w = (x - low_x) / cell, (y - low_y) / cell, (z - low_z) / cell
         i, j, k = floor(u), floor(v), floor(w)
@@ -93,7 +93,7 @@ class VoxelGrid:
         )
 
     def distances(self, points: Array) -> Array:
-        """The interpolated distances of (n, 3) points."""
+        """Returns the interpolated distances of (n, 3) points."""
         return np.array([self.look(x, y, z)[0] for x, y, z in points.tolist()])
 
 
@@ -102,15 +102,15 @@ def shared_grid(
     index: keepout.Index, cell: float,
     low: tuple[float, float, float], high: tuple[float, float, float],
 ) -> VoxelGrid:
-    """That of an index, a cell and a box, made once in a process: trials share it."""
+    """Returns the grid of an index, a cell and a box; made once in a process, and shared by trials."""
     return VoxelGrid(index.mesh, index, cell, low, high)
 
 
 class SignedDistanceField:
     """The rule n . motion >= -(distance - margin), n along the gradient: a rule.Rule.
 
-    Outside of the grid every motion is free. Without a `grid` it is that of the whole mesh, or,
-    where there is a corridor, of this within FAR_ALONG of its point; both with AROUND more.
+    Outside the grid every motion is free. Without a `grid` argument, the grid covers the whole mesh. With a corridor,
+    it covers only the part of it within FAR_ALONG of its point. Both have a border of AROUND.
     """
 
     def __init__(
@@ -120,15 +120,15 @@ class SignedDistanceField:
         self.grid = grid or _grid_for(task, index, cell)
 
     def step(self, tip: Array, desired: Array) -> Array:
-        """No motion at all where the plane and the corridor exclude each other."""
+        """Returns zero motion if the plane and the corridor contradict each other."""
         x, y, z = tip.tolist()
         distance, n_x, n_y, n_z = self.grid.look(x, y, z)
         room = max(distance - self._task.margin, -RECOVERY)
         steep = sqrt(n_x * n_x + n_y * n_y + n_z * n_z)
         planes: list[Plane] = corridor_planes(self._task.corridor, tip)
-        if distance < inf and steep > 0.0:  # where the field is flat it says nothing
+        if distance < inf and steep > 0.0:  # a flat field gives no direction
             if not planes:
-                # One plane: what is missing is added along its normal.
+                # One plane: add the missing distance along its normal.
                 d_x, d_y, d_z = desired.tolist()
                 missing = -room - (n_x * d_x + n_y * d_y + n_z * d_z) / steep
                 if missing <= 0.0:

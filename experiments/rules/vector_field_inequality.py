@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A vector field inequality for the nearest point of the surface.
+"""A vector-field inequality for the nearest point of the surface.
 
-Marinho, Adorno, Harada, Mitsuishi, "Dynamic active constraints for surgical robots using vector
-field inequalities", IEEE T-RO 35, 2019. Taken from it: the distance d of the tip from an obstacle
-may fall no faster than -d' <= eta (d - d_safe), here with the static point of the surface that is
-nearest.
+Marinho, Adorno, Harada, Mitsuishi, "Dynamic active constraints for surgical robots using vector field inequalities",
+IEEE T-RO 35, 2019. From this article: the distance d of the tip from an obstacle may fall no faster than -d' <= eta
+(d - d_safe). Here the obstacle is the nearest static point of the surface.
 
-Our reading: a mesh is the obstacle by its one nearest point, with n = (tip - point) / d, and d_safe
-is the margin. Over a period T that is n . dx >= -eta T (d - d_safe); eta is 1 / T, the greatest for
-which the inequality keeps d from passing d_safe in one period, and the one that slows the tip
-least. Below d_safe the inequality asks for a motion outwards, as the article has it, by RECOVERY at
-the most. On the surface n is the normal of the face. A point has no inside, and a mesh has: below
-the surface d is negative and n turned round, as it is for the rules that it is compared with.
+Our reading: the nearest point of the mesh is the obstacle, with n = (tip - point) / d, and d_safe is the margin. Over
+a period T the inequality is n . dx >= -eta T (d - d_safe). eta is 1 / T. That is the greatest value with which d does
+not pass d_safe in one period, and it slows the tip least. Below d_safe the inequality requires a motion outwards, as
+in the article, of at most RECOVERY. On the surface n is the normal of the face. A point has no inside, but a mesh has
+one: below the surface d is negative and n is reversed, as for the other rules.
 """
 from __future__ import annotations
 
@@ -36,7 +34,7 @@ class VectorFieldInequality:
     def step(self, tip: Array, desired: Array) -> Array:
         margin, gain = self._task.margin, self.ETA_PERIOD
         planes: list[Plane] = corridor_planes(self._task.corridor, tip)
-        # Of a point that is farther off no desired motion violates the inequality.
+        # If the point is farther away, no desired motion violates the inequality.
         reach = margin + float(np.sqrt(desired @ desired)) / gain
         hits = self._index.hits(tip, reach)
         if len(hits):

@@ -26,9 +26,9 @@ void warn_of_coarse_index(const SpatialIndex& index, double kept, const Warn& wa
     std::snprintf(digits.data(), digits.size(), "%g", value);
     return std::string(digits.data());
   };
-  warn("the mesh is so large beside the distance kept that its index, which is off by up to " +
+  warn("the mesh is so large relative to the distance kept that its index, which is off by up to " +
        length(rounding) +
-       ", cannot tell which triangles are near: steps are as safe, but slow, and shorter where "
+       ", cannot distinguish the near triangles: steps are as safe, but slow, and shorter if "
        "that takes too long; keep more than " +
        length(32.0 * rounding) + ", or cut out the part of the mesh that matters");
 }

@@ -11,19 +11,19 @@
 
 namespace keepout {
 
-/// Who is told of what does no harm but should be known; may be empty.
+/// Receives warnings that do no harm; may be empty.
 using Warn = std::function<void(const std::string&)>;
 
-/// The index of that name, from the folder `cache` where it is kept there. Throws Error for a name
-/// that does not exist.
+/// Returns the index with a name, from the directory `cache` if it is stored there. Throws Error
+/// for an unknown name.
 std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
                                                        const std::string& name,
                                                        const std::filesystem::path& cache,
                                                        const Warn& warn);
 
-/// Where the rounding of the index's floats is no longer small beside the distance kept, it clears
-/// little, and most triangles in reach are asked about in double. `kept`: from the mesh to a tip,
-/// or to the core of the thinnest body. [length]
+/// Warns if the rounding of the index's floats is large beside the distance kept. The index then
+/// clears few triangles, and most of those in reach need double precision. `kept`: from the mesh to
+/// a tip, or to the core of the thinnest body. [length]
 void warn_of_coarse_index(const SpatialIndex& index, double kept, const Warn& warn);
 
 }  // namespace keepout

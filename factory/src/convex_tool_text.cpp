@@ -52,7 +52,7 @@ ConvexTool read(std::string_view kind, std::string_view rest) {
   }
   std::error_code trouble;
   const std::filesystem::path file(rest);
-  // Not a pipe, which would block.
+  // A pipe would block.
   if (std::filesystem::is_regular_file(file, trouble)) {
     return ConvexTool::hull(load_mesh(file, {.check = MeshCheck::none}).mesh->vertices());
   }

@@ -38,7 +38,7 @@ int link_of(std::string_view field) {
   throw Error(in_quotes(field) + " is not the number of a link");
 }
 
-/// The name before the sign, or the form, and the fields of the rest.
+/// The name before the sign, or else the form, and the fields of the rest.
 struct Named {
   std::string name;
   Fields fields;

@@ -13,7 +13,7 @@ namespace keepout {
 InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh,
                                                 Instrument instrument,
                                                 const InstrumentConstraintSettings& settings) {
-  if (!mesh) throw Error("an instrument constraint needs a mesh: none was given");
+  if (!mesh) throw Error("an instrument constraint needs a mesh, but it is null");
   auto index = make_or_load_index(mesh, settings.index, settings.index_cache, settings.warn);
   return make_instrument_constraint(std::move(mesh), std::move(index), std::move(instrument),
                                     settings);
@@ -23,13 +23,13 @@ InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh
                                                 std::shared_ptr<const SpatialIndex> index,
                                                 Instrument instrument,
                                                 const InstrumentConstraintSettings& settings) {
-  if (!mesh) throw Error("an instrument constraint needs a mesh: none was given");
+  if (!mesh) throw Error("an instrument constraint needs a mesh, but it is null");
   double thinnest = longest_length;
   for (const Body& body : instrument.bodies()) thinnest = std::min(thinnest, body.radius);
   InstrumentConstraint constraint(std::move(mesh), index, std::move(instrument),
                                   make_solver(settings.solver), settings.options,
                                   settings.capacity);
-  // Settings that are refused get no warning before.
+  // After the settings are accepted, so that rejected settings cause no warning.
   warn_of_coarse_index(*index, thinnest + settings.options.margin, settings.warn);
   return constraint;
 }

@@ -13,8 +13,8 @@
 namespace keepout {
 namespace {
 
-/// The rule of the settings' tool, or the one they name. Throws Error where they contradict each
-/// other.
+/// Returns the rule of the settings' tool, or the rule that they name. Throws Error if the settings
+/// contradict each other.
 std::unique_ptr<ActivationRule> make_rule(const MotionConstraintSettings& settings) {
 #if KEEPOUT_BALLS_ONLY
   if (settings.tool) throw Error("this build guards balls alone");
@@ -25,7 +25,7 @@ std::unique_ptr<ActivationRule> make_rule(const MotionConstraintSettings& settin
     throw Error("the narrow phase '" + settings.narrow_phase + "' is for a convex tool: give one");
   }
   if (settings.options.tool_radius != 0.0) {
-    throw Error("a convex tool takes the place of the ball: leave tool_radius at 0");
+    throw Error("a convex tool replaces the ball: leave tool_radius at 0");
   }
   if (settings.activation != "certified") {
     throw Error("a convex tool has a rule of its own: leave activation at 'certified', not '" +
@@ -45,7 +45,7 @@ std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mes
 
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings) {
-  if (!mesh) throw Error("a motion constraint needs a mesh: none was given");
+  if (!mesh) throw Error("a motion constraint needs a mesh, but it is null");
   auto index = make_or_load_index(mesh, settings);
   return make_motion_constraint(std::move(mesh), std::move(index), settings);
 }
@@ -53,12 +53,12 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         std::shared_ptr<const SpatialIndex> index,
                                         const MotionConstraintSettings& settings) {
-  // Only the certified rule of a ball knows sides: for others `inside` has no effect.
+  // Only the certified rule of a ball determines sides; for other rules `inside` has no effect.
   const bool rule_knows_sides = settings.activation == "certified" && !settings.tool;
   MotionConstraint constraint(std::move(mesh), index, make_rule(settings),
                               make_solver(settings.solver), settings.options, settings.capacity,
                               rule_knows_sides ? settings.inside : Inside::taken_as_is);
-  // Settings that are refused get no warning before.
+  // After the settings are accepted, so that rejected settings cause no warning.
   warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);
   return constraint;
 }

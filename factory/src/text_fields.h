@@ -10,25 +10,25 @@
 
 namespace keepout::text {
 
-// What tools and guides are told in: fields between colons, of names, numbers and points.
+// The text form of tools and guides: fields of names, numbers and points, separated by colons.
 
 using Fields = std::vector<std::string_view>;
 
-/// The parts of a text between the signs; one more than there are signs.
+/// Returns the parts of a text between the separators.
 Fields split(std::string_view text, char at);
 
-/// 'text'
+/// Returns 'text'.
 std::string in_quotes(std::string_view text);
 
-/// Returns why no form was recognized: the name is not known, or its number of fields is wrong.
-/// what: "form" or what else the message calls it.
+/// Returns why no form was recognized: the name is unknown, or its number of fields is wrong.
+/// `what`: "form", or another noun for the message.
 std::string misfit(std::string_view name, std::initializer_list<std::string_view> known,
                    const char* what);
 
-/// A finite number. Throws Error for anything else.
+/// Returns a finite number. Throws Error for any other text.
 double number(std::string_view field);
 
-/// Three numbers between commas. Throws Error for anything else.
+/// Returns three numbers, separated by commas. Throws Error for any other text.
 Vec3 point(std::string_view field);
 
 }  // namespace keepout::text

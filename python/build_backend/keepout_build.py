@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What pip calls (PEP 517): builds the module with CMake, and zips it into a wheel. Needs nothing
-from PyPI.
+"""The build backend that pip calls (PEP 517): builds the module with CMake and zips it into a wheel.
+Needs no package from PyPI.
 
 The build directory is build/python, or an existing one of the same Python that already holds most
 objects:
@@ -43,7 +43,7 @@ def metadata():
 
 
 def tag():
-    """Of the one Python and machine that the extension is for."""
+    """Returns the tag of the Python and the machine that the extension is built for."""
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
     platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
     return f"{python}-{python}-{platform}"
@@ -57,12 +57,12 @@ def run(*command):
     except subprocess.CalledProcessError as error:
         sys.exit(
             f"keepout: {command[0]} failed with status {error.returncode}: see above. What the build "
-            "needs is listed in cmake/debian_packages.txt: apt install what is missing of it"
+            "needs is listed in cmake/debian_packages.txt: apt install what is missing"
         )
 
 
 def configure(build):
-    # Ninja where there is one; CMake has a generator of its own otherwise.
+    # Prefer Ninja, which is faster.
     generator = ["-G", "Ninja"] if shutil.which("ninja") else []
     parts = ["APPS", "EXAMPLES", "TESTS", "BENCHMARKS"]
     run(
@@ -76,7 +76,7 @@ def configure(build):
 
 
 def build_package(settings, staging):
-    """The package, complete, below `staging`."""
+    """Builds the module and installs the complete package below `staging`."""
     given = (settings or {}).get("build-dir") or os.environ.get("KEEPOUT_BUILD_DIR")
     build = (root / given) if given else root / "build" / "python"
     if given and not (build / "CMakeCache.txt").exists():

@@ -7,11 +7,12 @@
     tip += step.motion                 # zero unless step.ok
 
     guard = keepout.InstrumentGuard(mesh, keepout.Instrument(chain, bodies), margin=0.5)
-    step = guard.step(q, linear=(0, 0, -0.1))    # of a whole instrument, in joint space
+    step = guard.step(q, linear=(0, 0, -0.1))    # a whole instrument, in joint space
     q += step.increment
 
-Lengths are in the unit of the mesh, usually mm, and everything is in its frame. Arguments are arrays
-or anything that numpy makes one of; what is wrong with one is said by keepout.Error.
+Lengths are in the unit of the mesh, usually mm. Tips, motions and planes are in the frame of the
+mesh. Array arguments may be arrays or anything that numpy converts to an array. keepout.Error
+explains an invalid argument.
 """
 
 from ._core import *  # noqa: F403
@@ -21,7 +22,7 @@ from ._results import Option, Part, Proofs, Simulation, Status, Steps
 
 __all__ = ["__version__", *(name for name in dir() if not name.startswith("_"))]
 
-# Where things are documented is where they are to be imported from.
+# help() must show the module from which users import a name.
 for _name in __all__:
     if _name != "__version__":
         globals()[_name].__module__ = "keepout"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Says which argument of a call does not fit, instead of pybind11's list of signatures."""
+"""Replaces pybind11's list of signatures by one sentence: which argument of a call does not fit."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class _Call:
         return None
 
     def misfit_of_values(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> str:
-        """Returns which value is of the wrong type. Precondition: misfit_of_names() is None."""
+        """Returns which value is of the wrong type. Precondition: misfit_of_names() found nothing."""
         values = dict(zip(self.positional, args)) | {k: v for k, v in kwargs.items() if k in self.types}
         for name, value in values.items():
             if misfit := _misfit(self.types[name], value, name):
@@ -149,6 +149,12 @@ def _is_list(value: Any) -> bool:
     return not isinstance(value, (str, bytes, dict)) and hasattr(value, "__len__") and hasattr(value, "__getitem__")
 
 
+def _may_be_number(value: Any) -> bool:
+    """Returns False for booleans, and for arrays of booleans or text: float() takes these, too."""
+    kind = getattr(getattr(value, "dtype", None), "kind", None)
+    return not isinstance(value, bool) and (not isinstance(kind, str) or kind in "fiu")
+
+
 def _fits(type_: ast.expr, value: Any) -> bool:
     """Returns False only for a value that pybind11 does not take for the type."""
     outer, inner = _parts(type_)
@@ -164,9 +170,10 @@ def _fits(type_: ast.expr, value: Any) -> bool:
         return _is_list(value) and all(_fits(inner[0], item) for item in value)
     text = ast.unparse(type_)
     if text == "float":
-        return not isinstance(value, (str, bytes)) and (hasattr(value, "__float__") or hasattr(value, "__index__"))
+        has_value = hasattr(value, "__float__") or hasattr(value, "__index__")
+        return has_value and not isinstance(value, (str, bytes)) and _may_be_number(value)
     if text == "int":
-        return hasattr(value, "__index__")
+        return hasattr(value, "__index__") and _may_be_number(value)
     if text == "str":
         return isinstance(value, (str, bytes))
     if text == "bool":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What the package needs for itself; all else is in __init__.pyi.
+# Only the names that the package uses itself; __init__.pyi has all others.
 class Error(ValueError): ...
 
 _status_names: tuple[str, ...]

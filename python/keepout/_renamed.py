@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Attributes under the names that they had before version 0.3; each access warns. To be removed in 0.4."""
+"""Attributes under their names before version 0.3; each access warns. Version 0.4 will remove them."""
 
 import warnings
 

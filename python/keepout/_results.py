@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How steps end, what batches write to, and what lists of parts hold."""
+"""Statuses, the results of batches, and the items of lists of parts and options."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 
 class Part(NamedTuple):
-    """An index, an activation rule or a solver that a motion constraint can be made of."""
+    """An index, an activation rule or a solver: a part that a motion constraint is made of."""
 
     name: str
     description: str
@@ -25,32 +25,32 @@ class Option(NamedTuple):
     type: str  # as in a stub
     default: float | int | bool | str
     unit: str  # empty if it has none
-    range: str  # the values that it may have, in words
-    choices: tuple[str, ...]  # the names that it may have; empty unless it has some
+    range: str  # the permitted values, in words
+    choices: tuple[str, ...]  # the permitted names; empty unless the option is a choice
     description: str
-    is_changeable: bool  # by set_options
+    is_changeable: bool  # True if set_options can change it
     command: str  # its name for the keepout command, without "--"; empty if it has none
 
 
 class Status(IntEnum):
-    """How a step ended. The first five come with a motion, which may be carried out and may be
-    zero; the others with zero motion."""
+    """The outcome of a step. The first five come with a motion that may be executed; it may be
+    zero. All others come with zero motion."""
 
-    free = 0  # no plane holds the motion back
+    free = 0  # no plane limits the motion
     limited = 1  # the motion is the best one that the planes allow
-    recovering = 2  # the tip was too close or inside: the motion leads it out
+    recovering = 2  # the tip was too close or inside: the motion retreats or escapes
     truncated = 3  # only a shorter motion could be proved
     degraded = 4  # a mesh approaches too fast to maintain the certified clearance
     infeasible = 5  # the constraints contradict each other
     ill_posed = 6  # the Jacobian lacks full column rank and there is no damping
     invalid_input = 7  # a number is not finite or out of range
-    beyond_reach = 8  # the motion asked for is longer than the motion sphere's radius
+    beyond_reach = 8  # the desired motion is longer than the radius of the motion sphere
     over_capacity = 9  # more triangles, planes, rows or joints than the capacity holds
     unsolved = 10  # the search ended without a motion that could be proved
-    inside = 11  # the tip or a body is on the forbidden side, and is not led out
+    inside = 11  # the tip or a body is on the forbidden side, and no escape is made
     touching = 12  # on the surface: the free side is unknown
     margin_too_small = 13  # the margin or band is lost in the rounding of lengths this large
-    mesh_changed = 14  # the index was refit to another mesh, which is not followed yet
+    mesh_changed = 14  # the index was refit to another mesh; call follow() first
     out_of_budget = 15  # the work budget of the cycle ended before a motion was proved
     unsupported = 16  # the rule cannot answer this query
 
@@ -62,34 +62,34 @@ class Status(IntEnum):
         return self.name
 
     def __format__(self, spec: str) -> str:
-        """The name; a number where a type of number is asked for, as in f"{status:d}"."""
+        """Returns the name, or the number for a numeric format such as f"{status:d}"."""
         return format(int(self), spec) if spec and spec[-1] in "bcdoxXn" else format(self.name, spec)
 
     @property
     def ok(self) -> bool:
-        """Whether a motion comes with it, which may be carried out."""
+        """True if the step has a motion that may be executed."""
         return self <= Status.degraded
 
     def reason_for(self, subject: str) -> str:
-        """Returns one line on what happened to a subject and what to do about it. `subject`: 'tip',
+        """Returns one line on what happened to a subject and what to do about it. subject: 'tip',
         'instrument' or 'polytope'."""
-        from . import _core  # which imports this file first
+        from . import _core  # which imports this file
 
         return _core._status_reason(self, subject)
 
 
 class _Batch:
-    """What the results of all batches have."""
+    """The members that the results of all batches have."""
 
     status: NDArray[np.uint8]
 
     @property
     def ok(self) -> NDArray[np.bool_]:
-        """In the shape of `status`: whether the motion may be carried out."""
+        """True where the motion may be executed, in the shape of `status`."""
         return self.status <= Status.degraded
 
     def counts(self) -> dict[Status, int]:
-        """How many steps ended with each status."""
+        """Returns how many steps ended with each status."""
         values, counts = np.unique(self.status, return_counts=True)
         return {Status(int(v)): int(n) for v, n in zip(values, counts)}
 
@@ -104,16 +104,16 @@ class _Batch:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Steps(_Batch):
-    """What the steps of n poses came to. Give one as `out` and a batch writes to its arrays: make it
-    with Steps.empty(n), or of arrays of your own, which must be C-contiguous and of these types."""
+    """The results of the steps of n poses. A batch writes into the arrays of a Steps given as
+    `out`. Make it with Steps.empty(n), or from your own arrays: C-contiguous, with these types."""
 
     motion: NDArray[np.float64]  # (n, 3): of the tip; zero unless ok [length]
-    status: NDArray[np.uint8]  # (n,): of Status, as numbers
-    planes: NDArray[np.uint32]  # (n,): how many planes were posed to the solver
+    status: NDArray[np.uint8]  # (n,): numbers of Status
+    planes: NDArray[np.uint32]  # (n,): the number of planes that the solver received
 
     @classmethod
     def empty(cls, poses: int) -> Steps:
-        """Room for that many poses."""
+        """Returns a Steps with memory for that many poses."""
         return cls(
             np.zeros((poses, 3)),
             np.full(poses, Status.invalid_input, np.uint8),
@@ -123,15 +123,16 @@ class Steps(_Batch):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Simulation(_Batch):
-    """Where the tips of m closed loops went. May be given as `out`, as Steps may."""
+    """The tip positions of m closed loops. May be given as `out`, like Steps."""
 
-    tips: NDArray[np.float64]  # (m, cycles + 1, 3): from the start to after the last cycle [length]
-    status: NDArray[np.uint8]  # (m, cycles): of Status, as numbers
-    planes: NDArray[np.uint32]  # (m, cycles): how many planes were posed to the solver
+    tips: NDArray[np.float64]  # (m, cycles + 1, 3): the start, and the tip after each cycle
+                               # [length]
+    status: NDArray[np.uint8]  # (m, cycles): numbers of Status
+    planes: NDArray[np.uint32]  # (m, cycles): the number of planes that the solver received
 
     @classmethod
     def empty(cls, loops: int, cycles: int) -> Simulation:
-        """Room for that many loops of that many cycles."""
+        """Returns a Simulation with memory for that many loops of that many cycles."""
         return cls(
             np.zeros((loops, cycles + 1, 3)),
             np.full((loops, cycles), Status.invalid_input, np.uint8),
@@ -141,24 +142,24 @@ class Simulation(_Batch):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Proofs(_Batch):
-    """How much of each of m motions of an instrument is certified."""
+    """The certified part of each of m motions of an instrument."""
 
-    status: NDArray[np.uint8]  # (m,): of Status, as numbers
-    fraction: NDArray[np.float64]  # (m,): proven is a motion from its start to here; 1 if all of it is
-    distance: NDArray[np.float64]  # (m,): of the body nearest as it starts [length]; NaN if unknown
+    status: NDArray[np.uint8]  # (m,): numbers of Status
+    fraction: NDArray[np.float64]  # (m,): the motion is proved from its start to this fraction
+    distance: NDArray[np.float64]  # (m,): of the nearest body at the start; NaN if unknown [length]
 
     @property
     def is_clear(self) -> NDArray[np.bool_]:
-        """(m,): whether the whole margin, less its band, is kept on all of a motion."""
+        """(m,): True where each body maintains margin minus band on the whole motion."""
         return (self.status == Status.free) & (self.fraction == 1.0)
 
 
 def room_for(
     kind: Any, size: tuple[int, ...], out: Any, inputs: tuple[NDArray[Any], ...]
 ) -> tuple[Any, ...]:
-    """`out`, or a new result of that kind and size when it is None, and its three arrays. Raises
-    Error unless each is of its type and shape, writeable, without gaps, and shares no memory with
-    another or with an input."""
+    """Returns `out`, or without one a new result of that kind and size, and its three arrays.
+    Raises Error unless each array has its type and shape, is writeable and C-contiguous, and shares
+    no memory with another array or an input."""
     from . import _core
 
     if out is None:

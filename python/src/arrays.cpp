@@ -20,7 +20,8 @@ bool fits(const py::array& array, const Expected& expected) {
       [](py::ssize_t wanted, py::ssize_t got) { return wanted == any || wanted == got; });
 }
 
-/// Whether it was a list or a tuple of three floats; no number is converted.
+/// Reads a list or a tuple of three floats. Returns false for any other object, as integers are not
+/// converted.
 bool read_floats(PyObject* object, Vec3& values) {
   if (!PyTuple_CheckExact(object) && !PyList_CheckExact(object)) return false;
   if (PySequence_Fast_GET_SIZE(object) != 3) return false;
@@ -32,9 +33,9 @@ bool read_floats(PyObject* object, Vec3& values) {
   return true;
 }
 
-/// A copy of three doubles from an array of them, whatever its stride.
+/// Copies three doubles from an array of any stride. Returns false for any other object.
 bool read_array(py::handle argument, Vec3& values) {
-  // Of no subclass, such as one with a mask.
+  // Rejects subclasses, such as masked arrays.
   if (Py_TYPE(argument.ptr()) != py::detail::npy_api::get().PyArray_Type_ ||
       !py::isinstance<py::array_t<double>>(argument)) {
     return false;
@@ -83,7 +84,7 @@ py::array numbers(py::handle argument, const Expected& expected) {
     if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
     refuse(expected.name, wanted, type_name(argument) + " of which numpy makes no array");
   }
-  // What is empty has no type of its own.
+  // An empty array has no type of its own.
   constexpr std::string_view kinds = "fiu";
   if (kinds.find(array.dtype().kind()) == std::string_view::npos && array.size() > 0) {
     refuse(expected.name, wanted, "an array of dtype " + dtype_text(array));
@@ -115,10 +116,11 @@ LinkPoint link_point(py::handle given, const std::string& name) {
   const auto pair = py::reinterpret_borrow<py::sequence>(given);
   if (py::len(pair) != 2) no_pair();
   const py::object link = pair[0];
-  if (!PyIndex_Check(link.ptr())) {
+  if (!PyIndex_Check(link.ptr()) || !may_be_number(link)) {
     refuse(name + "[0]", "the number of a link", type_name(link));
   }
-  const py::ssize_t number = PyNumber_AsSsize_t(link.ptr(), nullptr);  // clipped: refused later
+  const py::ssize_t number = PyNumber_AsSsize_t(link.ptr(), nullptr);  // clipped; the receiver
+                                                                       // rejects it
   return {static_cast<int>(std::clamp<py::ssize_t>(number, -1, 1000)),
           point(pair[1], name + "[1]")};
 }
@@ -140,7 +142,7 @@ Pose pose_of(const py::object& matrix, std::string_view name) {
   const Doubles numbers = doubles(matrix, {name, {4, 4}, "(4, 4)"});
   const Eigen::Map<const Matrix4> m(numbers.data());
   if (m.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    refuse(name, "a homogeneous matrix, whose last row is 0, 0, 0, 1", "another last row");
+    refuse(name, "a homogeneous matrix with the last row 0, 0, 0, 1", "another last row");
   }
   return {m.topRightCorner<3, 1>(), m.topLeftCorner<3, 3>()};
 }

@@ -28,7 +28,7 @@ unsigned usable_processors() noexcept {
   return std::max(1U, std::thread::hardware_concurrency());
 }
 
-/// Only Python's main thread hears of signals; elsewhere nothing is ever pending.
+/// Throws if the user has interrupted. Only Python's main thread receives signals.
 void require_no_signal() {
   const py::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -62,13 +62,13 @@ void run_batch(std::size_t items, std::size_t chunk, unsigned threads, const Wor
       throw;
     }
   };
-  std::vector<std::future<void>> crew;  // each waits for its thread to end when it is destroyed
+  std::vector<std::future<void>> crew;  // each waits for its thread when it is destroyed
   try {
     while (crew.size() < threads) {
       crew.push_back(std::async(std::launch::async, labour, static_cast<unsigned>(crew.size())));
     }
   } catch (const std::system_error&) {
-    if (crew.empty()) throw;  // else those that there are do it all
+    if (crew.empty()) throw;  // the threads that exist do all the work
   }
   try {
     for (std::future<void>& worker : crew) {

@@ -23,22 +23,21 @@ namespace keepout::python {
 
 namespace py = pybind11;
 
-/// A mesh as Python holds it: with what its file had to say, and normals once they are asked for.
+/// A mesh as Python holds it: with the messages on its file, and the normals after their first use.
 struct MeshHandle : LoadedMesh {
-  std::vector<Vec3> normals = {};  // one for each triangle, or none yet
+  std::vector<Vec3> normals = {};  // one for each triangle; empty before their first use
 };
 
-/// The mesh of a keepout.Mesh. Throws Error for anything else.
+/// Returns the mesh of a keepout.Mesh. Throws Error for any other object.
 const std::shared_ptr<const Mesh>& mesh_of(const py::object& mesh);
 
-/// An index and the mesh it is built on, shared by all that use it.
+/// An index and its mesh, which all users share.
 struct IndexHandle {
-  /// `on`: a keepout.Mesh. Builds the index of the name `part`, without Python's lock. `cache`: a
-  /// folder for built indices, if they are to be kept. Throws Error where mesh_of does.
+  /// Builds the index named `part` on a keepout.Mesh, without Python's lock. `cache`: a directory
+  /// that keeps built indices, or empty. Throws Error like mesh_of().
   IndexHandle(py::object on, std::string part, const std::optional<std::filesystem::path>& cache);
-  /// The index of the same name on a keepout.Mesh whose vertices have moved, made from `before`
-  /// where that is faster than a build. Throws Error where mesh_of does, and if the triangles
-  /// differ.
+  /// Makes an index of the same type on a keepout.Mesh whose vertices have moved. Uses `before` if
+  /// that is faster than a build. Throws Error like mesh_of(), and if the triangles differ.
   IndexHandle(py::object moved, const IndexHandle& before);
 
   const py::object mesh_object;
@@ -47,24 +46,24 @@ struct IndexHandle {
   const std::shared_ptr<const SpatialIndex> index;
 };
 
-/// `index` if it is a keepout.Index of this mesh, or one of that name made for the caller: see
-/// IndexHandle. Throws Error for anything else.
+/// Returns `index` if it is a keepout.Index of this mesh, or a new index if it is a name: see
+/// IndexHandle. Throws Error for any other object.
 std::shared_ptr<IndexHandle> index_from(const py::object& mesh, const py::object& index,
                                         const std::optional<std::filesystem::path>& cache);
 
-/// Returns the guides of a list or tuple of keepout.Guide and texts. Throws Error for anything
-/// else.
+/// Returns the guides of a list or tuple of keepout.Guide and texts. Throws Error for any other
+/// object.
 std::vector<Guide> guides_from(const py::object& given);
 
-/// The member of keepout.Status.
+/// Returns the member of keepout.Status.
 py::object status_object(Status status);
 
-/// Half-spaces that outlive the step they are of.
+/// Half-spaces that outlive their step.
 struct Planes {
   std::vector<HalfSpace> planes;
 };
 
-/// A free polytope, and whether it is one.
+/// The result of a query for a free polytope.
 struct FreeSpace : Planes {
   Status status = Status::invalid_input;
 
@@ -83,7 +82,7 @@ struct StepResult : Step {
 /// Returns the names of all limits in a set.
 py::tuple names_of(Limits limits);
 
-/// Adds how a result ended: `status` and `reason`.
+/// Adds the properties `status` and `reason` of a result.
 template <class Class>
 void bind_ending(Class& type, const char* status_doc) {
   using Result = typename Class::type;
@@ -98,20 +97,20 @@ void bind_ending(Class& type, const char* status_doc) {
 template <class Class>
 void bind_step_result(Class& type, const char* ok_doc) {
   using Result = typename Class::type;
-  bind_ending(type, "How the step ended: a Status.");
+  bind_ending(type, "The outcome of the step: a Status.");
   type.def_property_readonly(
           "ok", [](const Result& self) { return self.ok(); }, ok_doc)
       .def_property_readonly(
           "increment",
           [](const py::object& self) { return view(self.cast<const Result&>().increment, self); },
-          "(n,) float64 [rad or length]: of the joints, or of the tip of a MotionConstraint "
-          "without a\n"
-          "Jacobian. Unless ok: zeros of an instrument, empty of a tip.")
+          "(n,) float64: the increment of the joints, or of the tip of a MotionConstraint\n"
+          "without a Jacobian [rad or length]. Unless ok: zeros for an instrument, empty for a\n"
+          "tip.")
       .def_readonly("guides", &Result::guides,
                     "The state of each guide, in the order of set_guides: a list of GuideState.")
       .def_property_readonly(
           "relaxation", [](const Result& self) { return name(self.relaxation); },
-          "What was relaxed because not all constraints could be met: 'none', 'guides' or\n"
+          "The constraints that were relaxed because not all could be met: 'none', 'guides' or\n"
           "'recovery'.")
       .def_property_readonly(
           "limits", [](const Result& self) { return names_of(self.limits); },
@@ -119,7 +118,7 @@ void bind_step_result(Class& type, const char* ok_doc) {
           "'mesh' or 'joint_velocity'.");
 }
 
-// Each adds one concept to the module; the order matters where one is an argument of the next.
+// Each function adds one concept to the module. A type must be bound before functions that take it.
 void bind_status(py::module_& module);
 void bind_inspection(py::module_& module);
 void bind_mesh(py::module_& module);
@@ -136,7 +135,7 @@ void bind_instrument_guard(py::module_& module);
 void bind_instrument_results(py::module_& module);
 void bind_registration(py::module_& module);
 
-/// Makes the errors of calls that fit no signature say which argument is wrong. To be called last.
+/// Makes the errors of calls that fit no signature name the wrong argument. Must be called last.
 void explain_call_errors(py::module_& module);
 
 }  // namespace keepout::python

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// pybind11 answers a call that fits no signature with all signatures and all arguments. Each
-// function of the module is called through explained(), which replaces that message.
+// pybind11 answers a call that fits no signature with a list of all signatures and all arguments.
+// explained() wraps each function of the module and replaces that message.
 #include <pybind11/pybind11.h>
 
 #include "bindings.h"
@@ -9,9 +9,9 @@
 namespace keepout::python {
 namespace {
 
-PyCFunctionWithKeywords pybind_call = nullptr;  // of all functions that pybind11 has made
+PyCFunctionWithKeywords pybind_call = nullptr;  // of all functions of pybind11
 
-/// Replaces the message of the TypeError that is set, if it is pybind11's: see _call_errors.py.
+/// Replaces the message of the current TypeError if it is pybind11's: see _call_errors.py.
 void explain(PyObject* args, PyObject* kwargs) {
   py::error_already_set error;  // fetches it
   try {
@@ -24,13 +24,13 @@ void explain(PyObject* args, PyObject* kwargs) {
       return;
     }
   } catch (const py::error_already_set&) {
-    // The message of pybind11 is better than none.
+    // Keep the message of pybind11.
   }
   error.restore();
 }
 
-/// Returns true if an object of our classes lacks its value, because no constructor was called.
-/// pybind11 would make one of uninitialized memory.
+/// Returns true if an object of the module has no value, because no constructor was called.
+/// pybind11 would create one from uninitialized memory.
 bool lacks_its_value(PyObject* object) {
   auto* const base = reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base);
   if (!PyObject_TypeCheck(object, base)) return false;
@@ -55,7 +55,7 @@ PyObject* explained(PyObject* self, PyObject* args, PyObject* kwargs) {
   return result;
 }
 
-/// Calls a function, or those of a property, through explained(), if pybind11 has made it.
+/// Wraps a function of pybind11, or the functions of a property, with explained().
 void explain_errors_of(py::handle member) {
   if (PyObject_TypeCheck(member.ptr(), &PyProperty_Type)) {
     for (const char* const part : {"fget", "fset"}) explain_errors_of(member.attr(part));

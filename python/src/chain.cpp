@@ -22,7 +22,7 @@
 namespace keepout::python {
 namespace {
 
-/// One of two values, by name. Throws Error, naming the argument, for another name.
+/// Returns one of two values by its name. Throws Error with the argument for another name.
 template <class Enum>
 Enum named(std::string_view argument, const std::string& given,
            const std::array<std::pair<std::string, Enum>, 2>& names) {
@@ -51,7 +51,7 @@ const char* kind_name(const Joint& joint) {
   return joint.kind == JointKind::revolute ? "revolute" : "prismatic";
 }
 
-/// Where the flange is at each row of q; of what is not finite, nowhere.
+/// Returns the pose of the flange for each row of q; NaN if a number is not finite.
 py::array_t<double> forward_kinematics(const Chain& chain, const py::object& positions) {
   const auto n = static_cast<py::ssize_t>(chain.size());
   const std::string width = std::to_string(n);
@@ -93,30 +93,35 @@ Chain chain_of_file(const std::filesystem::path& path, const std::string& base,
 #else
 Chain chain_of_file(const std::filesystem::path&, const std::string&, const std::string&, double) {
   throw Error(
-      "read_chain: this build reads no URDF; install liburdfdom-dev and liburdfdom-headers-dev, "
-      "and build the module anew, or write the chain down with Chain or chain_of_table");
+      "read_chain: this build cannot read URDF; install liburdfdom-dev and liburdfdom-headers-dev, "
+      "and rebuild the module, or define the chain with Chain or chain_of_table");
 }
 #endif
 
 constexpr const char* joint_doc =
-    R"(One joint of a chain, and the fixed way to it from the one before.
+    R"(A joint of a chain, and its fixed transform from the link before it.
 
-name: for messages. kind: 'revolute' turns what is beyond it about the axis [rad], 'prismatic' moves
-it along the axis [length]. origin: (4, 4), the joint's frame in that of the link before it; None is
-the identity. axis: (3,), unit, in the joint's frame; None is z. lower, upper: of its position;
-velocity: per second, above 0; increment: in a cycle, above 0. None: no limit.)";
+name: for messages.
+kind: 'revolute' turns the links beyond it about the axis [rad]; 'prismatic' moves them along the
+axis [length].
+origin: (4, 4), the joint's frame in the frame of the link before it; None is the identity.
+axis: (3,), a unit vector in the joint's frame; None is z.
+lower, upper: limits of its position; None: no limit.
+velocity: limit per second, above 0; None: no limit.
+increment: limit per cycle, above 0; None: no limit.)";
 
 constexpr const char* row_doc =
-    R"(One row of a table after Denavit and Hartenberg: a along x [length], alpha about x [rad], d along z
-[length], theta about z [rad]. The joint's position is added to theta where it is revolute, to d
-where it is prismatic. The rest is as in Joint.)";
+    R"(A row of a Denavit-Hartenberg table: a along x [length], alpha about x [rad], d along z
+[length], theta about z [rad]. The joint position is added to theta of a revolute joint, or to d of
+a prismatic one. The other arguments are as in Joint.)";
 
 constexpr const char* chain_doc =
-    R"(A serial chain of revolute and prismatic joints: what carries an instrument. Link 0 is the base,
-link k the one that joint k moves, counted from 1; frames are those of URDF.
+    R"(A serial chain of revolute and prismatic joints that carries an instrument. Link 0 is the
+base; joint k moves link k, counted from 1. Frames are those of URDF.
 
-joints: 1 to 8 of Joint, from the base on. base: (4, 4), where link 0 is, in the frame of the mesh.
-flange: (4, 4), the frame that is steered, in that of the last link. None is the identity.)";
+joints: 1 to 8 of Joint, from the base on.
+base: (4, 4), the pose of link 0 in the frame of the mesh; None is the identity.
+flange: (4, 4), the frame that a step moves, in the frame of the last link; None is the identity.)";
 
 void bind_joints(py::module_& module) {
   py::class_<Joint>(module, "Joint", joint_doc)
@@ -135,16 +140,16 @@ void bind_joints(py::module_& module) {
       .def_property_readonly("kind", &kind_name, "'revolute' or 'prismatic'.")
       .def_property_readonly(
           "lower", [](const Joint& self) { return self.limits.lower; },
-          "Least position [rad or length]; -inf where there is no limit.")
+          "Lower limit of the position [rad or length]; -inf without a limit.")
       .def_property_readonly(
           "upper", [](const Joint& self) { return self.limits.upper; },
-          "Largest position [rad or length]; inf where there is no limit.")
+          "Upper limit of the position [rad or length]; inf without a limit.")
       .def_property_readonly(
           "velocity", [](const Joint& self) { return self.limits.velocity; },
-          "[rad/s or length/s]; inf where there is no limit.")
+          "Limit of the velocity [rad/s or length/s]; inf without a limit.")
       .def_property_readonly(
           "increment", [](const Joint& self) { return self.limits.increment; },
-          "In a cycle [rad or length]; inf where there is no limit.")
+          "Limit of the increment of a cycle [rad or length]; inf without a limit.")
       .def("__repr__", [](const Joint& self) {
         return py::str("<keepout.Joint '{}', {}>").format(self.name, kind_name(self));
       });
@@ -179,8 +184,9 @@ void bind_chain(py::module_& module) {
           py::arg("joints"), py::kw_only(), py::arg("base") = py::none(),
           py::arg("flange") = py::none())
       .def("forward_kinematics", &forward_kinematics, py::arg("q"),
-           "Where the flange is, in the frame of the mesh: (4, 4) for joint positions (n,), or\n"
-           "(m, 4, 4) for (m, n) [rad or length]; NaN for numbers that are not finite.")
+           "Returns the pose of the flange in the frame of the mesh: (4, 4) for joint positions\n"
+           "(n,), or (m, 4, 4) for (m, n) [rad or length]. The pose is NaN if a position is not\n"
+           "finite.")
       .def_property_readonly(
           "joints",
           [](const Chain& self) {
@@ -188,13 +194,13 @@ void bind_chain(py::module_& module) {
             for (int k = 1; k <= self.size(); ++k) joints.push_back(self.joint(k));
             return joints;
           },
-          "A list of Joint, from the base on.")
+          "The joints from the base on: a list of Joint.")
       .def_property_readonly(
           "base", [](const Chain& self) { return matrix_of(self.base()); },
-          "(4, 4) float64: where link 0 is, in the frame of the mesh.")
+          "(4, 4) float64: the pose of link 0 in the frame of the mesh.")
       .def_property_readonly(
           "flange", [](const Chain& self) { return matrix_of(self.flange()); },
-          "(4, 4) float64: the frame that is steered, in that of the last link.")
+          "(4, 4) float64: the frame that a step moves, in the frame of the last link.")
       .def("__len__", &Chain::size)
       .def("__repr__", [](const Chain& self) {
         return py::str("<keepout.Chain of {} joints>").format(self.size());
@@ -204,16 +210,22 @@ void bind_chain(py::module_& module) {
       "chain_of_table", &chain_of_table, py::arg("rows"), py::kw_only(),
       py::arg("convention") = "modified", py::arg("base") = py::none(),
       py::arg("flange") = py::none(),
-      "A Chain of a list of TableRow. convention: 'modified' (Craig: about x, along x, about "
-      "z,\nalong z) or 'standard' (about z, along z, along x, about x). base: as in Chain. "
-      "flange:\n(4, 4), in the last frame of the table.");
-  module.def(
-      "read_chain", &chain_of_file, py::arg("path"), py::kw_only(), py::arg("base") = "",
-      py::arg("tip") = "", py::arg("scale") = 1000.0,
-      "A Chain out of a robot's description in URDF, from link `base` to link `tip`, which is its\n"
-      "flange. Empty: the root, and the only leaf below it. scale: a meter in the mesh's unit.\n"
-      "Link 0 is at the mesh's origin; Chain(chain.joints, base=..., flange=chain.flange) puts it\n"
-      "elsewhere. Raises Error where this build reads no URDF.");
+      "Returns a Chain from a list of TableRow.\n"
+      "\n"
+      "convention: 'modified' (Craig: about x, along x, about z, along z) or 'standard' (about\n"
+      "z, along z, along x, about x).\n"
+      "base: as in Chain.\n"
+      "flange: (4, 4), in the last frame of the table; None is the identity.");
+  module.def("read_chain", &chain_of_file, py::arg("path"), py::kw_only(), py::arg("base") = "",
+             py::arg("tip") = "", py::arg("scale") = 1000.0,
+             "Reads a Chain from a URDF file. Raises Error if this build cannot read URDF.\n"
+             "\n"
+             "base: the first link; empty for the root.\n"
+             "tip: the link of the flange; empty for the only leaf below `base`.\n"
+             "scale: a meter in the unit of the mesh.\n"
+             "\n"
+             "Link 0 is at the origin of the mesh. To move it, make Chain(chain.joints, base=...,\n"
+             "flange=chain.flange).");
 }
 
 }  // namespace keepout::python

@@ -9,10 +9,10 @@
 namespace keepout::python {
 namespace {
 
-/// Column by column.
+/// Column-major.
 using Jacobian = py::array_t<double, py::array::f_style | py::array::forcecast>;
 
-// Of points (n, 3), or of one (3,) that stands for as many as are asked for.
+// Functions on points (n, 3), or on one point (3,) that serves all.
 
 py::ssize_t count_of(const Doubles& points) { return points.ndim() == 1 ? 1 : points.shape(0); }
 
@@ -20,7 +20,7 @@ Vec3 point_of(const Doubles& points, std::size_t i) {
   return row(points.data(), count_of(points) == 1 ? 0 : i);
 }
 
-/// The increment, shortened to at most `longest`: as the keepout command does. [length]
+/// Returns the increment, shortened to at most `longest`, as the keepout command does. [length]
 Vec3 clipped(const Vec3& increment, double longest) {
   const double length = increment.norm();
   return length > longest ? Vec3(increment * (longest / length)) : increment;
@@ -33,19 +33,19 @@ void require_max_step(double max_step, double radius) {
   }
 }
 
-/// Where a batch writes. The pointers are into arrays that `room` holds.
+/// The arrays that a batch writes to. `room` keeps the memory of the pointers alive.
 struct StepColumns {
   py::tuple room;
   double* points;  // motions (count, 3); of a simulation, the tips (loops, cycles + 1, 3)
   std::uint8_t* status;
   std::uint32_t* planes;
 
-  /// A keepout.Steps or keepout.Simulation.
+  /// Returns the keepout.Steps or keepout.Simulation.
   py::object result() const { return room[0]; }
 };
 
-/// The columns of `out`, or of a new one of that type and size when it is None: see room_for in
-/// _results.py, which throws Error for what cannot be written to.
+/// Returns the columns of `out`; for None, of a new result of that type and size. See room_for in
+/// _results.py, which throws Error for arrays that cannot be written to.
 StepColumns columns(const char* type, const py::tuple& size, const py::object& out,
                     const py::tuple& inputs) {
   const py::module_ results = py::module_::import("keepout._results");
@@ -55,9 +55,8 @@ StepColumns columns(const char* type, const py::tuple& size, const py::object& o
           static_cast<std::uint32_t*>(memory(3))};
 }
 
-/// What there is to know of a step in a batch, but for its motion. How many triangles it rests on
-/// is left out: a rule that searches an index has that depend on where it searched before, and so
-/// on which worker did the pose.
+/// Writes the result of a step in a batch, except the motion. Leaves out Step::triangles: with a
+/// rule that uses the index's traversal it depends on the last trials, and so on the worker.
 void write(const StepColumns& columns, std::size_t i, const Step& step) {
   columns.status[i] = static_cast<std::uint8_t>(step.status);
   columns.planes[i] = static_cast<std::uint32_t>(step.planes.size());
@@ -67,7 +66,7 @@ void write(double* points, std::size_t i, const Vec3& point) {
   std::copy_n(point.data(), 3, points + 3 * i);
 }
 
-/// One loop: the tip follows the hand as far as the steps lead.
+/// Runs one loop: the tip follows the commanded positions as far as the steps allow.
 void run_loop(MotionConstraint& constraint, Vec3 tip, const double* hand, std::size_t loop,
               std::size_t cycles, double max_step, const StepColumns& to,
               const std::stop_token& stop) {
@@ -158,7 +157,7 @@ py::object Guard::steps(const py::object& tips, const py::object& desired,
   const StepColumns to = columns("Steps", py::make_tuple(count), out, py::make_tuple(from, wanted));
   do_each(poses, 64, threads_for(poses, threads),
           [&](MotionConstraint& constraint, std::size_t i, const std::stop_token&) {
-            // Or the answer would depend on which pose this worker did before.
+            // The result must not depend on the worker's previous pose.
             constraint.forget();
             const Step step =
                 constraint.step({.tip = point_of(from, i), .desired = point_of(wanted, i)});
@@ -176,7 +175,7 @@ py::object Guard::replay(const py::object& poses, bool closed_loop, double max_s
   const StepColumns to =
       columns("Steps", py::make_tuple(lines.shape(0)), out, py::make_tuple(lines));
   const double* const data = lines.data();
-  // One item on one thread, whatever the number of processors: each step may depend on the last.
+  // One item on one thread: each step may depend on the last.
   do_each(1, 1, 1, [&](MotionConstraint& constraint, std::size_t, const std::stop_token& stop) {
     constraint.forget();
     Vec3 tip = count > 0 ? row(data, 1) : Vec3::Zero();

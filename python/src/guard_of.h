@@ -17,14 +17,14 @@
 
 namespace keepout::python {
 
-/// A constraint as Python holds it: one for its own steps, and one for each worker of its batches.
-/// All share meshes and indices. A batch changes nothing for the steps.
+/// A constraint as Python holds it: one for single steps, and one for each worker of a batch. All
+/// share meshes and indices. Batches do not affect the single steps.
 template <class Constraint, class Settings>
 class GuardOf {
  public:
   virtual ~GuardOf() = default;
 
-  // As in Python: see bind_guard.
+  // The methods of the Python class: see bind_guard.
   void forget() {
     const InUse in_use(constraint_in_use_);
     constraint_.forget();
@@ -52,18 +52,18 @@ class GuardOf {
     settings_.options = options;
   }
 
-  /// Of the first mesh.
+  /// Returns the index of the first mesh.
   const std::shared_ptr<IndexHandle>& index() const noexcept { return meshes_.front().index; }
   const Settings& settings() const noexcept { return settings_; }
 
  protected:
-  /// A mesh, and its own margin, or 0.
+  /// A mesh and its own margin, or 0 for that of the guard.
   struct KeptMesh {
     std::shared_ptr<IndexHandle> index;
     double margin;
   };
 
-  /// `make()` makes the constraint for single steps. Called without Python's lock.
+  /// `make()` makes the constraint for single steps. It runs without Python's lock.
   template <class Make>
   GuardOf(std::shared_ptr<IndexHandle> index, Settings settings, const Make& make)
       : meshes_{{std::move(index), 0.0}}, settings_(std::move(settings)), constraint_([&] {
@@ -71,7 +71,8 @@ class GuardOf {
           return make(meshes_.front().index, settings_);
         }()) {}
 
-  /// Makes a constraint for a worker, with all meshes but without guides. Without Python's lock.
+  /// Makes a constraint for a worker, with all meshes but without guides. Runs without Python's
+  /// lock.
   virtual Constraint made_anew() const = 0;
 
   /// See Workers.
@@ -85,7 +86,7 @@ class GuardOf {
     workers_.do_each(items, chunk, threads, make, item);
   }
 
-  /// Replaces a mesh by that of an index; `follow()` tells the constraint.
+  /// Replaces a mesh by that of an index; `follow()` makes the constraint follow it.
   template <class Follow>
   void replace_mesh(std::size_t mesh, std::shared_ptr<IndexHandle> index, const Follow& follow) {
     if (!index) refuse("index", "a keepout.Index", "None");
@@ -107,7 +108,7 @@ class GuardOf {
   Workers<Constraint> workers_;
 };
 
-/// Returns the docstring of a class, with a paragraph for each option.
+/// Returns the docstring of a class: the summary, and a line for each option.
 template <class Settings>
 std::string documented(const char* summary) {
   std::string text = summary;
@@ -117,21 +118,23 @@ std::string documented(const char* summary) {
   return text;
 }
 
-/// Adds the members that both constraints have, and a property for each option. `signature`: that
-/// of the constructor up to its options. `init`: the constructor and its other arguments.
+/// Adds the members that both constraints have, and a property for each option. `signature`: of the
+/// constructor, up to its options. `init`: the constructor and its other arguments.
 template <class Settings, class Guard, class... Init>
 void bind_guard(py::class_<Guard>& type, const std::string& name, const char* signature,
                 Init&&... init) {
   type.def("forget", &Guard::forget,
-           "Forgets where the last step led, for motions that have nothing to do with each other: "
-           "the\nside of the next position is found anew.")
+           "Forgets the last step; the next position is classified again. For motions that do\n"
+           "not continue each other.")
       .def("set_guides", &Guard::set_guides, py::arg("guides"),
-           "Replaces the guides, which hold in steps and batches from now on. guides: a list of at "
-           "most 16;\neach is a Guide or the text of one, such as 'corridor=slab:0,0,50:1,0,0:1': "
-           "see Guide.of_text.\nChanges nothing when it raises Error.")
+           "Replaces the guides of all later steps and batches. Changes nothing if it raises\n"
+           "Error.\n"
+           "\n"
+           "guides: a list of at most 16; each is a Guide or the text of one, such as\n"
+           "'corridor=slab:0,0,50:1,0,0:1': see Guide.of_text.")
       .def_property_readonly(
           "mesh", [](const Guard& self) { return self.index()->mesh_object; },
-          "The mesh; of several, the first.")
+          "The mesh; if there are several, the first.")
       .def_property_readonly(
           "index", [](const Guard& self) { return self.index(); },
           "The Index of the first mesh, which others may share.");
@@ -141,13 +144,13 @@ void bind_guard(py::class_<Guard>& type, const std::string& name, const char* si
     keywords += ", " + std::string(option.name) + ": " + type_of(option) + " | None = None";
   }
   py::options texts;
-  texts.disable_function_signatures();  // which do not know the options
+  texts.disable_function_signatures();  // the function signatures lack the options
   type.def(std::forward<Init>(init)..., (signature + keywords_of(usual) + ") -> None").c_str());
   type.def(
       "set_options", [](Guard& self, const py::kwargs& given) { self.set_options(given); },
       ("set_options(self: keepout." + name + ", *" + keywords +
-       ") -> None\n\nChanges these options from the next step on; None leaves an option as it "
-       "is. Changes nothing\nwhen it raises Error. A raised margin is reached by recovery.")
+       ") -> None\n\nChanges these options from the next step on. None leaves an option unchanged. "
+       "Changes nothing\nif it raises Error. After the margin is raised, recovery restores it.")
           .c_str());
   for_each_option(usual, [&]<class Options>(const Option<Options>& option, const Options&) {
     const auto get = option.get;

@@ -15,24 +15,26 @@ namespace keepout::python {
 namespace {
 
 constexpr const char* region_doc =
-    R"(A convex region in the world, which is the frame and the unit of the mesh, in which something is to
-stay. Made by half_space, slab, tube or ball. Directions have any length but 0.)";
+    R"(A convex region for a Guide, in the frame and the unit of the mesh. Made by half_space, slab,
+tube or ball. Directions may have any length above 0.)";
 
 constexpr const char* guide_doc =
-    R"(A guidance constraint: keeps a tip, or a part of an instrument, in a convex region. Made by
-point, axis, remote_center, orientation or of_text, for MotionConstraint.set_guides (of a tip: only
-point(name, region)) and InstrumentGuard.set_guides. Guides compose; each holds on the whole
-executed motion.
+    R"(A guidance constraint (guidance virtual fixture): keeps a tip, or a part of an instrument, in
+a convex region. Guides compose; each holds on the whole executed motion.
 
-name: for messages. link: a link's number, from 1; 0 is the base. Points and axes of a link are in
-its frame [length]; places, directions and rotations are in the frame of the mesh.)";
+Made by point, axis, remote_center, orientation or of_text, for InstrumentGuard.set_guides.
+MotionConstraint.set_guides accepts only point(name, region), a guide for the tip.
+
+name: for messages.
+link: the number of a link, from 1; 0 is the base. Points and axes of a link are in its frame
+[length]; other points, directions and rotations are in the frame of the mesh.)";
 
 constexpr const char* guide_text_doc =
-    R"(A guide from its text, [NAME=]FORM, as 'keepout replay --guide' and 'keepout serve' take it.
-Numbers are separated by commas, fields by colons.
+    R"(Returns a guide from a text [NAME=]FORM, as in 'keepout replay --guide' and 'keepout serve'.
+Commas separate numbers; colons separate fields.
 
-Of a tip, a region: 'half_space:X,Y,Z:INTO', 'slab:X,Y,Z:NORMAL:HALF_WIDTH',
-'tube:X,Y,Z:DIRECTION:RADIUS' or 'ball:X,Y,Z:RADIUS'. Of an instrument: 'point:LINK:X,Y,Z:REGION',
+For a tip, FORM is a region: 'half_space:X,Y,Z:INTO', 'slab:X,Y,Z:NORMAL:HALF_WIDTH',
+'tube:X,Y,Z:DIRECTION:RADIUS' or 'ball:X,Y,Z:RADIUS'. For an instrument: 'point:LINK:X,Y,Z:REGION',
 'axis:LINK:AXIS:DIRECTION:ANGLE' or 'remote_center:LINK:X,Y,Z:LINK:X,Y,Z:CENTER:TOLERANCE'.)";
 
 std::string_view guide_kind(const Guide& guide) {
@@ -43,11 +45,11 @@ std::string_view guide_kind(const Guide& guide) {
 void bind_states(py::module_& module) {
   py::class_<GuideState>(module, "GuideState", "The state of a guide in a step.")
       .def_readonly("excess", &GuideState::excess,
-                    "Distance from the region as the step began; below 0 inside [length, of an "
-                    "axis about rad].")
+                    "Distance from the region at the start of the step; below 0 inside [length;\n"
+                    "rad, nearly, for an axis].")
       .def_readonly("limits", &GuideState::limits, "True if the guide limits the motion.")
       .def_readonly("relaxed", &GuideState::relaxed,
-                    "True if the guide does not pull its point back, because other constraints "
+                    "True if the guide does not pull its point back, because other constraints\n"
                     "contradict it.")
       .def("__repr__", [](const GuideState& self) {
         return py::str("<keepout.GuideState: excess {:g}{}{}>")
@@ -63,35 +65,38 @@ void bind_region(py::module_& module) {
             return Region::half_space(point(at, "point"), point(into, "into"));
           },
           py::arg("point"), py::arg("into"),
-          "The side of a plane through `point` (3,) that `into` (3,) points to.")
+          "Returns the side of a plane through `point` (3,) that `into` (3,) points to.")
       .def_static(
           "slab",
           [](const py::object& at, const py::object& normal, double half_width) {
             return Region::slab(point(at, "point"), point(normal, "normal"), half_width);
           },
           py::arg("point"), py::arg("normal"), py::arg("half_width"),
-          "All within half_width of the plane through `point` (3,) across `normal` (3,) [length].")
+          "Returns the points within half_width of a plane through `point` (3,) with the normal\n"
+          "`normal` (3,) [length].")
       .def_static(
           "tube",
           [](const py::object& at, const py::object& direction, double radius) {
             return Region::tube(point(at, "point"), point(direction, "direction"), radius);
           },
           py::arg("point"), py::arg("direction"), py::arg("radius"),
-          "All within a radius of the line through `point` (3,) along `direction` (3,) [length].")
+          "Returns the points within `radius` of the line through `point` (3,) along\n"
+          "`direction` (3,) [length].")
       .def_static(
           "ball",
           [](const py::object& center, double radius) {
             return Region::ball(point(center, "center"), radius);
           },
-          py::arg("center"), py::arg("radius"), "All within a radius of `center` (3,) [length].")
+          py::arg("center"), py::arg("radius"),
+          "Returns the points within `radius` of `center` (3,) [length].")
       .def(
           "excess",
           [](const Region& self, const py::object& at) { return self.excess(point(at, "point")); },
           py::arg("point"),
-          "The distance of a point (3,) from the region; below 0 inside [length].");
+          "Returns the distance of a point (3,) from the region; below 0 inside [length].");
 }
 
-/// Adds what makes a guide of a link.
+/// Adds the functions that make guides for links.
 void bind_link_guides(py::class_<Guide>& type) {
   type.def_static(
           "point",
@@ -99,7 +104,7 @@ void bind_link_guides(py::class_<Guide>& type) {
             return Guide::point(name, {link, point(position, "position")}, region);
           },
           py::arg("name"), py::arg("link"), py::arg("position"), py::arg("region"),
-          "A point (3,) of a link stays in a Region.")
+          "Returns a guide that keeps a point (3,) of a link in a Region.")
       .def_static(
           "axis",
           [](const std::string& name, int link, const py::object& axis, const py::object& direction,
@@ -108,7 +113,8 @@ void bind_link_guides(py::class_<Guide>& type) {
                                angle);
           },
           py::arg("name"), py::arg("link"), py::arg("axis"), py::arg("direction"), py::arg("angle"),
-          "An axis (3,) of a link stays within an angle of a direction (3,) [rad].")
+          "Returns a guide that keeps an axis (3,) of a link within `angle` of a direction (3,)\n"
+          "[rad].")
       .def_static(
           "remote_center",
           [](const std::string& name, const py::object& from, const py::object& to,
@@ -117,16 +123,17 @@ void bind_link_guides(py::class_<Guide>& type) {
                                         point(center, "center"), tolerance);
           },
           py::arg("name"), py::arg("from_"), py::arg("to"), py::arg("center"), py::arg("tolerance"),
-          "The straight shaft between two points, each a pair (link, (x, y, z)), passes within a "
-          "tolerance\nof a center (3,), such as a trocar [length].")
+          "Returns a guide for a remote center of motion. The straight shaft between two\n"
+          "points, each a pair (link, (x, y, z)), passes within `tolerance` of `center` (3,),\n"
+          "such as a trocar [length].")
       .def_static(
           "orientation",
           [](const std::string& name, int link, const py::object& kept, double angle) {
             return Guide::orientation(name, link, rotation(kept), angle);
           },
           py::arg("name"), py::arg("link"), py::arg("rotation"), py::arg("angle"),
-          "A link keeps an orientation, a rotation matrix (3, 3), within an angle of any turn "
-          "[rad]: a list\nof three guides, one for each axis.");
+          "Returns a list of three guides, one for each axis, that keep the orientation of a\n"
+          "link within `angle` of a rotation matrix (3, 3) [rad].");
 }
 
 }  // namespace
@@ -156,18 +163,20 @@ void bind_guides(py::module_& module) {
   type.def_static(
       "point",
       [](const std::string& name, const Region& region) { return Guide::point(name, region); },
-      py::arg("name"), py::arg("region"), "The tip of a MotionConstraint stays in a Region.");
+      py::arg("name"), py::arg("region"),
+      "Returns a guide that keeps the tip of a MotionConstraint in a Region.");
   bind_link_guides(type);
   type.def_static("of_text", &guide_of_text, py::arg("text"), guide_text_doc)
       .def("with_band", &Guide::with_band, py::arg("band"),
-           "The same guide, whose region may be left by so much [length or rad].")
-      .def_property_readonly("name", &Guide::name, "For messages.")
+           "Returns the guide with another band [length or rad].")
+      .def_property_readonly("name", &Guide::name, "The name, for messages.")
       .def_property_readonly("kind", &guide_kind,
-                             "What stays in the region: 'point', 'axis' or 'shaft'.")
+                             "The guided quantity: 'point', 'axis' or 'shaft'.")
       .def_property_readonly("region", &Guide::region,
-                             "The region; of an axis, of the tips of unit vectors.")
+                             "The region; for an axis, it bounds the tips of unit vectors.")
       .def_property_readonly("band", &Guide::band,
-                             "By how much the region may be left [length or rad].")
+                             "By how much the region may be left, because motions are curved\n"
+                             "[length or rad].")
       .def("__repr__", [](const Guide& self) {
         return py::str("<keepout.Guide '{}' of {} {}>")
             .format(self.name(), self.kind() == Guide::Kind::axis ? "an" : "a", guide_kind(self));

@@ -38,14 +38,14 @@ std::shared_ptr<const SpatialIndex> refit(const IndexHandle& before,
 
 Ball ball_of(py::handle center, double radius) {
   const Ball ball{point(center, "center"), radius};
-  if (!ball.center.allFinite()) refuse("center", "finite numbers", "one that is not");
+  if (!ball.center.allFinite()) refuse("center", "finite numbers", "NaN or infinity");
   if (!(radius >= 0.0) || !std::isfinite(radius)) {
     refuse("radius", "a finite number not below zero", std::to_string(radius));
   }
   return ball;
 }
 
-/// With as much room as it takes.
+/// Returns all candidates, with as much capacity as they need.
 TriangleBuffer candidates_in(const IndexHandle& index, const Ball& ball) {
   const std::size_t all = index.mesh->triangle_count();
   for (std::size_t room = std::min<std::size_t>(all, 1024);; room = std::min(all, 8 * room)) {
@@ -61,7 +61,7 @@ py::array_t<TriangleId> query(const IndexHandle& index, const py::object& center
   return py::array_t<TriangleId>(static_cast<py::ssize_t>(candidates.size()), candidates.begin());
 }
 
-/// Exact hits, as Python reads them.
+/// Exact hits for Python.
 struct Hits {
   Vec3 center;
   std::vector<Hit> hits;
@@ -85,7 +85,7 @@ py::array_t<double> points_of(const Hits& self) {
   return points;
 }
 
-/// From each point to the mesh. What is not finite has no distance.
+/// Returns the distance from each point to the mesh; NaN for a point that is not finite.
 py::array_t<double> distances(const IndexHandle& index, const py::object& points,
                               std::optional<py::ssize_t> threads) {
   const Doubles from = doubles(points, {"points", {any, 3}, "(n, 3)"});
@@ -101,7 +101,7 @@ py::array_t<double> distances(const IndexHandle& index, const py::object& points
               double guess = 0.0;
               for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
                 const Vec3 tip = row(tips, i);
-                // The guess makes it faster, and no different: the nearest is the nearest.
+                // The guess saves time and does not change the result.
                 guess = tip.allFinite() ? nearest(tip, guess).closest.distance : 0.0;
                 to[i] = tip.allFinite() ? guess : std::nan("");
               }
@@ -143,19 +143,19 @@ IndexHandle::IndexHandle(py::object moved, const IndexHandle& before)
 void bind_index(py::module_& module) {
   py::class_<Hits> hits(
       module, "Hits",
-      "The triangles that touch a ball, by ascending number, and of each the point\n"
-      "nearest to the center. Arrays are read-only views.");
+      "The triangles that touch a ball, sorted by number, and the closest point of each to the\n"
+      "center. Arrays are read-only views.");
   add_view(
       hits, "triangles", &Hits::hits, 1, [](const Hit& hit) { return &hit.triangle; },
-      "(k,) uint32.");
+      "(k,) uint32: the numbers of the triangles.");
   add_view(
       hits, "offsets", &Hits::hits, 3, [](const Hit& hit) { return hit.closest.offset.data(); },
-      "(k, 3) float64 [length]: from the center to the closest points; as exact as can be.");
+      "(k, 3) float64: from the center to the closest points, to full precision [length].");
   add_view(
       hits, "distances", &Hits::hits, 1, [](const Hit& hit) { return &hit.closest.distance; },
-      "(k,) float64 [length].");
+      "(k,) float64: from the center to the closest points [length].");
   hits.def_property_readonly("points", &points_of,
-                             "(k, 3) float64 [length]: the closest points, center + offset.")
+                             "(k, 3) float64: the closest points, center + offset [length].")
       .def("__len__", [](const Hits& self) { return self.hits.size(); })
       .def("__repr__", [](const Hits& self) {
         return "<keepout.Hits: " + std::to_string(self.hits.size()) + " triangles>";
@@ -163,25 +163,28 @@ void bind_index(py::module_& module) {
 
   py::class_<IndexHandle, std::shared_ptr<IndexHandle>>(
       module, "Index",
-      "Finds the triangles near a place. Any number of motion constraints, of any threads, may\n"
-      "share one.\n\n"
-      "name: one of indices(). cache: a folder that keeps built indices for the next start; only\n"
-      "wide_bvh is kept.")
+      "Finds the triangles near a place. Any number of motion constraints, in any threads, may\n"
+      "share one.\n"
+      "\n"
+      "name: one of indices().\n"
+      "cache: a directory that keeps built indices for the next start; only wide_bvh uses it.")
       .def(py::init<py::object, std::string, const std::optional<std::filesystem::path>&>(),
            py::arg("mesh"), py::arg("name") = "wide_bvh", py::kw_only(),
            py::arg("cache") = py::none())
       .def("query", &query, py::arg("center"), py::arg("radius"),
-           "(k,) uint32: every triangle that touches the ball, and perhaps others, ascending.\n\n"
+           "Returns (k,) uint32: every triangle that touches the ball, and possibly others,\n"
+           "sorted.\n"
+           "\n"
            "center: (3,) [length]; radius >= 0 [length].")
-      .def(
-          "hits", &hits_in, py::arg("center"), py::arg("radius"),
-          "Exactly the triangles that touch the ball, and their closest points: the same of every\n"
-          "index, bit for bit.\n\ncenter: (3,) [length]; radius >= 0 [length].")
-      .def(
-          "distances", &distances, py::arg("points"), py::kw_only(),
-          py::arg("threads") = py::none(),
-          R"((n,) float64 [length]: from each point to the mesh; nan for a point that is not finite.
-Runs without Python's lock, on every processor unless `threads` says fewer.
+      .def("hits", &hits_in, py::arg("center"), py::arg("radius"),
+           "Returns exactly the triangles that touch the ball, and their closest points: bitwise\n"
+           "identical for every index.\n"
+           "\n"
+           "center: (3,) [length]; radius >= 0 [length].")
+      .def("distances", &distances, py::arg("points"), py::kw_only(),
+           py::arg("threads") = py::none(),
+           R"(Returns (n,) float64: the distance from each point to the mesh [length]; NaN for a
+point that is not finite. Runs without Python's lock, on all processors unless `threads` is given.
 
 points: (n, 3) [length].)")
       .def(
@@ -190,14 +193,14 @@ points: (n, 3) [length].)")
             return std::make_shared<IndexHandle>(std::move(mesh), self);
           },
           py::arg("mesh"),
-          "An index of the same name on a mesh with the same triangles whose vertices have moved;\n"
-          "of wide_bvh in about a tenth of the time of a build. This one stays as it is: see\n"
-          "MotionConstraint.follow.")
+          "Returns an index of the same type for a mesh with the same triangles whose vertices\n"
+          "have moved. For wide_bvh it takes about a tenth of the time of a build. Does not\n"
+          "change this index: see MotionConstraint.follow.")
       .def_readonly("mesh", &IndexHandle::mesh_object, "The mesh.")
-      .def_readonly("name", &IndexHandle::name, "As in indices().")
+      .def_readonly("name", &IndexHandle::name, "The name in indices().")
       .def_property_readonly(
           "memory", [](const IndexHandle& self) { return self.index->memory(); },
-          "What it holds beside the mesh [bytes].")
+          "The memory of the index, without the mesh [bytes].")
       .def("__repr__", [](const IndexHandle& self) {
         return py::str("<keepout.Index '{}' of {} triangles>")
             .format(self.name, self.mesh->triangle_count());

@@ -24,22 +24,24 @@ Body body_of(std::string name, const py::iterable& points, double radius) {
 }
 
 constexpr const char* body_doc =
-    R"(A part of an instrument that shall keep clear: all within `radius` of the convex hull of its
-points. One point is a ball, two are a capsule, more are a blade. The points of a capsule may be
-on different links: a shaft from its port to its wrist.
+    R"(A part of an instrument that must keep clear of the mesh: the points within `radius` of a
+convex hull. One point makes a ball, two make a capsule, more make a blade. The points of a capsule
+may be on different links, as for a shaft from its port to its wrist.
 
-name: for messages. points: 1 to 8 pairs (link, (x, y, z)) of a link's number, 0 being the base,
-and a point in its frame [length]. radius: [length], not below 0.)";
+name: for messages.
+points: 1 to 8 pairs (link, (x, y, z)) of the number of a link (0 is the base) and a point in its
+frame [length].
+radius: [length], not below 0.)";
 
 constexpr const char* instrument_doc =
-    R"(A chain, and what it carries: 1 to 16 bodies, of at most 48 points that differ.)";
+    R"(A chain and the bodies that it carries: 1 to 16 bodies, with at most 48 different points.)";
 
 }  // namespace
 
 void bind_instrument(py::module_& module) {
   py::class_<Body>(module, "Body", body_doc)
       .def(py::init(&body_of), py::arg("name"), py::arg("points"), py::arg("radius"))
-      .def_readonly("name", &Body::name, "For messages.")
+      .def_readonly("name", &Body::name, "The name, for messages.")
       .def_property_readonly(
           "points",
           [](const Body& self) {
@@ -50,8 +52,8 @@ void bind_instrument(py::module_& module) {
             }
             return points;
           },
-          "A list of pairs (link, (x, y, z)) [length].")
-      .def_readonly("radius", &Body::radius, "[length]")
+          "The points: a list of pairs (link, (x, y, z)) [length].")
+      .def_readonly("radius", &Body::radius, "The radius [length].")
       .def("__repr__", [](const Body& self) {
         return py::str("<keepout.Body '{}' of {} points, radius {:g}>")
             .format(self.name, self.points.size(), self.radius);
@@ -63,26 +65,27 @@ void bind_instrument(py::module_& module) {
            }),
            py::arg("chain"), py::arg("bodies"))
       .def_property_readonly(
-          "chain", [](const Instrument& self) { return self.chain(); }, "Its Chain.")
+          "chain", [](const Instrument& self) { return self.chain(); }, "The Chain.")
       .def_property_readonly(
           "bodies",
           [](const Instrument& self) {
             return std::vector<Body>(self.bodies().begin(), self.bodies().end());
           },
-          "A list of Body.")
-      .def(
-          "recommended_band", &recommended_band, py::arg("period"), py::arg("least") = 0.002,
-          "A band for InstrumentGuard that absorbs the curvature of every motion that the joints'\n"
-          "limits admit in a cycle of `period` [s]; at least `least` [length]. Infinite without\n"
-          "limits.")
+          "The bodies: a list of Body.")
+      .def("recommended_band", &recommended_band, py::arg("period"), py::arg("least") = 0.002,
+           "Returns a band for InstrumentGuard that covers the curvature of every motion within\n"
+           "the joint limits in a cycle of `period` [s]; at least `least` [length]. Infinite\n"
+           "without limits.")
       .def("__repr__", [](const Instrument& self) {
         return py::str("<keepout.Instrument: {} bodies on {} joints>")
             .format(self.bodies().size(), self.chain().size());
       });
   module.def(
       "free_ball", &free_ball, py::arg("radius"),
-      "The Instrument that is the ball of a tool's tip, on three joints that slide along the\n"
-      "axes without limits: q is where its center is. radius: [length]");
+      "Returns an Instrument for a ball-shaped tool tip: a ball on three prismatic joints along\n"
+      "the axes, without limits. q is the position of its center.\n"
+      "\n"
+      "radius: [length].");
 }
 
 }  // namespace keepout::python

@@ -28,7 +28,7 @@ Twist twist_of(const py::object& linear, const py::object& angular) {
   return twist;
 }
 
-/// Row i, or the only one, which stands for all.
+/// Returns row i, or the only row, which serves all.
 std::span<const double> row_of(const Doubles& rows, std::size_t i, std::size_t width) {
   return numbers_of(rows).subspan(rows.ndim() == 1 ? 0 : i * width, width);
 }
@@ -66,7 +66,9 @@ InstrumentStepResult InstrumentGuard::step(const py::object& q, const py::object
            has_twist ? "both" : "neither");
   }
   if (has_twist && !weights.is_none()) {
-    refuse("weights", "None without an increment of the joints, which they are for", "weights");
+    refuse("weights",
+           "None with 'linear' or 'angular': only an increment of the joints has weights",
+           "weights");
   }
   const auto joints = static_cast<std::size_t>(at.size());
   const auto result = [&](const InstrumentStep& step) {
@@ -99,7 +101,7 @@ void InstrumentGuard::prove_each(const Doubles& q, const Doubles& increments, st
   }
   do_each(count, 16, threads,
           [&](InstrumentConstraint& constraint, std::size_t i, const std::stop_token&) {
-            // Or the answer might depend on what this worker proved before.
+            // The result must not depend on the worker's previous proof.
             constraint.forget();
             for (std::size_t m = 0; m < places.size(); ++m) constraint.place(m, places[m]);
             take(i, constraint.prove(row_of(q, i, width), row_of(increments, i, width)));
@@ -186,10 +188,11 @@ void InstrumentGuard::require_mesh(std::size_t mesh) const {
 namespace {
 
 constexpr const char* guard_doc =
-    R"(Keeps a whole instrument out of a mesh, in joint space: the joint increment nearest to what is asked
-for that provably keeps each body clear, on the motion that the joints really make. It is safe to
-use from several threads, which then wait for each other; for loops of their own give each a guard,
-and let them share the Index.
+    R"(Keeps a whole instrument out of a mesh, in joint space. A step returns the joint increment
+nearest to the desired one that provably keeps each body clear during the actual joint motion.
+
+Several threads may use a guard; they wait for each other. Parallel loops should have a guard each
+and share the Index.
 
 index, index_cache: as in MotionConstraint. A max_... is a capacity: a cycle that needs more ends
 with Status.over_capacity.)";
@@ -200,27 +203,34 @@ constexpr const char* guard_signature =
     "index: str | keepout.Index = 'wide_bvh', index_cache: str | os.PathLike[str] | None = None";
 
 constexpr const char* joint_step_doc =
-    R"(What the joints may do in this cycle: an InstrumentStep. Asked for is either a motion of the flange,
-or an increment of the joints. A number that is not finite gives Status.invalid_input.
+    R"(Returns the motion that the joints may make in this cycle: an InstrumentStep. Give either a
+desired motion of the flange (linear, angular) or a desired increment of the joints. A number that
+is not finite gives Status.invalid_input.
 
-q: (n,), the joints' positions [rad or length]. linear: (3,), how the flange's origin shall move
-[length]. angular: (3,), how it shall turn, axis times angle, in the mesh's axes [rad]; zero where
-one of both is None. increment: (n,), of the joints. weights: (n,), above 0, what each joint's way
-from it counts; all 1 when None.)";
+q: (n,), joint positions [rad or length].
+linear: (3,), displacement of the flange's origin [length].
+angular: (3,), rotation of the flange, axis times angle, in the axes of the mesh [rad]. If only
+linear or only angular is given, the other is zero.
+increment: (n,), of the joints.
+weights: (n,), above 0, the cost of each joint's deviation from it; None: all 1.)";
 
 constexpr const char* prove_doc =
-    R"(How much of a motion is certified, for planners: a MotionProof. It looks for no better motion, and
-not at the limits of joints. Changes nothing for the steps. A number that is not finite gives
+    R"(Returns the certified part of a motion, for planners: a MotionProof. Searches for no better
+motion and ignores joint limits. Does not affect the steps. A number that is not finite gives
 Status.invalid_input.
 
-q: (n,), where it starts. increment: (n,), of any size; zeros ask of the place alone.)";
+q: (n,), the start.
+increment: (n,), of any size; zeros test a configuration.)";
 
 constexpr const char* proofs_doc =
-    R"(The same of m motions, each for itself: a Proofs, whose arrays do not depend on the order or on the
-number of threads. Runs without Python's lock.
+    R"(Like prove(), for m independent motions: returns a Proofs. The result does not depend on the
+order or on the number of threads. Runs without Python's lock.
 
-q: (m, n). increments: (m, n); None for zeros. A single one of either, (n,), serves all of the
-other. threads: 1 to 1024; None for one a processor.)";
+q: (m, n).
+increments: (m, n); None for zeros.
+threads: 1 to 1024; None: one for each processor.
+
+A single row (n,) of either array serves all rows of the other.)";
 
 std::unique_ptr<InstrumentGuard> make_instrument_guard(
     const py::object& mesh, const Instrument& instrument, const py::object& index,
@@ -232,32 +242,31 @@ std::unique_ptr<InstrumentGuard> make_instrument_guard(
 }
 
 void bind_meshes(py::class_<InstrumentGuard>& type) {
-  type.def(
-          "follow", &InstrumentGuard::follow, py::arg("index"), py::kw_only(), py::arg("mesh") = 0,
-          "Replaces a mesh by one that has deformed: an Index of it, such as "
-          "index.refitted(mesh).\n"
-          "All bodies are placed anew; one that the surface came too close to recovers. mesh: the\n"
-          "number of the mesh, which keeps its pose.")
-      .def(
-          "add_mesh", &InstrumentGuard::add_mesh, py::arg("index"), py::kw_only(),
-          py::arg("margin") = 0.0,
-          "Keeps out of one more mesh, that of an Index, and returns its number; the first has 0.\n"
-          "margin: of its own [length], or 0 for that of the guard. At most 8 meshes.")
-      .def(
-          "place", &InstrumentGuard::place, py::arg("mesh"), py::arg("pose"),
-          py::arg("linear") = py::none(), py::arg("angular") = py::none(),
-          "Sets the pose of a mesh as the next cycle begins, and its velocity: of its frame's "
-          "origin\n"
-          "[length/s], and its turn about that [rad/s]. Nothing is built anew. The mesh keeps "
-          "that\n"
-          "velocity until it is placed again. An invalid pose or velocity raises Error; steps are\n"
-          "Status.invalid_input until a valid one is set. pose: (4, 4), its frame in the world; "
-          "None\n"
-          "is the identity. linear, angular: (3,), in the axes of the world; None is zero.")
+  type.def("follow", &InstrumentGuard::follow, py::arg("index"), py::kw_only(), py::arg("mesh") = 0,
+           "Replaces a mesh by its deformed successor: an Index of it, such as\n"
+           "index.refitted(mesh). All bodies are classified again; a body that the surface came\n"
+           "too close to recovers.\n"
+           "\n"
+           "mesh: the number of the mesh, which keeps its pose.")
+      .def("add_mesh", &InstrumentGuard::add_mesh, py::arg("index"), py::kw_only(),
+           py::arg("margin") = 0.0,
+           "Adds a mesh to keep out of, that of an Index. Returns its number; the first mesh\n"
+           "has number 0. At most 8 meshes.\n"
+           "\n"
+           "margin: for this mesh [length]; 0 for that of the guard.")
+      .def("place", &InstrumentGuard::place, py::arg("mesh"), py::arg("pose"),
+           py::arg("linear") = py::none(), py::arg("angular") = py::none(),
+           "Sets the pose of a mesh at the start of the next cycle, and its velocity: of its\n"
+           "frame's origin [length/s], and of the rotation about that origin [rad/s]. Rebuilds\n"
+           "nothing. The mesh moves with that velocity until it is placed again. Raises Error\n"
+           "for an invalid pose or velocity; steps then return Status.invalid_input until a\n"
+           "valid one is set.\n"
+           "\n"
+           "pose: (4, 4), the mesh's frame in the world; None is the identity.\n"
+           "linear, angular: (3,), in the axes of the world; None is zero.")
       .def("place_of", &InstrumentGuard::place_of, py::arg("mesh"),
-           "(4, 4) float64: the pose of a mesh as the next cycle begins.")
-      .def_property_readonly("mesh_count", &InstrumentGuard::mesh_count,
-                             "How many meshes it is kept out of.");
+           "Returns (4, 4) float64: the pose of a mesh at the start of the next cycle.")
+      .def_property_readonly("mesh_count", &InstrumentGuard::mesh_count, "The number of meshes.");
 }
 
 }  // namespace
@@ -276,7 +285,7 @@ void bind_instrument_guard(py::module_& module) {
       .def("prove", &InstrumentGuard::prove, py::arg("q"), py::arg("increment"), prove_doc)
       .def("proofs", &InstrumentGuard::proofs, py::arg("q"), py::arg("increments") = py::none(),
            py::kw_only(), py::arg("threads") = py::none(), proofs_doc)
-      .def_property_readonly("instrument", &InstrumentGuard::instrument, "Its Instrument.")
+      .def_property_readonly("instrument", &InstrumentGuard::instrument, "The Instrument.")
       .def("__repr__", [](const InstrumentGuard& self) {
         const InstrumentConstraintSettings& s = self.settings();
         return py::str(

@@ -12,7 +12,7 @@
 namespace keepout::python {
 
 /// A step that outlives the next one: its own lists hide the views of the robot's step. The
-/// increment has a number for each joint: zeros unless ok.
+/// increment has a number for each joint, zero unless ok.
 struct InstrumentStepResult : InstrumentStep {
   std::vector<double> increment;
   std::vector<GuideState> guides;
@@ -25,7 +25,7 @@ class InstrumentGuard : public GuardOf<InstrumentConstraint, InstrumentConstrain
   InstrumentGuard(std::shared_ptr<IndexHandle> index, Instrument instrument,
                   InstrumentConstraintSettings settings);
 
-  // As in Python: see bind_instrument_guard.
+  // The methods of the Python class: see bind_instrument_guard.
   InstrumentStepResult step(const py::object& q, const py::object& linear,
                             const py::object& angular, const py::object& increment,
                             const py::object& weights);
@@ -44,10 +44,10 @@ class InstrumentGuard : public GuardOf<InstrumentConstraint, InstrumentConstrain
  private:
   InstrumentConstraint made_anew() const override;
   py::ssize_t joints() const noexcept { return instrument_.chain().size(); }
-  /// One number for each joint.
+  /// Reads one number for each joint.
   Doubles of_joints(const py::object& argument, std::string_view name) const;
 
-  /// Calls `take(i, proof)` for each motion, i of (n,) or (count, n) q and increments.
+  /// Calls `take(i, proof)` for each motion. q and increments: (count, n), or (n,) for all.
   template <class Take>
   void prove_each(const Doubles& q, const Doubles& increments, std::size_t count, unsigned threads,
                   const Take& take);

@@ -9,33 +9,35 @@ void bind_instrument_results(py::module_& module) {
   using Result = InstrumentStepResult;
   py::class_<Result> step(
       module, "InstrumentStep",
-      "What one cycle of an instrument may do. Arrays are read-only views of it.");
-  bind_step_result(step, "Whether there is a motion that may be carried out; it may be zero.");
+      "The result of one cycle of an instrument. Arrays are read-only views of it.");
+  bind_step_result(step, "True if the increment may be executed; it may be zero.");
   step.def_readonly("fraction", &Result::fraction,
-                    "How much of the motion that was found is made: below 1 when it was cut short.")
-      .def_readonly("rounds", &Result::rounds, "How often a trial motion was judged.")
+                    "The fraction of the motion found that `increment` is; below 1 if the\n"
+                    "motion was truncated.")
+      .def_readonly("rounds", &Result::rounds, "The number of trial motions that were judged.")
       .def_readonly("rows", &Result::rows,
-                    "How many rows hold the motion back, joint limits apart.")
+                    "The number of rows that limit the motion, without joint limits.")
       .def_readonly(
           "distance", &Result::distance,
-          "From the body nearest to the mesh, as the cycle began [length]; None where none is\n"
-          "closer than the margin and its band, negative where it reaches through the surface.")
+          "From the nearest body to the mesh at the start of the cycle [length]; negative if\n"
+          "the body reaches through the surface. None if no body is within margin +\n"
+          "max(band, slowing_within), or if the work budget ended first.")
       .def_property_readonly(
           "nearest",
           [](const Result& self) {
             return self.nearest < 0 ? std::nullopt : std::optional(self.nearest);
           },
-          "The number of that body; None where there is no distance.")
+          "The number of the nearest body; None without a distance.")
       .def_property_readonly(
           "nearest_mesh",
           [](const Result& self) {
             return self.nearest_mesh < 0 ? std::nullopt : std::optional(self.nearest_mesh);
           },
-          "The number of the mesh that it is nearest to; None where there is no distance.")
+          "The number of the mesh that is nearest to a body; None without a distance.")
       .def_readonly(
           "clearance_fraction", &Result::clearance_fraction,
-          "How much could be kept of what is certified otherwise: below 1 where a mesh came on\n"
-          "faster than the joints can give way.")
+          "The least clearance fraction of all bodies and meshes: below 1 if a mesh approaches\n"
+          "faster than a body can retreat.")
       .def_property_readonly(
           "degraded",
           [](const Result& self) {
@@ -47,23 +49,23 @@ void bind_instrument_results(py::module_& module) {
             }
             return py::tuple(pairs);
           },
-          "The pairs of body and mesh that keep less than is certified for them: a tuple of\n"
-          "(body, mesh, fraction); fraction is None if nothing is certified for the pair.")
+          "The pairs of a body and a mesh with less than their certified clearance: a tuple of\n"
+          "(body, mesh, fraction). fraction is None if no clearance is certified for the pair.")
       .def("__repr__", [](const Result& self) {
         return py::str("<keepout.InstrumentStep: {}, increment {}>")
             .format(name(self.status), py::cast(self.increment));
       });
 
-  py::class_<MotionProof> proof(module, "MotionProof", "How much of a motion is certified.");
-  bind_ending(proof,
-              "How it ended: a Status; 'recovering' where some body is too close as it starts.");
+  py::class_<MotionProof> proof(module, "MotionProof", "The certified part of a motion.");
+  bind_ending(proof, "The outcome: a Status; 'recovering' if a body is too close at the start.");
   proof
       .def_readonly("fraction", &MotionProof::fraction,
-                    "Proven is the motion from its start to here: 1 if all of it is.")
+                    "The motion is proved from its start to this fraction; 1 for all of it.")
       .def_readonly("distance", &MotionProof::distance,
-                    "As that of an InstrumentStep, at the start [length].")
+                    "Like InstrumentStep.distance, at the start [length].")
       .def_property_readonly("is_clear", &MotionProof::is_clear,
-                             "Whether the whole margin, less its band, is kept on all of it.")
+                             "True if each body stays at least margin - band away on the whole\n"
+                             "motion.")
       .def("__repr__", [](const MotionProof& self) {
         return py::str("<keepout.MotionProof: {}, fraction {:g}>")
             .format(name(self.status), self.fraction);

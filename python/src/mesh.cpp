@@ -25,7 +25,7 @@ using Ids = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>
 std::vector<Corners> triangles_from(py::handle argument, std::size_t vertices) {
   const py::array given = numbers(argument, {"triangles", {any, 3}, "(m, 3)"});
   if (given.size() > 0 && given.dtype().kind() == 'f') {
-    refuse("triangles", "integers, which count vertices from 0",
+    refuse("triangles", "integers, the numbers of vertices from 0",
            "an array of dtype " + dtype_text(given));
   }
   const auto ids = converted<Ids>(given, "triangles", "integers of at most 64 bits");
@@ -33,7 +33,7 @@ std::vector<Corners> triangles_from(py::handle argument, std::size_t vertices) {
   const std::int64_t* id = ids.data();
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (VertexId& corner : triangles[t]) {
-      // Before they are narrowed: 2^32 is not vertex 0.
+      // Checked before the conversion to 32 bits: 2^32 must not become vertex 0.
       if (*id < 0 || static_cast<std::uint64_t>(*id) >= vertices) {
         refuse("triangles", "vertices from 0 to " + std::to_string(vertices) + " - 1",
                std::to_string(*id) + " in row " + std::to_string(t));
@@ -48,11 +48,18 @@ MeshHandle mesh_from(const py::object& vertices, const py::object& triangles, bo
   Surface surface;
   surface.vertices = points(vertices, {"vertices", {any, 3}, "(n, 3)"});
   surface.triangles = triangles_from(triangles, surface.vertices.size());
-  const py::gil_scoped_release release;
-  if (!welded) return {{.mesh = std::make_shared<const Mesh>(std::move(surface))}};
-  // Checked as they were given: what is not finite cannot be welded.
-  const Mesh checked(surface);
-  return {{.mesh = std::make_shared<const Mesh>(weld(std::move(surface)))}};
+  MeshHandle mesh;
+  {
+    const py::gil_scoped_release release;
+    // Before it is welded: what is not finite cannot be.
+    mesh.mesh = std::make_shared<const Mesh>(welded ? surface : std::move(surface));
+    if (welded) mesh.mesh = std::make_shared<const Mesh>(weld(std::move(surface)));
+    for (const std::string& warning : quick_check(*mesh.mesh)) {
+      mesh.warnings.push_back("Mesh: " + warning);
+    }
+  }
+  for (const std::string& warning : mesh.warnings) warn(warning);
+  return mesh;
 }
 
 AnatomicalSpace space_from(const char* argument, const std::optional<std::string>& given) {
@@ -75,9 +82,9 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
     return load_mesh(path, options);
   };
   MeshHandle mesh{loaded()};
-  // Nobody looks at warnings who does not know of any.
+  // Users may not know of Mesh.warnings, so also issue Python warnings.
   for (const std::string& warning : mesh.warnings) warn(warning);
-  if (!mesh.notices.empty()) {  // what was asked for is no reason to warn
+  if (!mesh.notices.empty()) {  // a requested change is no reason to warn
     const py::object log = py::module_::import("logging").attr("getLogger")("keepout").attr("info");
     for (const std::string& notice : mesh.notices) log("%s", notice);
   }
@@ -86,7 +93,7 @@ MeshHandle load(const std::filesystem::path& path, const std::optional<std::stri
 
 const double* coordinates(const Vec3& point) { return point.data(); }
 
-/// Made on the first call, which Python's lock keeps from being two.
+/// Computes the normals on the first call. Python's lock prevents two first calls at once.
 py::array normals_of(const py::object& self) {
   auto& mesh = self.cast<MeshHandle&>();
   for (std::size_t t = mesh.normals.size(); t < mesh.mesh->triangle_count(); ++t) {
@@ -95,8 +102,8 @@ py::array normals_of(const py::object& self) {
   return view(std::span<const Vec3>(mesh.normals), 3, coordinates, self);
 }
 
-/// What the diagnostics found; the search for self-intersections takes longest and is made when
-/// asked for.
+/// The result of the mesh diagnostics. The search for self-intersections takes longest, and is made
+/// on request.
 struct Inspection : MeshFindings {
   std::optional<std::size_t> self_intersections = {};
   FaultPlaces crossings = {};
@@ -113,7 +120,7 @@ Inspection inspect(const MeshHandle& mesh, bool self_intersections, std::size_t 
   return inspection;
 }
 
-/// (n, corners, 3)
+/// Returns the corners of faults as an array (n, corners, 3).
 py::array_t<double> corners_of(const FaultPlaces& faults, py::ssize_t corners) {
   py::array_t<double> array({std::ssize(faults.places), corners, py::ssize_t{3}});
   double* to = array.mutable_data();
@@ -160,7 +167,7 @@ std::string summary(const Inspection& mesh) {
   tell(mesh.unused_vertices, "unused vertices");
   tell(mesh.self_intersections.value_or(0), "self-intersecting pairs");
   if (mesh.looks_like_meters())
-    text << "; smaller than 3 in every direction: meters, not mm? Then load it with unit=\"m\"";
+    text << "; smaller than 3 in every direction: if it is in meters, load it with unit=\"m\"";
   return text.str();
 }
 
@@ -169,17 +176,17 @@ void bind_load_mesh(py::module_& module) {
       "load_mesh", &load, py::arg("path"), py::kw_only(), py::arg("space") = py::none(),
       py::arg("untagged") = py::none(), py::arg("unit") = py::none(), py::arg("scale") = py::none(),
       py::arg("flip") = false,
-      R"(Reads a mesh from an STL, PLY, OBJ, OFF, legacy VTK or VTP file, and welds it exactly.
-Nothing is repaired: see Mesh.inspect. What is odd about the mesh is a UserWarning, and in
-Mesh.warnings; what was done to it, as asked for, is in Mesh.notices.
+      R"(Reads a mesh from an STL, PLY, OBJ, OFF, legacy VTK or VTP file and welds it exactly.
+Repairs nothing: see Mesh.inspect. Each doubt about the mesh is a UserWarning and an item of
+Mesh.warnings; each requested change is an item of Mesh.notices.
 
-space: 'RAS' or 'LPS', which the coordinates shall be in; they are turned if the file
-says the other one (SPACE=...). None: as they stand.
-untagged: the space of a file that does not say. One that does is believed.
-unit: 'm', 'cm', 'mm', 'um' or 'in', the unit of the lengths in the file, which are scaled
-to mm. None: mm.
+space: 'RAS' or 'LPS', the space in which you need the coordinates. They are turned if the file
+states the other one (SPACE=...). None: coordinates stay as in the file.
+untagged: the space of a file that does not state one; ignored if it does.
+unit: 'm', 'cm', 'mm', 'um' or 'in', the unit of the lengths in the file, which are scaled to mm.
+None: mm.
 scale: the factor from lengths in the file to mm, above 0, instead of a unit.
-flip: wind each triangle the other way, for normals that point into the solid.)");
+flip: reverse the winding of each triangle, for normals that point into the solid.)");
 }
 
 }  // namespace
@@ -193,47 +200,49 @@ const std::shared_ptr<const Mesh>& mesh_of(const py::object& mesh) {
 
 void bind_inspection(py::module_& module) {
   py::class_<Inspection>(module, "Inspection",
-                         "What there is to know about a mesh before it guards anything. The "
-                         "attributes are those of 'keepout inspect --json'.")
-      .def_readonly("vertices", &Inspection::vertices, "Vertices that a triangle uses.")
+                         "The result of the mesh diagnostics. The attributes are those of\n"
+                         "'keepout inspect --json'.")
+      .def_readonly("vertices", &Inspection::vertices, "Number of vertices that a triangle uses.")
       .def_readonly("unused_vertices", &Inspection::unused_vertices,
-                    "Vertices that no triangle uses.")
-      .def_readonly("triangles", &Inspection::triangles, "Triangles.")
-      .def_readonly("edges", &Inspection::edges, "Edges, each once.")
+                    "Number of vertices that no triangle uses.")
+      .def_readonly("triangles", &Inspection::triangles, "Number of triangles.")
+      .def_readonly("edges", &Inspection::edges, "Number of edges, each counted once.")
       .def_readonly("boundary_edges", &Inspection::boundary_edges,
-                    "Edges of one triangle: holes and rims.")
+                    "Number of edges with one triangle, as at holes.")
       .def_readonly("non_manifold_edges", &Inspection::non_manifold_edges,
-                    "Edges of three triangles or more.")
+                    "Number of edges with three triangles or more.")
       .def_readonly("inconsistent_edges", &Inspection::inconsistent_edges,
-                    "Edges whose two triangles are wound against each other.")
+                    "Number of edges whose two triangles have opposite windings.")
       .def_readonly("pinched_vertices", &Inspection::pinched_vertices,
-                    "Vertices by which alone parts of the surface hang together.")
+                    "Number of vertices that alone connect parts of the surface.")
       .def_readonly("repeated_vertex_triangles", &Inspection::repeated_vertex_triangles,
-                    "Triangles that name a vertex twice.")
+                    "Number of triangles that use a vertex twice.")
       .def_readonly("collinear_triangles", &Inspection::collinear_triangles,
-                    "Triangles whose three vertices are on one line, exactly.")
+                    "Number of triangles whose three vertices are exactly collinear.")
       .def_readonly("duplicate_triangles", &Inspection::duplicate_triangles,
-                    "Triangles of the same three vertices as an earlier one.")
+                    "Number of triangles with the same three vertices as an earlier one.")
       .def_readonly("components", &Inspection::components,
-                    "Parts held together by shared vertices.")
+                    "Number of parts that shared vertices connect.")
       .def_readonly("edge_components", &Inspection::edge_components,
-                    "Parts held together by shared edges.")
+                    "Number of parts that shared edges connect.")
       .def_property_readonly(
           "closed", [](const Inspection& i) { return i.is_closed(); },
-          "Whether every edge has two triangles or more.")
+          "True if every edge has two triangles or more.")
       .def_property_readonly(
           "watertight", [](const Inspection& i) { return i.is_watertight(); },
-          "Whether every edge has two triangles, wound alike: then there is an inside.")
+          "True if every edge has two triangles with consistent winding, so that inside is\n"
+          "defined.")
       .def_property_readonly(
           "inside_out", [](const Inspection& i) { return i.is_inside_out(); },
-          "Whether it is watertight with normals that point into the solid.")
+          "True if it is watertight and its normals point into the solid.")
       .def_property_readonly(
           "looks_like_meters", [](const Inspection& i) { return i.looks_like_meters(); },
-          "Whether it is smaller than 3 in every direction, where millimeters are expected.")
+          "True if the mesh is smaller than 3 in every direction; in mm that is unlikely.")
       .def_readonly("euler_characteristic", &Inspection::euler_characteristic,
                     "Vertices - edges + triangles.")
       .def_readonly("genus", &Inspection::genus,
-                    "Handles in all; None unless watertight and without pinched vertices.")
+                    "Total number of handles; None unless watertight and without pinched\n"
+                    "vertices.")
       .def_readonly("area", &Inspection::area, "Area [length^2].")
       .def_property_readonly(
           "signed_volume",
@@ -248,14 +257,14 @@ void bind_inspection(py::module_& module) {
           "high", [](const Inspection& i) { return tuple_of(i.bounds.high); },
           "Highest corner of the bounds [length].")
       .def_readonly("self_intersections", &Inspection::self_intersections,
-                    "Pairs of triangles that cut through each other; None unless asked for.")
+                    "Number of pairs of triangles that intersect; None unless requested.")
       .def_property_readonly(
           "places", &places_of,
-          "Where faults are: (n, k, 3) arrays of the corners of n faults of a kind, by the name "
-          "of\n"
-          "its count ('degenerate_triangles' has both kinds of these). An edge has k = 2 corners, "
-          "a\nvertex 1, a triangle 3; a pair of 'self_intersections' has those of both triangles. "
-          "One\nfault of each group that shares vertices, such as each hole, comes first.")
+          "The places of the faults: a dict by the name of the count. A value is an array (n,\n"
+          "k, 3) with the corners of n faults. k is 2 for an edge, 1 for a vertex, 3 for a\n"
+          "triangle and 6 for a pair of triangles. 'degenerate_triangles' has repeated-vertex\n"
+          "and collinear triangles. The first places are from different groups of connected\n"
+          "faults, such as one edge of each hole.")
       .def("__str__", &summary)
       .def("__repr__",
            [](const Inspection& i) { return "<keepout.Inspection: " + summary(i) + ">"; });
@@ -264,12 +273,14 @@ void bind_inspection(py::module_& module) {
 void bind_mesh(py::module_& module) {
   py::class_<MeshHandle>(
       module, "Mesh",
-      "An immutable triangle surface, shared by all that is built on it.\n\n"
-      "Seen from the free side, the vertices of a triangle run counter-clockwise; any one unit of\n"
-      "length, usually mm. What is given is copied; what is read from it is not.\n\n"
+      "An immutable surface of triangles, which its users share. The arrays are copied.\n"
+      "\n"
+      "From the free side, the vertices of a triangle run counterclockwise. Use one unit of\n"
+      "length everywhere, usually mm.\n"
+      "\n"
       "vertices: (n, 3), finite [length]. triangles: (m, 3) integers from 0, m > 0.\n"
       "weld: merge vertices of equal coordinates, which renumbers them; a surface whose triangles\n"
-      "do not share their vertices looks open otherwise.")
+      "do not share their vertices looks open otherwise. Warns as load_mesh does.")
       .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
            py::arg("weld") = false)
       .def_property_readonly(
@@ -288,8 +299,8 @@ void bind_mesh(py::module_& module) {
           "(m, 3) uint32, read-only: the mesh's own memory.")
       .def_property_readonly(
           "normals", &normals_of,
-          "(m, 3) float64, read-only: unit normals of the triangles, towards the free side; zero\n"
-          "for one without an area. Made when first asked for.")
+          "(m, 3) float64, read-only: unit normals of the triangles, towards the free side;\n"
+          "zero for a triangle without area. Computed on first use.")
       .def_property_readonly(
           "bounds",
           [](const MeshHandle& self) {
@@ -299,28 +310,30 @@ void bind_mesh(py::module_& module) {
             std::copy_n(box.high.data(), 3, bounds.mutable_data(1, 0));
             return bounds;
           },
-          "(2, 3) float64 [length]: the lowest and the highest corner of the smallest box around.")
+          "(2, 3) float64: the lowest and the highest corner of the bounding box [length].")
       .def_readonly("warnings", &MeshHandle::warnings,
-                    "What is odd about the file that the mesh came from: a list of sentences, "
-                    "which load_mesh\nshows as Python's warnings, too.")
+                    "What is odd about the mesh, or the file that it came from: a list of "
+                    "sentences, which Mesh and\nload_mesh show as Python's warnings, too.")
       .def_readonly("notices", &MeshHandle::notices,
-                    "What load_mesh did because it was asked to: scaled, turned, flipped. A list "
-                    "of sentences,\nwhich also go to the logger 'keepout' at level INFO.")
-      .def_readonly("scale", &MeshHandle::scale, "What the lengths of the file were multiplied by.")
+                    "Requested changes that load_mesh made (scaled, turned, flipped): a list of\n"
+                    "sentences, which also go to the logger 'keepout' at level INFO.")
+      .def_readonly("scale", &MeshHandle::scale,
+                    "The factor by which load_mesh multiplied lengths.")
       .def_readonly("flipped", &MeshHandle::flipped,
-                    "True if load_mesh wound each triangle the other way.")
+                    "True if load_mesh reversed the winding of each triangle.")
       .def_property_readonly(
           "space",
           [](const MeshHandle& self) -> std::optional<std::string> {
             if (self.space == AnatomicalSpace::unstated) return std::nullopt;
             return std::string(name(self.space));
           },
-          "The anatomical space of the coordinates, 'RAS' or 'LPS', if it is known; or None.")
+          "The anatomical space of the coordinates, 'RAS' or 'LPS'; None if unknown.")
       .def("inspect", &inspect, py::kw_only(), py::arg("self_intersections") = false,
            py::arg("places") = 10,
-           "Examines the mesh; repairs nothing. The search for self-intersections takes "
-           "longest.\n\n"
-           "places: at most so many places of each kind of fault are kept, from 0 on.")
+           "Examines the mesh and returns an Inspection. Repairs nothing. The search for\n"
+           "self-intersections takes longest.\n"
+           "\n"
+           "places: the maximum number of places to report for each kind of fault, from 0 on.")
       .def("__len__", [](const MeshHandle& self) { return self.mesh->triangle_count(); })
       .def("__repr__", [](const MeshHandle& self) {
         return py::str("<keepout.Mesh of {} triangles, {} vertices>")

@@ -15,7 +15,7 @@
 namespace keepout::python {
 namespace {
 
-/// A table of parts as a list of keepout.Part.
+/// Returns a table of parts as a list of keepout.Part.
 template <class Table>
 py::list parts_of(const Table& table) {
   const py::object part = py::module_::import("keepout._results").attr("Part");
@@ -26,7 +26,7 @@ py::list parts_of(const Table& table) {
 
 void bind_error(py::module_& module) {
   auto error = py::register_exception<Error>(module, "Error", PyExc_ValueError);
-  // A message may name a file, whose name need not be UTF-8.
+  // The message may contain a file name that is not UTF-8.
   static PyObject* const type = error.inc_ref().ptr();
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
@@ -38,22 +38,23 @@ void bind_error(py::module_& module) {
       if (message) PyErr_SetObject(type, message.ptr());
     }
   });
-  error.doc() = "What is wrong with an argument, a file or a setting, and what to do about it.";
+  error.doc() =
+      "An invalid argument, file or setting. The message says what is wrong and what to do.";
 }
 
 void bind_parts(py::module_& module) {
   module.def(
       "indices", [] { return parts_of(index_backends()); },
-      "The spatial indices of this build: a list of Part(name, description).");
+      "Returns the spatial indices of this build: a list of Part(name, description).");
   module.def(
       "activations", [] { return parts_of(activation_rules()); },
-      "The activation rules, which turn triangles into planes: a list of Part.");
+      "Returns the activation rules, which turn triangles into planes: a list of Part.");
   module.def(
       "solvers", [] { return parts_of(solver_backends()); },
-      "The solvers of the step problem in this build: a list of Part.");
+      "Returns the solvers of the step problem in this build: a list of Part.");
   module.def(
       "narrow_phases", [] { return parts_of(narrow_phase_backends()); },
-      "The narrow phases of this build, for a ConvexTool: a list of Part.");
+      "Returns the narrow phases of this build, for a ConvexTool: a list of Part.");
 }
 
 }  // namespace

@@ -24,14 +24,14 @@ py::str repr(const Guard& guard) {
 }
 
 constexpr const char* class_doc =
-    R"(Keeps a tool tip out of a mesh, step by step. It is safe to use from several threads, which
-then wait for each other; for loops of their own give each a constraint, and let them share
-the Index.
+    R"(Keeps a tool tip out of a mesh, step by step. Several threads may use a constraint; they wait
+for each other. Parallel loops should have a constraint each and share the Index.
 
-index: a name of indices(), or an Index of this mesh. index_cache: a directory that keeps built
-indices for the next start. tool: a ConvexTool, or the text of one, that must not touch the mesh, in place of the ball;
-leave tool_radius and activation as they are: inside, refinements and nodes have no effect.
-A max_... is a capacity: a step that needs more ends with Status.over_capacity.)";
+index: a name of indices(), or an Index of this mesh.
+index_cache: a directory that keeps built indices for the next start.
+tool: a ConvexTool, or the text of one, that must not touch the mesh, instead of a ball. With a
+tool, leave tool_radius and activation unset; inside, refinements and nodes have no effect.
+max_...: a capacity; a step that needs more ends with Status.over_capacity.)";
 
 constexpr const char* constraint_signature =
     "__init__(self: keepout.MotionConstraint, mesh: keepout.Mesh, *, "
@@ -56,45 +56,54 @@ std::unique_ptr<Guard> make_guard(const py::object& mesh, const py::object& inde
 }
 
 constexpr const char* step_doc =
-    R"(The allowed motion nearest to the one desired: a Step. It remembers where the last step led; a
-tip from elsewhere is placed anew. A number that is not finite gives Status.invalid_input.
+    R"(Returns the allowed motion nearest to the desired one: a Step. The constraint remembers where
+the last step ended; it classifies a tip from elsewhere again. A number that is not finite gives
+Status.invalid_input.
 
-tip: (3,) in the frame of the mesh [length]. desired: (3,), the increment asked for [length].
-jacobian: (3, n), of the tip in the joints that move it [length / unit of the joint]; with n
-above 3 give the constraint a damping above 0, or the step is Status.ill_posed.
-rows: a pair, matrix (m, n) and bounds (m,), which the increment u of the joints (or of the
-tip, n = 3) must satisfy: matrix @ u >= bounds.)";
+tip: (3,), in the frame of the mesh [length].
+desired: (3,), the desired increment [length].
+jacobian: (3, n), of the tip with respect to the joints [length / unit of the joint]. With n above 3
+the constraint needs a damping above 0; without it the step is Status.ill_posed.
+rows: a pair, matrix (m, n) and bounds (m,), for the increment u of the joints, or of the tip with
+n = 3: matrix @ u >= bounds.)";
 
 constexpr const char* steps_doc =
-    R"(One step for each pose, each for itself: every tip is placed anew, so that the result does not
-depend on the order or on the number of threads. Runs without Python's lock. Placing a tip may
-take longer than its step; where sides are known, inside='taken_as_is' does without.
+    R"(Returns one step for each pose: a Steps. Every tip is classified again, so the result does
+not depend on the order or on the number of threads. Runs without Python's lock. The classification
+may take longer than the step; inside='taken_as_is' skips it.
 
-tips: (n, 3) [length]. desired: (n, 3) [length]. A single one of either, (3,), serves all of
-the other. Taken without a copy if they are float64 and
-C-contiguous. threads: 1 to 1024; None for one a processor. out: a Steps to write to; None for
-a new one. A pose that is not finite has Status.invalid_input and zero motion.)";
+tips: (n, 3) [length].
+desired: (n, 3) [length].
+threads: 1 to 1024; None: one for each processor.
+out: a Steps to write to; None for a new one.
+
+A single tip or desired increment, (3,), serves all of the other. Float64 and C-contiguous arrays
+are not copied. A pose that is not finite has Status.invalid_input and zero motion.)";
 
 constexpr const char* replay_doc =
-    R"(The steps of 'keepout replay', one after another: a Steps. Runs without Python's lock, on one
-processor, as each step may depend on the last.
+    R"(Returns the steps of 'keepout replay', one after another: a Steps. Runs without Python's
+lock, on one processor, because each step may depend on the last.
 
-poses: (n, 6) [length]: a tip and a desired increment a row; with closed_loop, a goal and a
-reset position, of which the first is where the tip starts. max_step: longest increment asked
-for in a closed loop [length]. out: a Steps to write to; None for a new one.)";
+poses: (n, 6) [length]. Each row is a tip and a desired increment. With closed_loop, it is a goal
+and a reset position; the tip starts at the first reset position.
+max_step: longest desired increment in a closed loop [length].
+out: a Steps to write to; None for a new one.)";
 
 constexpr const char* simulate_doc =
-    R"(Closed loops: in each cycle the tip makes for where the hand is, as far as the step allows.
-Loops share nothing; each is done by one thread. Runs without Python's lock.
+    R"(Runs closed loops: in each cycle the tip moves towards the commanded position, as far as the
+step allows. Returns a Simulation. Loops are independent; one thread runs each. Runs without
+Python's lock.
 
-starts: (m, 3), where the tips start [length]. hands: (m, cycles, 3), where the hand is in each
-cycle [length]. max_step: longest increment asked for in a cycle [length], at most the radius.
-threads: 1 to 1024; None for one a processor. out: a Simulation to write to; None for a new one.)";
+starts: (m, 3), the tips at the start [length].
+hands: (m, cycles, 3), the commanded position in each cycle [length].
+max_step: longest desired increment of a cycle, at most the radius [length].
+threads: 1 to 1024; None: one for each processor.
+out: a Simulation to write to; None for a new one.)";
 
 constexpr const char* polytope_doc =
-    R"(The free space around a tip as one convex polytope, for a QP, an MPC or a sampler of your own:
-every motion that stays within all planes and within `radius` keeps the margin. Sides are not
-asked about: around a tip inside it is the space inside.
+    R"(Returns the free space around a tip as one convex polytope, for a QP, an MPC or a sampler of
+your own: a Polytope. Every motion that stays within all planes and within `radius` maintains the
+margin. The tip is not classified: around a tip inside the solid, it is the space inside.
 
 tip: (3,) [length]; radius >= 0 [length].)";
 
@@ -121,12 +130,11 @@ void bind_motion_constraint(py::module_& module) {
   bind_batches(type);
   type.def("step", &Guard::step, py::arg("tip"), py::arg("desired"),
            py::arg("jacobian") = py::none(), py::arg("rows") = py::none(), step_doc)
-      .def(
-          "follow", &Guard::follow, py::arg("index"),
-          "Replaces the mesh by one that has moved: an Index of it, such as index.refitted(mesh).\n"
-          "All tips are placed anew. Nothing tells if a surface has moved over a tip whose side "
-          "is\n"
-          "not checked: of an open mesh or with inside='taken_as_is'.")
+      .def("follow", &Guard::follow, py::arg("index"),
+           "Replaces the mesh by its moved successor: an Index of it, such as\n"
+           "index.refitted(mesh). All tips are classified again. If a tip is not classified\n"
+           "(open mesh, or inside='taken_as_is'), keepout does not detect that a surface has\n"
+           "moved over it.")
       .def("free_polytope", &Guard::free_polytope, py::arg("tip"), py::arg("radius"), polytope_doc)
       .def_property_readonly(
           "tool", [](const Guard& self) { return self.settings().tool; },
@@ -134,7 +142,8 @@ void bind_motion_constraint(py::module_& module) {
       .def_property_readonly(
           "distance_kept",
           [](const Guard& self) { return required_clearance(self.settings().options); },
-          "Clearance of the tip, or of all of the tool: tool radius and margin [length].")
+          "Required clearance of the tip, or of the whole tool: tool radius and margin\n"
+          "[length].")
       .def("__repr__", &repr);
 }
 

@@ -12,7 +12,7 @@
 namespace keepout::python {
 namespace {
 
-/// The options of a class as a list of keepout.Option.
+/// Returns the options of a class as a list of keepout.Option.
 template <class Settings>
 py::list rows_of(const Settings& settings) {
   const py::object type = py::module_::import("keepout._results").attr("Option");
@@ -114,7 +114,8 @@ void bind_options(py::module_& module) {
         options["InstrumentGuard"] = rows_of(InstrumentConstraintSettings());
         return options;
       },
-      "The options that the constructors take as keywords: a dict of lists of Option, by class.");
+      "Returns the options that the constructors take as keywords: a dict of lists of Option,\n"
+      "by class.");
 }
 
 }  // namespace keepout::python

@@ -13,25 +13,23 @@ namespace keepout::python {
 
 namespace py = pybind11;
 
-/// Returns the value that Python gives for an option. Throws Error for one that it may not have.
+/// Returns the value that Python gives for an option. Throws Error if the option cannot have it.
 OptionValue value_from(const OptionText& option, py::handle given);
 
 /// Returns "float", "int", "bool", "str", or the names of a choice as a Literal.
 std::string type_of(const OptionText& option);
 
-/// Returns a paragraph on an option, for a docstring.
+/// Returns the line on an option for a docstring.
 std::string described(const OptionText& option);
 
-/// Returns the keywords, with options that version 0.3 renamed under their new names, and warns of
-/// these.
+/// Returns the keywords; renames those that version 0.3 renamed, with a warning.
 py::kwargs with_new_names(const py::kwargs& given);
 
-/// Throws TypeError for the first of the `given` keywords that is not `known`; it asks for the one
-/// that was probably meant.
+/// Throws TypeError for the first of the `given` keywords that is not `known`, and suggests a name.
 void require_known(std::string_view function, const py::kwargs& given,
                    const std::vector<std::string_view>& known);
 
-/// Sets the options of a table that are given; one that is None stays as it is. Throws Error.
+/// Sets the options of a table that are given and not None. Throws Error for an invalid value.
 template <class Table, class Options>
 void take_given(const Table& table, const py::kwargs& given, Options& options) {
   for (const auto& option : table) {
@@ -52,8 +50,9 @@ std::string keywords_of(const Settings& settings) {
   return text;
 }
 
-/// The `settings` of a constraint in a new class, from the keywords of its constructor. `others`:
-/// the arguments that are not in a table. Throws TypeError for an unknown keyword, and Error.
+/// Returns the settings of a constraint from the keywords of its constructor. `others`: the
+/// arguments that are not in a table. Throws TypeError for an unknown keyword, Error for an invalid
+/// value.
 template <class Settings>
 Settings settings_from(std::string_view type, const py::kwargs& keywords,
                        std::vector<std::string_view> others) {

@@ -12,7 +12,7 @@
 namespace keepout::python {
 namespace {
 
-/// A copy, row by row.
+/// Returns a copy, row by row.
 template <class Matrix>
 py::array_t<double> array_of(const Matrix& matrix) {
   py::array_t<double> array({matrix.rows(), matrix.cols()});
@@ -33,50 +33,79 @@ RigidFit fit(const py::object& measured, const py::object& model, const py::obje
                    points(model, {"model", {any, 3}, "(n, 3)"}), each);
 }
 
+/// Warns, as 'keepout register' does, if the residuals speak of a mistake or contradict the FLE.
+void warn_of_doubt(const RigidFit& fit, std::optional<double> fle) {
+  const std::string doubt = fit.doubt.empty() && fle ? fit.doubt_of(*fle) : fit.doubt;
+  if (!doubt.empty()) warn("do not trust the registration: " + doubt);
+}
+
 double margin(const RigidFit& fit, const py::object& targets, double confidence,
               std::optional<double> fle) {
   const Expected expected{"targets", {any, 3}, "(n, 3) or (3,)", OneForAll::allowed};
-  return registration_margin(fit, points(targets, expected), confidence, fle);
+  const double margin = registration_margin(fit, points(targets, expected), confidence, fle);
+  warn_of_doubt(fit, fle);
+  return margin;
+}
+
+py::array_t<double> covariance(const RigidFit& fit, const py::object& target,
+                               std::optional<double> fle) {
+  const TargetError error = target_error(fit, point(target, "target"), fle);
+  warn_of_doubt(fit, fle);
+  return array_of(error.covariance);
 }
 
 constexpr const char* fit_doc =
-    R"(The RigidFit of points measured in the robot's frame to the same ones of the model, in the mesh's.
+    R"(Fits a rotation and a translation that bring points measured in the robot's frame onto the
+same points of the model, in the frame of the mesh. Returns a RigidFit.
 
-measured, model: (n, 3), n >= 3 pairs in the same order, both in the unit of the mesh: what is
-measured in metres times 1000 for a mesh in mm. weights: (n,), above 0, best proportional to
-1 / (localisation error of the pair)^2; None: all alike. Raises Error for points that coincide or
-lie on a line; large residuals are no error: see RigidFit.doubt.)";
+measured, model: (n, 3), n >= 3 pairs in the same order, both in the unit of the mesh. For a mesh in
+mm, multiply points measured in meters by 1000.
+weights: (n,), above 0, ideally proportional to the inverse square of the pair's localization error;
+None: all equal.
+
+Raises Error for points that coincide or lie on a line. Large residuals are no error: see
+RigidFit.doubt.)";
 
 constexpr const char* margin_doc =
-    R"(What to add to a guard's margin, so that with the probability `confidence` the registration is off
-by no more [length]: at a target, or at all points of the convex hull of several at once, such as
-of the corners of the box in which the tool works.
+    R"(Returns the length to add to a guard's margin for the error of the registration. With
+probability `confidence`, the error is smaller [length]. This holds at the target, or at all
+points of the convex hull of several targets, such as the corners of the box in which the tool
+works.
 
 targets: (3,) or (n, 3), in the frame of the mesh. fle: root mean square localisation error of a
 pair [length]; None: estimated from the residuals, which takes a larger margin where they are few.
+A UserWarning says if the residuals contradict it: see RigidFit.doubt_of; and of RigidFit.doubt.
 It does not cover what all pairs have in common, nor what moves later.)";
 
 }  // namespace
 
 void bind_registration(py::module_& module) {
   py::class_<RigidFit>(module, "RigidFit",
-                       "The rigid motion that brings measured points onto those of a mesh.")
+                       "The rotation and translation that bring measured points onto those of a\n"
+                       "mesh.")
       .def_property_readonly(
           "mesh_from_robot", [](const RigidFit& self) { return array_of(self.matrix()); },
-          "(4, 4) float64: takes a measured point to the mesh; as `base` of a Chain as well.")
+          "(4, 4) float64: transforms a measured point to the frame of the mesh; also the\n"
+          "`base` of a Chain.")
       .def_property_readonly(
           "residuals",
           [](const py::object& self) { return view(self.cast<const RigidFit&>().residuals, self); },
-          "(n,) float64: how far apart each pair is left [length].")
+          "(n,) float64: the distance that remains between the points of each pair [length].")
       .def_readonly("fre", &RigidFit::fre,
                     "Fiducial registration error: weighted root mean square of the residuals "
                     "[length].")
       .def_property_readonly("estimated_fle", &RigidFit::estimated_fle,
-                             "Localisation error of a pair that the residuals let expect [length].")
+                             "Localization error of a pair, estimated from the residuals\n"
+                             "[length].")
       .def_readonly("scale", &RigidFit::scale,
-                    "How much wider the model's points are spread than the measured ones.")
+                    "Ratio of the spread of the model's points to that of the measured points.")
       .def_readonly("doubt", &RigidFit::doubt,
                     "Which mistake the residuals speak of: a unit, an order, a reflection; or ''.")
+      .def(
+          "doubt_of", &RigidFit::doubt_of, py::arg("fle"),
+          "Returns why a localisation error of a pair contradicts the residuals, or ''. It does if "
+          "fewer than\none in a thousand registrations with that error have so large an FRE. fle: "
+          "root mean square, above 0\n[length].")
       .def("__repr__", [](const RigidFit& self) {
         return py::str("<keepout.RigidFit of {} pairs, fre={:.4g}>")
             .format(self.residuals.size(), self.fre);
@@ -84,11 +113,7 @@ void bind_registration(py::module_& module) {
   module.def("fit_rigid", &fit, py::arg("measured"), py::arg("model"),
              py::arg("weights") = py::none(), fit_doc);
   module.def(
-      "target_error",
-      [](const RigidFit& fit, const py::object& target, std::optional<double> fle) {
-        return array_of(target_error(fit, point(target, "target"), fle).covariance);
-      },
-      py::arg("fit"), py::arg("target"), py::arg("fle") = py::none(),
+      "target_error", &covariance, py::arg("fit"), py::arg("target"), py::arg("fle") = py::none(),
       "(3, 3) float64: covariance of the error of a registration at a target (3,), in the mesh's\n"
       "frame [length^2]. The square root of its trace is the target registration error, TRE, root\n"
       "mean square; that of its largest eigenvalue the deviation in the worst direction. fle: as "

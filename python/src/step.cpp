@@ -11,7 +11,7 @@
 namespace keepout::python {
 namespace {
 
-/// Of keepout.Status. Never released: the interpreter may be gone before our statics are.
+/// The members of keepout.Status. Never released: the interpreter may end before static objects.
 std::array<PyObject*, status_count> members{};
 
 Status status_from(py::ssize_t value) {
@@ -56,7 +56,7 @@ void bind_status(py::module_& module) {
       },
       py::arg("status"), py::arg("subject"),
       "Returns one line on what a status means for a subject, and what to do about it.");
-  // The enumeration is Python's own, as that is what numpy compares quickly.
+  // The enumeration is a Python class, because numpy compares its members quickly.
   const py::object type = py::module_::import("keepout._results").attr("Status");
   for (std::size_t i = 0; i < status_count; ++i) members[i] = type(i).release().ptr();
 }
@@ -64,7 +64,7 @@ void bind_status(py::module_& module) {
 void bind_planes(py::module_& module) {
   py::class_<Planes> planes(
       module, "Planes",
-      "Half-spaces: allowed are the motions d with normals @ d >= offsets. Arrays are read-only\n"
+      "Half-spaces: a motion d is allowed if normals @ d >= offsets. Arrays are read-only\n"
       "views.");
   add_view(
       planes, "normals", &Planes::planes, 3,
@@ -72,10 +72,11 @@ void bind_planes(py::module_& module) {
       "(k, 3) float64: unit normals, towards the free side.");
   add_view(
       planes, "offsets", &Planes::planes, 1, [](const HalfSpace& plane) { return &plane.offset; },
-      "(k,) float64 [length], relative to the tip: above 0 a plane asks for a retreat.");
+      "(k,) float64, relative to the tip: a plane with an offset above 0 requires a retreat\n"
+      "[length].");
   add_view(
       planes, "sources", &Planes::planes, 1, [](const HalfSpace& plane) { return &plane.source; },
-      "(k,) uint32: the triangles that called for them.");
+      "(k,) uint32: the triangle of each plane.");
   planes.def("__len__", [](const Planes& self) { return self.planes.size(); })
       .def("__repr__", [](const Planes& self) {
         return "<keepout.Planes: " + std::to_string(self.planes.size()) + ">";
@@ -83,12 +84,12 @@ void bind_planes(py::module_& module) {
 
   py::class_<FreeSpace, Planes> polytope(
       module, "Polytope",
-      "The free space around a tip as planes: see MotionConstraint.free_polytope. One that is not\n"
-      "ok allows standing still only.");
-  bind_ending(polytope, "Status.free if the planes are complete, or the Status that says why not.");
+      "The free space around a tip as planes: see MotionConstraint.free_polytope. If it is not\n"
+      "ok, it allows zero motion only.");
+  bind_ending(polytope, "Status.free if the planes are complete; otherwise the cause.");
   polytope
       .def_property_readonly(
-          "ok", [](const FreeSpace& self) { return self.ok(); }, "Whether the planes are complete.")
+          "ok", [](const FreeSpace& self) { return self.ok(); }, "True if the planes are complete.")
       .def("__repr__", [](const FreeSpace& self) {
         return py::str("<keepout.Polytope: {}, {} planes>")
             .format(name(self.status), self.planes.size());
@@ -97,26 +98,27 @@ void bind_planes(py::module_& module) {
 
 void bind_step(py::module_& module) {
   py::class_<StepResult> type(module, "Step",
-                              "What one control cycle may do. Arrays are read-only views of it.");
-  bind_step_result(type, "Whether the motion may be carried out; it may be zero.");
+                              "The result of one control cycle. Arrays are read-only views of\n"
+                              "it.");
+  bind_step_result(type, "True if the motion may be executed; it may be zero.");
   type.def_property_readonly(
           "motion",
           [](const py::object& self) {
             return view(self.cast<const StepResult&>().motion.data(), {3}, {sizeof(double)}, self);
           },
-          "(3,) float64 [length]: of the tip; zero unless ok.")
-      .def_readonly("planes", &StepResult::planes,
-                    "All planes that were posed to the solver: Planes.")
+          "(3,) float64: the motion of the tip; zero unless ok [length].")
+      .def_readonly("planes", &StepResult::planes, "All planes that the solver received: a Planes.")
       .def_property_readonly(
           "active",
           [](const py::object& self) { return view(self.cast<const StepResult&>().active, self); },
-          "(a,) uint32: the planes that limit the motion, by position; from len(planes) on, rows.")
-      .def_readonly("triangles", &StepResult::triangles, "How many triangles the step rests on.")
+          "(a,) uint32: the positions of the planes that limit the motion; from len(planes) on,\n"
+          "rows.")
+      .def_readonly("triangles", &StepResult::triangles,
+                    "The number of triangles that the step depends on.")
       .def_readonly(
           "distance", &StepResult::distance,
-          "From the tip, as the step began, to the nearest triangle [length]; None where the\n"
-          "rule does not come by it, unless the constraint was made with "
-          "distances='always'.")
+          "From the tip at the start of the step to the nearest triangle [length]; None if\n"
+          "unknown: see the option distances.")
       .def("__repr__", [](const StepResult& self) {
         const Vec3& u = self.motion;
         return py::str("<keepout.Step: {}, motion ({}, {}, {})>")

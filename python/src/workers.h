@@ -14,8 +14,8 @@ namespace keepout::python {
 
 namespace py = pybind11;
 
-/// Takes a lock that another thread of Python's may hold, which needs Python's own to go on: never
-/// waits for it while holding that.
+/// A lock whose holder in another thread may need Python's lock to continue. So it releases
+/// Python's lock while it waits.
 class InUse {
  public:
   explicit InUse(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
@@ -28,13 +28,13 @@ class InUse {
   std::unique_lock<std::mutex> lock_;
 };
 
-/// The constraints that batches are done with, one for each worker: made when a batch first needs
-/// them, and kept. One batch at a time.
+/// The constraints of the workers of a batch. They are made when a batch first needs them, and
+/// reused. One batch at a time.
 template <class Constraint>
 class Workers {
  public:
-  /// Calls `item(constraint, i, stop)` for each of a batch, without Python's lock, each worker with
-  /// a constraint that `make()` has made. For the rest see run_batch.
+  /// Calls `item(constraint, i, stop)` for each item of a batch, without Python's lock. `make()`
+  /// makes the constraint of a worker. See run_batch.
   template <class Make, class Item>
   void do_each(std::size_t items, std::size_t chunk, unsigned threads, const Make& make,
                const Item& item) {
@@ -54,7 +54,7 @@ class Workers {
     }
   }
 
-  /// Held while none may be at work. Taken before what single steps use, where both are.
+  /// The lock of a batch. Taken before the lock of single steps if both are needed.
   std::mutex& in_use() noexcept { return in_use_; }
   /// Precondition: in_use() is held.
   std::deque<Constraint>& constraints() noexcept { return constraints_; }

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the stubs of the module that was built, out of the signatures that pybind11 puts into docstrings:
-write_stubs.py OUT, with PYTHONPATH at the module."""
+"""Writes the stubs of the built module from the signatures that pybind11 puts into docstrings: write_stubs.py OUT,
+with PYTHONPATH at the module."""
 
 import ast
 import re
@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 
 """
 
-# The types of arguments and results that C++ takes as objects, lists, tuples or names, and checks itself. By function and
-# argument, else by argument; by class and member, else by member. Any other object is an array.
+# The types that C++ takes as objects, lists, tuples or names and checks itself. ARGUMENTS: by function and argument,
+# else by argument. RESULTS: by class and member, else by member. Any other object is an array.
 JOINT_KIND = 'Literal["revolute", "prismatic"]'
 SPACE = 'Literal["RAS", "LPS"] | None'
 ARGUMENTS = {
@@ -68,7 +68,7 @@ RESULTS = {
 
 
 def type_of(text, known, owner, name, sequence="list"):
-    """Returns a type of pybind11's as the stubs name it. Raises SystemExit for one that says nothing."""
+    """Returns a pybind11 type as the stubs name it. Raises SystemExit for a type without information."""
     if text not in ("bool", "float", "int") and (found := known.get(f"{owner}.{name}", known.get(name))):
         return found
     text = re.sub(r"keepout\.(_core\.)?", "", text)
@@ -78,12 +78,12 @@ def type_of(text, known, owner, name, sequence="list"):
     if known is ARGUMENTS:
         text = re.sub(r"\bobject\b", "ArrayLike", text)
     if re.search(r"\b(object|list|tuple|dict|Iterable|ndarray)\b(?!\[)", text):
-        sys.exit(f"write_stubs: what is {owner}.{name}, {text}? Write it into ARGUMENTS or RESULTS")
+        sys.exit(f"write_stubs: unknown type {text} of {owner}.{name}; add it to ARGUMENTS or RESULTS")
     return text
 
 
 def function(line, owner, indent, decorators):
-    """Returns the stub of a function from its line of a docstring; `owner`: its class, or "keepout"."""
+    """Returns the stub of a function from its line of a docstring. `owner`: its class, or "keepout"."""
     made = ast.parse(f"def {line}: ...").body[0]
     arguments = made.args
     scope = owner if made.name == "__init__" else made.name
@@ -103,7 +103,7 @@ def function(line, owner, indent, decorators):
 
 
 def functions(doc, owner, indent="    ", decorators=()):
-    """Returns the stubs of a function, several if it is overloaded."""
+    """Returns the stub of a function, or several if it is overloaded."""
     first, *rest = doc.splitlines()
     overloads = [line.split(" ", 1)[1] for line in rest if re.match(r"\d+\. \w+\(", line)]
     if overloads:
@@ -112,7 +112,7 @@ def functions(doc, owner, indent="    ", decorators=()):
 
 
 def prop(owner, name, member, options):
-    """Returns the stub of a property, whose type is told by its getter, an option, or "float64" in its docstring."""
+    """Returns the stub of a property. Its type comes from its getter, an option, or "float64" in its docstring."""
     signature = re.search(r"-> (.*)", member.fget.__doc__ or "")
     text = signature[1] if signature else options[name]
     if text == "numpy.ndarray":
@@ -121,7 +121,7 @@ def prop(owner, name, member, options):
 
 
 def class_of(owner, type_, options):
-    """Returns the stub of a class, with its base if that is ours."""
+    """Returns the stub of a class, with its base class if that is part of keepout."""
     base = type_.__mro__[1]
     lines = ""
     for name, member in vars(type_).items():

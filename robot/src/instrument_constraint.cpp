@@ -31,11 +31,28 @@ Solver& required(const std::unique_ptr<Solver>& solver) {
   return *solver;
 }
 
-const InstrumentCapacity& checked(const InstrumentCapacity& capacity) {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+
+InstrumentCapacity checked(InstrumentCapacity capacity) {
   const auto& planes = option_named(instrument_capacity_options, "max_planes");
   planes.accepted(planes.get(capacity));
+  if (capacity.work_units == 0) capacity.work_units = capacity.looks;
   return capacity;
 }
+
+InstrumentStep with_former_names(InstrumentStep step) noexcept {
+  step.share = step.fraction;
+  step.level = step.clearance_fraction;
+  return step;
+}
+
+MotionProof with_former_names(MotionProof proof) noexcept {
+  proof.share = proof.fraction;
+  return proof;
+}
+
+#pragma GCC diagnostic pop
 
 }  // namespace
 
@@ -109,7 +126,7 @@ struct InstrumentConstraint::State {
     // Without a proved motion beside meshes that move, no clearance is certified.
     if (!result.ok() && memory.is_moving()) result.clearance_fraction = 0.0;
     move_meshes();
-    return result;
+    return with_former_names(result);
   }
 
   /// Moves the meshes by their velocities.
@@ -171,7 +188,7 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
   const Status status =
       state_->renew_and_check(q, are_valid_positions(state_->memory, q, increment));
   if (!is_ok(status)) return {.status = status};
-  return prove_in_parts(state_->memory, state_->options, q, increment);
+  return with_former_names(prove_in_parts(state_->memory, state_->options, q, increment));
 }
 
 void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }

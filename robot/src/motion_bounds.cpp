@@ -25,6 +25,8 @@ MotionBounds motion_bounds(const ChainState& state, std::span<const double> incr
 }
 
 double recommended_band(const Instrument& instrument, double period, double least) {
+  option_named(instrument_options, "period").accepted(period);
+  OptionText{"least", {}, OptionKind::number, {}, not_negative}.accepted(least);
   const Chain& chain = instrument.chain();
   double most = 0.0;
   for (const LinkPoint& point : instrument.points()) {

@@ -15,7 +15,7 @@ NloptFinding AnswerCheck::judge(const VectorXd& u, const StepProblem& problem, c
   if (!u.allFinite()) return NloptFinding::not_finite;
   const Eigen::Index k = problem.jacobian.rows();
   const Eigen::Index n = problem.jacobian.cols();
-  // |to_task v| is the length of v in task space.
+  // to_task v| is the length of v in task space.
   StepProblem::Matrix to_task(k + n, n);
   to_task << problem.jacobian, std::sqrt(problem.damping) * StepProblem::Matrix::Identity(n, n);
   const VectorXd given = to_task * u;

@@ -8,15 +8,15 @@
 
 namespace keepout::nlopt {
 
-/// Judges a point that claims to be the optimum by the optimum that our own method has found.
+/// Compares a point that claims to be the optimum with the optimum that keepout's own method found.
 class AnswerCheck {
  public:
   void reserve(int variables, int rows) { nearest_.reserve(variables, rows); }
 
-  /// `optimal` if u, moved off the rows that it violates by the shortest way in task space,
-  /// satisfies the rows, is as near as `accuracy` to what was given and to the best there, and
-  /// meets the conditions of optimality to the accuracy with the multipliers of the best. Only then
-  /// `answer` is written: its u is valid until the next call, and the rest as long as `best`.
+  /// Judges u. First moves u to the rows that it violates, by the shortest way in task space.
+  /// Returns `optimal` if the result satisfies the rows, is within `accuracy` of u and of `best`,
+  /// and meets the conditions of optimality with the multipliers of `best`. Only then writes
+  /// `answer`. Its u is valid until the next call, and the rest as long as `best`.
   NloptFinding judge(const Eigen::VectorXd& u, const StepProblem& problem, const Solution& best,
                      double accuracy, Solution& answer);
 

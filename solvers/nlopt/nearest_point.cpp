@@ -12,17 +12,18 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Unit rows that differ by less are one: what one allows and the other does not is then less than
-/// a row may be violated by.
+/// Unit rows that differ by less count as one. Their constraints then differ by less than the
+/// tolerance of a row.
 constexpr double parallel = 1e-13;
 
-/// The rows that say something, ascending: of parallel ones the tightest, and of equals the first.
+/// Returns the rows that matter, ascending: the tightest of parallel rows, and the first of equal
+/// ones.
 std::vector<Index> telling_rows(const StepProblem& problem) {
   const Index n = problem.rows.cols();
   const VectorXd norms = problem.rows.rowwise().norm();
   const StepProblem::RowMatrix units = norms.cwiseInverse().asDiagonal() * problem.rows;
   const VectorXd bounds = problem.bounds.cwiseQuotient(norms);
-  // In this direction no two rows agree unless they mean to.
+  // Along this direction, rows agree only if they are parallel.
   const VectorXd direction =
       VectorXd::NullaryExpr(n, [](Index j) { return std::sin(1.0 + static_cast<double>(j * j)); });
   std::vector<std::pair<double, Index>> sorted;
@@ -30,7 +31,7 @@ std::vector<Index> telling_rows(const StepProblem& problem) {
     if (norms[i] > 0) sorted.emplace_back(units.row(i) * direction, i);
   }
   std::ranges::sort(sorted);
-  std::vector<std::pair<double, Index>> kept;  // with the key of the first of its bundle
+  std::vector<std::pair<double, Index>> kept;  // with the key of the first row of its bundle
   for (const auto& [key, row] : sorted) {
     const double least_key = key - parallel * static_cast<double>(n);
     auto twin = kept.rbegin();
@@ -74,7 +75,7 @@ NearestPoint::NearestPoint(const StepProblem& problem) {
         (problem.bounds[rows[static_cast<std::size_t>(i)]] - row.dot(unconstrained_)) / length;
   }
 
-  // The larger of what was asked for and what is in its way.
+  // The larger of the desired motion and the obstacles.
   const double asked = task_.desired() / std::sqrt(static_cast<double>(n));
   scale_ = std::max({target.norm(), asked, k > 0 ? bounds.maxCoeff() : 0.0});
   if (!(scale_ > active_set::smallest)) scale_ = 1;
@@ -83,7 +84,7 @@ NearestPoint::NearestPoint(const StepProblem& problem) {
 }
 
 VectorXd NearestPoint::variables_at(const VectorXd& z) const {
-  // What z adds to u0, which is exact where z is zero.
+  // The change of u by z, which is exact if z is zero.
   VectorXd u = scale_ * z;
   task_.point_from_task(u);
   return unconstrained_ + u;

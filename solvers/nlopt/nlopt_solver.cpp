@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The one file that sees NLopt.
+// The only file that uses NLopt.
 #include "keepout/solvers/nlopt_solver.h"
 
 #include <nlopt.h>
@@ -22,8 +22,8 @@ struct Destroy {
 };
 using Optimizer = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, Destroy>;
 
-/// How a method is run: when it counts as converged, in multiples of the scale, and what it may
-/// spend.
+/// The settings of a method: its tolerance of convergence, in multiples of the scale, and its limit
+/// of evaluations.
 struct Schedule {
   nlopt_algorithm algorithm;
   double x_tolerance;
@@ -47,8 +47,8 @@ std::string_view claim_of(nlopt_result result) noexcept {
   return text != nullptr ? text : "unknown";
 }
 
-/// What NLopt calls back with. Counts for itself: not every loop of NLopt minds its own limit, nor
-/// stops at what is not a number (its issues 28 and 350).
+/// The callbacks for NLopt. They count evaluations and check for NaN, because some loops of NLopt
+/// do neither (its issues 28 and 350).
 struct Callback {
   const nlopt::NearestPoint& problem;
   nlopt_opt optimizer;
@@ -69,7 +69,8 @@ struct Callback {
                          void* data) {
     const nlopt::NearestPoint& problem = static_cast<Callback*>(data)->problem;
     const Eigen::Map<const Eigen::VectorXd> z(x, n);
-    Eigen::Map<Eigen::VectorXd> violations(result, m);  // no temporary: C cannot be thrown through
+    Eigen::Map<Eigen::VectorXd> violations(result, m);  // no temporary: exceptions cannot pass
+                                                        // through C
     violations = problem.bounds;
     violations.noalias() -= problem.normals * z;
     if (gradient != nullptr) {
@@ -78,9 +79,9 @@ struct Callback {
   }
 };
 
-/// Rest, or somewhere inside of all rows that is reached from there by projecting on one violated
-/// row after the other, if it is soon: MMA rarely recovers from a start that violates a row, were
-/// it by the last digit.
+/// Returns the start: rest, or a point inside all rows near it, if some projections on one violated
+/// row after another find one. MMA rarely recovers from a start that violates a row, even by the
+/// last digit.
 Eigen::VectorXd start_of(const nlopt::NearestPoint& problem) {
   constexpr int most_projections = 64;
   constexpr double inside = 1e-3;
@@ -94,14 +95,14 @@ Eigen::VectorXd start_of(const nlopt::NearestPoint& problem) {
   return z;
 }
 
-/// What NLopt makes of a problem; nothing of it is checked.
+/// An answer of NLopt, which is not checked yet.
 struct Attempt {
-  std::string_view claim;  // as NLopt spells it
+  std::string_view claim;  // in NLopt's spelling
   Eigen::VectorXd z;
   int evaluations = 0;
 };
 
-/// Runs a method of NLopt. Deterministic: limited in evaluations, never in time.
+/// Runs a method of NLopt. Deterministic, because the limit is in evaluations and not in time.
 Attempt minimize(NloptMethod method, const nlopt::NearestPoint& problem) {
   const auto n = static_cast<unsigned>(problem.normals.cols());
   const auto m = static_cast<unsigned>(problem.normals.rows());
@@ -114,14 +115,14 @@ Attempt minimize(NloptMethod method, const nlopt::NearestPoint& problem) {
   }
   nlopt_opt opt = optimizer.get();
   Callback callback{problem, opt, 2 * schedule.most_evaluations};
-  // A row counts as satisfied a little early; the check does not take that from it.
+  // A row counts as satisfied a little early, which AnswerCheck allows for.
   const Eigen::VectorXd tolerances = Eigen::VectorXd::Constant(m, 1e-13);
   bool set = nlopt_set_min_objective(opt, Callback::cost, &callback) == NLOPT_SUCCESS &&
              nlopt_set_xtol_abs1(opt, schedule.x_tolerance) == NLOPT_SUCCESS &&
              nlopt_set_maxeval(opt, schedule.most_evaluations) == NLOPT_SUCCESS &&
              nlopt_set_initial_step1(opt, 0.5) == NLOPT_SUCCESS &&
-             // Of the problem in the multipliers that MMA solves in each of its steps, by default
-             // 100000: seconds.
+             // A limit for the problem in the multipliers that MMA solves in each step. The default
+             // of 100000 takes seconds.
              nlopt_set_param(opt, "dual_maxeval", 500) == NLOPT_SUCCESS;
   if (m > 0) {
     set = set && nlopt_add_inequality_mconstraint(opt, m, Callback::violations, &callback,

@@ -24,7 +24,7 @@ bool shapes_agree(const StepProblem& problem) noexcept {
 
 /// Returns true if J, d and damping are finite and in range.
 bool cost_in_range(const StepProblem& problem) noexcept {
-  // Written so that NaN fails.
+  // These comparisons are false for NaN.
   const auto in_range = [](double x) { return std::abs(x) <= active_set::largest; };
   const auto all_in_range = [&](const auto& numbers) {
     return std::all_of(numbers.data(), numbers.data() + numbers.size(), in_range);
@@ -43,7 +43,7 @@ struct ActiveSet::Workspace {
   int variables = 0;
   int rows = 0;
   RowStore store;
-  PointMethod point;       // three variables with J = I, as of a tip (moves_a_point)
+  PointMethod point;       // three variables with J = I, as for a tip (moves_a_point)
   Method<3> space;         // three joints, and problems that PointMethod could not prove
   Method<6> six_joints;    // a pose, or most arms
   Method<7> seven_joints;  // a redundant arm

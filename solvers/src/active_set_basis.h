@@ -8,9 +8,9 @@
 
 namespace keepout::active_set {
 
-/// The active rows in task space as the columns of Q1 T: Q = [Q1 Q2] orthogonal, T upper
-/// triangular, updated as rows come and go (Goldfarb & Idnani 1983, section 4). Q1 spans the
-/// active rows; moving along Q2 leaves them as they are.
+/// The active rows in task space as the columns of Q1 T, where Q = [Q1 Q2] is orthogonal and T
+/// upper triangular (Goldfarb & Idnani 1983, section 4). Both are updated when rows enter and
+/// leave. Q1 spans the active rows. A motion along Q2 does not change their values.
 template <int N>
 class Basis {
  public:
@@ -32,7 +32,7 @@ class Basis {
   int size() const noexcept { return size_; }
   int row(int i) const noexcept { return active_[i]; }
 
-  /// h = Q^T w
+  /// Computes h = Q^T w.
   void project(const Vector<N>& w, Vector<N>& h) const noexcept {
     for (int j = 0; j < n(); ++j) {
       h[j] = 0;
@@ -40,7 +40,7 @@ class Basis {
     }
   }
 
-  /// y = Q h, using the entries of h from `first` on.
+  /// Computes y = Q h, using the entries of h from `first` on.
   void combine(const Vector<N>& h, int first, Vector<N>& y) const noexcept {
     for (int i = 0; i < n(); ++i) y[i] = 0;
     for (int j = first; j < n(); ++j) {
@@ -48,7 +48,7 @@ class Basis {
     }
   }
 
-  /// T r = the first size() entries of r, in place.
+  /// Solves T r = the first size() entries of r, in place.
   void solve(Vector<N>& r) const noexcept {
     for (int j = size_ - 1; j >= 0; --j) {
       r[j] /= t_(j, j);
@@ -56,7 +56,7 @@ class Basis {
     }
   }
 
-  /// T^T s = the first size() entries of s, in place.
+  /// Solves T^T s = the first size() entries of s, in place.
   void solve_transposed(Vector<N>& s) const noexcept {
     for (int j = 0; j < size_; ++j) {
       for (int i = 0; i < j; ++i) s[j] -= t_(i, j) * s[i];
@@ -64,14 +64,14 @@ class Basis {
     }
   }
 
-  /// |w| of an active row.
+  /// Returns |w| of an active row.
   double length(int j) const noexcept {
     double square = 0;
     for (int i = 0; i <= j; ++i) square += t_(i, j) * t_(i, j);
     return std::sqrt(square);
   }
 
-  /// Takes in a row with h = Q^T w: reflects Q2 so that its first column carries what is new.
+  /// Adds a row with h = Q^T w. Reflects Q2 so that its first column spans the new part of the row.
   void add(int row, Vector<N>& h) noexcept {
     double below = 0;
     for (int j = size_ + 1; j < n(); ++j) below += h[j] * h[j];
@@ -92,7 +92,7 @@ class Basis {
     active_[size_++] = row;
   }
 
-  /// Lets the row at `position` go: the columns of T to its right move up, and rotations of
+  /// Removes the row at `position`. The columns of T to its right move left, and rotations of
   /// neighboring rows make T triangular again.
   void drop(int position) noexcept {
     --size_;
@@ -122,7 +122,7 @@ class Basis {
   int size_ = 0;
   Matrix<N> q_;
   Matrix<N> t_;
-  Vector<N> along_;  // Q h, on the way
+  Vector<N> along_;  // Q h, a temporary
   Eigen::Matrix<int, N, 1> active_;
 };
 

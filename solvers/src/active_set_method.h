@@ -15,7 +15,8 @@ namespace keepout::active_set {
 
 /// Goldfarb and Idnani's method for N variables (Eigen::Dynamic: any number up to the reserve).
 ///
-/// Multipliers in here are those of half the cost: J^T (J u - d) + damping u = sum mu_i A_i^T.
+/// Multipliers in this class are those of half the cost: J^T (J u - d) + damping u = sum mu_i
+/// A_i^T.
 template <int N>
 class Method {
  public:
@@ -28,7 +29,8 @@ class Method {
     }
   }
 
-  /// The shapes agree and fit the reserve; J, d and damping are in range.
+  /// Solves a problem. Precondition: the shapes agree and fit the reserve; J, d and damping are in
+  /// range.
   SolveStatus solve(const StepProblem& problem) noexcept {
     n_ = static_cast<int>(problem.jacobian.cols());
     iterations_ = 0;
@@ -39,8 +41,8 @@ class Method {
     if (!task_.read(problem)) return SolveStatus::ill_posed;
     start();
 
-    // Violated rows enter. When none is left, the active rows are settled once; the motion is
-    // optimal if no row is violated after that, either.
+    // Violated rows enter. Without violated rows, the active rows are settled once. The motion is
+    // optimal if no row is violated after that either.
     const int budget = 100 + 20 * n();
     while (iterations_ < budget) {
       const int row = rows_.most_violated(u_, feasibility * reach_);
@@ -70,11 +72,11 @@ class Method {
 
  private:
   enum class Outcome {
-    moved,       // the rows need another look
-    settled,     // they do not
+    moved,       // the rows must be scanned again
+    settled,     // no scan is needed
     infeasible,  // proven by weights on the active rows
-    blocked,     // the entering row cannot be reached, but rounding may be to blame
-    lost         // the active rows are too close to dependent to solve with, or u too large
+    blocked,     // the entering row cannot be reached, possibly because of rounding
+    lost         // the active rows are almost dependent, or u is too large
   };
 
   int n() const noexcept { return N == Eigen::Dynamic ? n_ : N; }
@@ -85,7 +87,7 @@ class Method {
     return std::sqrt(square);
   }
 
-  /// The unconstrained minimum: optimal for the problem without rows.
+  /// Starts at the unconstrained minimum, which is optimal without rows.
   void start() noexcept {
     for (int j = 0; j < n(); ++j) u_[j] = task_.target()[j];
     task_.point_from_task(u_);
@@ -94,13 +96,13 @@ class Method {
     reach_ = std::max(norm(u_), asked_);
   }
 
-  /// True for a violation that rounding explains at a vertex of slanted planes.
+  /// Returns true for a violation that rounding explains at a vertex of slanted planes.
   bool negligible(int row) const noexcept {
     return rows_.violation(row, u_) <= acceptable * reach_ * rows_.norm(row);
   }
 
-  /// Step 2 of the paper: raises the multiplier of a violated row until the row holds, letting go
-  /// of active rows whose multiplier reaches zero on the way.
+  /// Step 2 of Goldfarb & Idnani: raises the multiplier of a violated row until the row is
+  /// satisfied. Drops active rows whose multiplier reaches zero meanwhile.
   Outcome enter(int row) noexcept {
     double mu = 0;
     task_.row_to_task(rows_[row], w_);
@@ -112,7 +114,7 @@ class Method {
       const double full = independent && squared > 0 ? violation / squared : unbounded;
       const auto [blocking, partial] = longest_dual_step();
       const double t = std::min(full, partial);
-      if (!(t < unbounded)) {  // so that NaN stops here as well
+      if (!(t < unbounded)) {  // this form also stops for NaN
         return no_point_satisfies(row) ? Outcome::infeasible : Outcome::blocked;
       }
 
@@ -130,9 +132,9 @@ class Method {
     }
   }
 
-  /// Writes the row as r on the active rows plus a rest: h = Q^T w and r = T^-1 h1. True if the
-  /// rest is more than rounding. It is measured in u, where it is exact to rounding whatever the
-  /// condition of J.
+  /// Writes the row as a sum of active rows with weights r, plus a rest: h = Q^T w and r = T^-1 h1.
+  /// Returns true if the rest exceeds rounding. The rest is measured in u, where it is exact to
+  /// rounding for any condition of J.
   bool split(int row) noexcept {
     const int active = basis_.size();
     basis_.project(w_, h_);
@@ -155,7 +157,7 @@ class Method {
     return active < n() && norm(rest_) > noise_;
   }
 
-  /// rest = row - sum r_i (active row i); returns the size of what was summed.
+  /// Computes rest = row - sum r_i (active row i). Returns the sum of the sizes of its terms.
   double find_rest(int row) noexcept {
     double size = rows_.norm(row);
     for (int j = 0; j < n(); ++j) rest_[j] = rows_[row][j];
@@ -167,8 +169,8 @@ class Method {
     return size;
   }
 
-  /// How far the dual step may go until an active multiplier reaches zero, and which; the
-  /// first to have entered, of equals.
+  /// Returns the longest dual step until an active multiplier reaches zero, and its position. If
+  /// two are equal, the first to have entered counts.
   std::pair<int, double> longest_dual_step() const noexcept {
     std::pair<int, double> first{no_row, unbounded};
     for (int i = 0; i < basis_.size(); ++i) {
@@ -179,7 +181,7 @@ class Method {
     return first;
   }
 
-  /// Moves by t along what is left of the entering row, which keeps the active rows as they are.
+  /// Moves by t along the rest of the entering row, which does not change the active rows' values.
   void move(double t) noexcept {
     basis_.combine(h_, basis_.size(), step_);
     task_.point_from_task(step_);
@@ -192,9 +194,9 @@ class Method {
     for (int i = position; i < basis_.size(); ++i) mu_[i] = mu_[i + 1];
   }
 
-  /// Farkas: with weights s >= 0, every point that satisfies the row and the active ones has
-  /// (row + sum s_i a_i) u >= b + sum s_i b_i. The left side is at most rounding, so a right side
-  /// that is clearly positive is out of reach.
+  /// Returns true if no point satisfies the row and the active ones (Farkas). With weights s >= 0,
+  /// every such point has (row + sum s_i a_i) u >= b + sum s_i b_i. The left side is at most
+  /// rounding, so a clearly positive right side proves it.
   bool no_point_satisfies(int row) noexcept {
     double bound = rows_.bound(row);
     double bound_size = std::abs(bound);
@@ -208,9 +210,9 @@ class Method {
     return bound > left + 2 * (n() + 1) * epsilon * bound_size;
   }
 
-  /// With no row violated: corrects u and mu until the active rows hold and the gradient balances
-  /// to rounding, and lets go of rows that turn out to pull. `settled` only if the rows need no
-  /// second look.
+  /// Called if no row is violated. Corrects u and mu until the active rows hold and the gradient
+  /// balances, up to rounding. Drops rows with negative multipliers. Returns `settled` only if the
+  /// rows need no second scan.
   Outcome settle() noexcept {
     ++iterations_;
     for (int j = 0; j < n(); ++j) rest_[j] = u_[j];
@@ -231,8 +233,8 @@ class Method {
     return !dropped && scanned <= 2 * feasibility * reach_ ? Outcome::settled : Outcome::moved;
   }
 
-  /// Newton's correction for the active rows as equations, from residuals taken in u and so free
-  /// of what the updates of the basis have accumulated. False if it does not get there.
+  /// Newton's correction for the active rows as equations. It uses residuals in u, which are free
+  /// of the accumulated errors of the basis updates. Returns false if it does not converge.
   bool correct() noexcept {
     Residual left = residual();
     for (int pass = 0; pass < 4 && left.worst() > rounding; ++pass) {
@@ -247,11 +249,11 @@ class Method {
   struct Residual {
     double slack;      // of the active rows, relative to their norm and the reach
     double gradient;   // in task space, relative to |d|, |J| |u| and the multipliers
-    double imbalance;  // the same in u; smaller by up to the condition of J
+    double imbalance;  // as gradient, but in u; smaller by up to the condition of J
     double worst() const noexcept { return std::max(slack, gradient); }
   };
 
-  /// Leaves b - A u of the active rows in slack_, the unbalanced gradient in task space in h_.
+  /// Writes b - A u of the active rows to slack_, and the unbalanced gradient in task space to h_.
   Residual residual() noexcept {
     double slack = 0;
     double forces = task_.desired() + task_.size() * norm(u_);
@@ -283,7 +285,8 @@ class Method {
     for (int j = 0; j < n(); ++j) u_[j] += h_[j];
   }
 
-  /// The active row with the most negative multiplier, weighed by its length, if more than noise.
+  /// Returns the active row with the most negative multiplier times length, if it exceeds the
+  /// noise.
   int most_negative() const noexcept {
     double forces = task_.desired();
     for (int i = 0; i < basis_.size(); ++i) forces += std::abs(mu_[i]) * basis_.length(i);
@@ -305,16 +308,17 @@ class Method {
 
   int n_ = 0;
   int iterations_ = 0;
-  bool corrected_ = false;  // u and mu are as exact as they get for the active rows
+  bool corrected_ = false;  // u and mu are as exact as possible for the active rows
   double asked_ = 0;        // |d| / |J|
-  double reach_ = 0;        // largest |u| on the way, at least asked_
+  double reach_ = 0;        // largest |u| so far, at least asked_
   double noise_ = 0;        // rounding of the entering row's split, in the unit of the row
   Rows<N> rows_;
   TaskSpace<N> task_;
   Basis<N> basis_;
   Vector<N> u_;
   Vector<N> mu_;  // of the active rows, in the order of the basis
-  // The entering row: in task space, in the basis, on active rows, and the rest. Else scratch.
+  // The entering row: in task space, in the basis, on active rows, and the rest. Otherwise
+  // temporary.
   Vector<N> w_, h_, r_, rest_;
   Vector<N> step_, gradient_, slack_;
 };

@@ -13,17 +13,16 @@
 
 namespace keepout::active_set {
 
-/// Vectors and matrices of N variables; Eigen::Dynamic for a number known at run time only, which
-/// then have the reserved size and are used in part. Loops are written out throughout: they do
-/// not allocate, and unroll where N is known.
+/// Vectors and matrices of N variables. For Eigen::Dynamic they have the reserved size and are used
+/// in part. All loops are written out: they do not allocate, and unroll if N is known.
 template <int N>
 using Vector = Eigen::Matrix<double, N, 1>;
 template <int N>
 using Matrix = Eigen::Matrix<double, N, N>;
 
-/// What is wrong with a row, a (n) with a . a = square: a number out of range, or a row of zeros
-/// that no u satisfies. Such a row has no length to measure b against, hence b > 0 is infeasible
-/// however small.
+/// Returns the status of a row a (n): invalid_input for a number out of range, infeasible for a row
+/// of zeros with b > 0, else optimal. A row of zeros has no length to compare b with, so any b > 0
+/// is infeasible. `square`: a . a.
 inline SolveStatus row_status(const double* a, Eigen::Index n, double square, double b) noexcept {
   if (square >= smallest * smallest && square <= largest * largest && std::abs(b) <= largest)
       [[likely]] {
@@ -34,7 +33,7 @@ inline SolveStatus row_status(const double* a, Eigen::Index n, double square, do
   return b > 0 ? SolveStatus::infeasible : SolveStatus::optimal;
 }
 
-/// Memory for the rows of a problem, whatever their number of variables.
+/// Memory for the rows of a problem with any number of variables.
 struct RowStore {
   void reserve(int variables, int rows) {
     const auto count = static_cast<std::size_t>(rows);
@@ -45,20 +44,20 @@ struct RowStore {
 
   std::vector<double> written;  // rows that come from planes, n^T J
   std::vector<double> squares;  // of the norms
-  UnitPlanes planes;            // to look for the one violated most
+  UnitPlanes planes;            // to find the plane that is violated most
 };
 
 /// The constraints A u >= b, and the squared norm of each row of A.
 ///
-/// Rows that come from planes are looked through where the planes are: violations are measured at
-/// the tip, J u, and only rows that enter are written out, provided that no direction of the tip is
-/// all but out of reach of the joints.
+/// Rows of planes are scanned as planes: their violations are measured at the tip, J u, and only
+/// rows that enter are written out. This requires that the joints can move the tip well in every
+/// direction.
 template <int N>
 class Rows {
  public:
   void reserve(RowStore& store) { store_ = &store; }
 
-  /// Takes the rows in. Anything but `optimal` ends the solve: see row_status.
+  /// Reads the rows. Any status other than `optimal` ends the solve: see row_status.
   SolveStatus read(const StepProblem& problem) noexcept {
     problem_ = &problem;
     planes_ = static_cast<int>(problem.planes.size());
@@ -77,9 +76,9 @@ class Rows {
     return status;
   }
 
-  /// The row violated most, in units of u, of those violated by more than the tolerance; the
-  /// lowest of equals. Compares squares: a root and a division a row would cost more than the rest.
-  /// Of the planes, the one that the tip violates most.
+  /// Returns the row that is violated most, in units of u, if by more than the tolerance; the
+  /// lowest of equals. Compares squares, because a root and a division for each row would take most
+  /// of the time. Among the planes, takes the one that the tip violates most.
   int most_violated(const Vector<N>& u, double tolerance) noexcept {
     int worst = no_row;
     double worst_square = tolerance * tolerance;
@@ -122,7 +121,7 @@ class Rows {
               n(), store_->written.data() + static_cast<std::ptrdiff_t>(row) * n());
   }
 
-  /// False if the planes must be looked through as rows.
+  /// Returns false if the planes must be scanned as rows.
   bool list_planes() noexcept {
     if (!measure_jacobian()) return false;
     const bool usable = store_->planes.assign(problem_->planes);
@@ -130,9 +129,9 @@ class Rows {
     return usable;
   }
 
-  /// Bounds |n^T J| for unit vectors n: not below `shortest_`, the root of the smallest eigenvalue
-  /// of J J^T, of which the other two have a product of at most (trace / 2)^2. False if the
-  /// Jacobian is so uneven that rounding at the tip counts for a row.
+  /// Computes a lower bound `shortest_` of |n^T J| for unit vectors n. It is the root of the
+  /// smallest eigenvalue of J J^T, whose other two eigenvalues have a product of at most (trace /
+  /// 2)^2. Returns false if the Jacobian is so uneven that rounding at the tip matters for a row.
   bool measure_jacobian() noexcept {
     double g[6] = {};  // J J^T: xx, yy, zz, xy, xz, yz
     const double* j = problem_->jacobian.data();
@@ -155,8 +154,8 @@ class Rows {
            least >= smallest * smallest;
   }
 
-  /// None but a row that is violated beyond the tolerance: what the tip is told to miss is less
-  /// exact than the row, and counts from beyond its rounding on.
+  /// Returns a plane's row only if it is violated beyond the tolerance. The violation at the tip is
+  /// less exact than that of the row, so it counts only beyond its rounding.
   int most_violated_plane(const Vector<N>& u, double tolerance, double& worst_square) noexcept {
     double tip[3] = {};
     double length2 = 0;
@@ -179,11 +178,11 @@ class Rows {
   const StepProblem* problem_ = nullptr;
   RowStore* store_ = nullptr;
   int planes_ = 0;      // the first rows
-  int first_read_ = 0;  // row that is looked at one by one
+  int first_read_ = 0;  // the first row that is scanned one by one
   int size_ = 0;
   int variables_ = 0;
-  double shortest_ = 0;          // |n^T J|, at least
-  double size_of_jacobian_ = 0;  // Frobenius
+  double shortest_ = 0;          // lower bound of |n^T J|
+  double size_of_jacobian_ = 0;  // Frobenius norm
 };
 
 }  // namespace keepout::active_set

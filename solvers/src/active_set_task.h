@@ -8,9 +8,9 @@
 
 namespace keepout::active_set {
 
-/// The coordinates y = R u, with [J; sqrt(damping) I] = Q R, in which the cost is the distance to
-/// one point, |y - c|^2 + constant. R comes from J itself, never from J^T J, whose condition
-/// number is the square.
+/// The coordinates y = R u, with [J; sqrt(damping) I] = Q R. In these the cost is the squared
+/// distance from one point, |y - c|^2 + constant. R comes from J itself and not from J^T J, whose
+/// condition number is the square.
 template <int N>
 class TaskSpace {
  public:
@@ -22,7 +22,7 @@ class TaskSpace {
     tail_.resize(variables);
   }
 
-  /// False if no unique minimizer exists to working precision.
+  /// Returns false if there is no unique minimizer to working precision.
   bool read(const StepProblem& problem) noexcept {
     problem_ = &problem;
     n_ = static_cast<int>(problem.jacobian.cols());
@@ -41,7 +41,7 @@ class TaskSpace {
   double desired() const noexcept { return desired_; }          // |d|
   double size() const noexcept { return size_; }                // |R|, Frobenius
 
-  /// A row in task space: R^T w = a.
+  /// Computes a row in task space: R^T w = a.
   void row_to_task(const double* a, Vector<N>& w) const noexcept {
     for (int j = 0; j < n(); ++j) w[j] = a[j];
     if (identity_) return;
@@ -51,7 +51,7 @@ class TaskSpace {
     }
   }
 
-  /// A point of task space in the variables: R u = y, in place.
+  /// Transforms a point of task space to the variables: R u = y, in place.
   void point_from_task(Vector<N>& y) const noexcept {
     if (identity_) return;
     for (int j = n() - 1; j >= 0; --j) {
@@ -60,7 +60,7 @@ class TaskSpace {
     }
   }
 
-  /// Half of the negative gradient of the cost, J^T (d - J u) - damping u.
+  /// Computes half of the negative gradient of the cost, J^T (d - J u) - damping u.
   void descent(const Vector<N>& u, Vector<N>& g) const noexcept {
     if (identity_) {
       for (int j = 0; j < n(); ++j) g[j] = target_[j] - u[j];
@@ -88,8 +88,8 @@ class TaskSpace {
     return true;
   }
 
-  /// Starts from the rows of the damping, which are triangular already, and folds in J by blocks
-  /// of n rows: any number of task rows, in memory that depends on n alone.
+  /// Starts from the rows of the damping, which are triangular, and adds J in blocks of n rows. So
+  /// any number of task rows needs memory for n rows only.
   void factor() noexcept {
     const StepProblem& p = *problem_;
     for (int j = 0; j < n(); ++j) {
@@ -114,8 +114,8 @@ class TaskSpace {
     size_ = std::sqrt(square);
   }
 
-  /// [R c; block tail] to [R' c'; 0 *] by Householder reflections, each of which touches one row
-  /// of R and the whole block.
+  /// Transforms [R c; block tail] to [R' c'; 0 *] by Householder reflections, each of one row of R
+  /// and the whole block.
   void fold_in(int count) noexcept {
     for (int j = 0; j < n(); ++j) {
       double below = 0;
@@ -138,7 +138,7 @@ class TaskSpace {
     }
   }
 
-  /// |R| |R^-1|, in Frobenius norms: exact where a look at the diagonal of R can be fooled.
+  /// Returns |R| |R^-1| in Frobenius norms. The diagonal of R alone could be misleading.
   double condition() noexcept {
     double square = 0;
     for (int l = 0; l < n(); ++l) {
@@ -158,9 +158,9 @@ class TaskSpace {
   double desired_ = 0;
   double size_ = 0;
   Matrix<N> r_;        // upper triangle
-  Vector<N> inverse_;  // 1 / r_jj: a division waits longer than all else in a substitution
+  Vector<N> inverse_;  // 1 / r_jj, because a division would take most of the time of a substitution
   Vector<N> target_;   // c
-  Matrix<N> block_;    // rows of J on their way into R
+  Matrix<N> block_;    // rows of J that are being added to R
   Vector<N> tail_;     // their part of d
 };
 

@@ -28,7 +28,7 @@ bool well_formed(const StepProblem& problem, const Solution& solution) {
   return true;
 }
 
-/// The upper triangle R of the QR factors of [J; sqrt(damping) I].
+/// Returns the upper triangle R of the QR factors of [J; sqrt(damping) I].
 RealMatrix task_factor(const StepProblem& problem) {
   const Eigen::Index k = problem.jacobian.rows();
   const Eigen::Index n = problem.jacobian.cols();
@@ -38,7 +38,7 @@ RealMatrix task_factor(const StepProblem& problem) {
   return Eigen::HouseholderQR<RealMatrix>(stacked).matrixQR().topRows(n);
 }
 
-/// part / whole, where nothing of nothing is nothing and NaN counts as infinite.
+/// Returns part / whole, where 0 / 0 is 0 and NaN counts as infinite.
 double relative(Real part, Real whole) {
   if (part == 0) return 0;
   const auto value = static_cast<double>(part / whole);

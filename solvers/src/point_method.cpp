@@ -9,13 +9,13 @@
 namespace keepout::active_set {
 namespace {
 
-// So few planes are scanned without being listed coordinate by coordinate.
+// Up to this number, planes are scanned as they are, without listing their coordinates.
 constexpr std::size_t most_scanned = 16;
 
-// A row at a smaller angle to the span of the active ones does not enter.
+// A row at a smaller angle to the span of the active rows does not enter.
 constexpr double least_angle = 1e-7;
 
-// Error of an active row, relative to its norm and the reach. Far below a violation.
+// Error of an active row, relative to its norm and the reach. It is far below a violation.
 constexpr double exact_enough = 32 * epsilon;
 
 constexpr int most_iterations = 60;
@@ -28,7 +28,7 @@ Violated most_violated(std::span<const HalfSpace> planes, const Vec3& u) noexcep
   Violated worst;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const double by = missing(planes[i].normal.data(), planes[i].offset, u.data());
-    const bool more = by > worst.by;  // chosen without a branch, which is hard to predict
+    const bool more = by > worst.by;  // chosen without a branch, because it is hard to predict
     worst.row = more ? static_cast<int>(i) : worst.row;
     worst.by = more ? by : worst.by;
   }
@@ -62,8 +62,7 @@ bool PointMethod::solve(const StepProblem& problem) noexcept {
   return list_rows(problem) && run(problem, scan);
 }
 
-/// Lists all rows as unit planes. Rows that are unit vectors are not scaled, so that they are
-/// chosen as planes are.
+/// Lists all rows as unit planes. Unit rows are not scaled, so that they are chosen like planes.
 bool PointMethod::list_rows(const StepProblem& problem) noexcept {
   bool usable = unit_.assign(problem.planes);
   for (Eigen::Index i = static_cast<Eigen::Index>(problem.planes.size()); i < problem.rows.rows();
@@ -99,7 +98,7 @@ bool PointMethod::run(const StepProblem& problem, const Scan& scan) noexcept {
   return false;
 }
 
-/// Puts a row in the place of the one that is to enter.
+/// Writes a row to the place of the entering row.
 void PointMethod::take_in(const StepProblem& problem, int row) noexcept {
   ActiveRow& active = active_rows_[at(active_)];
   if (at(row) < problem.planes.size()) {
@@ -114,8 +113,8 @@ void PointMethod::take_in(const StepProblem& problem, int row) noexcept {
   active.row = row;
 }
 
-/// Raises the multiplier of a violated row until the row holds, letting go of active rows whose
-/// multiplier reaches zero on the way.
+/// Raises the multiplier of a violated row until the row is satisfied. Drops active rows whose
+/// multiplier reaches zero meanwhile.
 bool PointMethod::enter() noexcept {
   for (;;) {
     ActiveRow& entering = active_rows_[at(active_)];
@@ -188,7 +187,7 @@ PointMethod::Split PointMethod::split() const noexcept {
   return parts;
 }
 
-/// Corrects the multipliers until the active rows hold with equality, to rounding.
+/// Corrects the multipliers until the active rows hold with equality, up to rounding.
 bool PointMethod::settle() noexcept {
   for (int pass = 0; pass < 4; ++pass) {
     update_u(active_);
@@ -206,7 +205,7 @@ bool PointMethod::settle() noexcept {
   return false;
 }
 
-/// Adds to the multipliers what moves u by the slacks, one for each active row.
+/// Changes the multipliers so that u moves by the slacks, one for each active row.
 void PointMethod::correct(const std::array<double, 3>& slack) noexcept {
   const Vec3& a = active_rows_[0].normal;
   const Vec3& b = active_rows_[1].normal;
@@ -236,13 +235,13 @@ void PointMethod::correct(const std::array<double, 3>& slack) noexcept {
   }
 }
 
-/// u = d + sum mu_i a_i
+/// Computes u = d + sum mu_i a_i.
 void PointMethod::update_u(int rows) noexcept {
   u_ = desired_;
   for (int i = 0; i < rows; ++i) u_ += active_rows_[at(i)].mu * active_rows_[at(i)].normal;
 }
 
-/// Lets an active row go; the one that is to enter moves up with the others.
+/// Drops an active row. The rows after it move up, and so does the entering row.
 void PointMethod::drop(int position) noexcept {
   for (int i = position; i < active_; ++i) active_rows_[at(i)] = active_rows_[at(i + 1)];
   --active_;

@@ -10,19 +10,19 @@
 
 namespace keepout::active_set {
 
-/// The dual method for three variables with J = I and no damping: the point nearest to d that
-/// satisfies every row. There the pieces have a closed form, by cross products, and at most three
-/// rows are active.
+/// The dual method for three variables with J = I and no damping. It finds the point nearest to d
+/// that satisfies every row. The parts of a row have a closed form, by cross products, and at most
+/// three rows are active.
 ///
-/// Its answer proves itself: u is d + sum mu_i a_i with mu >= 0 by construction, and is an answer
-/// only if the active rows hold with equality and no row is violated, which together prove it the
-/// minimum however it was found. Problems that it cannot prove, infeasible ones among them, are
-/// left to the general method.
+/// The answer proves itself. By construction u is d + sum mu_i a_i with mu >= 0. It is returned
+/// only if the active rows hold with equality and no row is violated. Together these prove that it
+/// is the minimum. Problems without such a proof, such as infeasible ones, go to the general
+/// method.
 class PointMethod {
  public:
   void reserve(int rows) { unit_.reserve(static_cast<std::size_t>(rows)); }
 
-  /// Returns true if it found the minimum. Precondition: moves_a_point(problem), and the shapes
+  /// Returns true if the minimum is found. Precondition: moves_a_point(problem), and the shapes
   /// agree and fit the reserve.
   bool solve(const StepProblem& problem) noexcept;
 
@@ -37,17 +37,17 @@ class PointMethod {
     Vec3 normal;
     double square;  // of the normal
     double bound;
-    double mu;  // multiplier of half the cost: a Solution has twice of it
+    double mu;  // multiplier of half the cost; a Solution has twice this
     int row;
   };
 
-  /// A row as a sum of the active ones and a rest that is normal to them.
+  /// A row as a sum of the active rows and a rest that is normal to them.
   struct Split {
     std::array<double, 3> weight{};
     double rest2 = 0;  // |rest|^2
   };
 
-  /// Returns a number of an active row as an index of an array.
+  /// Returns the number of an active row as an array index.
   static std::size_t at(int i) noexcept { return static_cast<std::size_t>(i); }
 
   bool list_rows(const StepProblem& problem) noexcept;
@@ -65,7 +65,7 @@ class PointMethod {
   Vec3 desired_ = Vec3::Zero();
   Vec3 u_ = Vec3::Zero();
   double asked2_ = 0;                       // |d|^2
-  std::array<ActiveRow, 4> active_rows_{};  // the active rows, then the one that is to enter
+  std::array<ActiveRow, 4> active_rows_{};  // the active rows, then the entering one
   int active_ = 0;
   int iterations_ = 0;
 };

@@ -31,7 +31,7 @@ SolveStatus RecordingSolver::solve(const StepProblem& problem, Solution& solutio
   try {
     record_.emplace_back(problem);
   } catch (const std::bad_alloc&) {
-    // What is asked for is the step; the record is not.
+    // Without memory the problem is not recorded, but the step is still solved.
   }
   return solver_->solve(problem, solution);
 }

@@ -2,7 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "unit_planes.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target, which includes this file once a target.
+// After foreach_target.h, which includes this file once for each target.
 #include <hwy/highway.h>
 
 #include "unit_planes.h"
@@ -13,8 +13,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Lanes keep the largest violation each and the first place it was seen at, as a double, so that
-// both are chosen by one mask. A maximum is exact, and so is the choice of the first among lanes.
+// Each lane keeps its largest violation, and its first place as a double, so that one mask chooses
+// both. A maximum is exact, and so is the choice of the first among lanes.
 Violated most_violated(const double* HWY_RESTRICT x, const double* HWY_RESTRICT y,
                        const double* HWY_RESTRICT z, const double* HWY_RESTRICT offset,
                        std::size_t size, const double* HWY_RESTRICT point) {
@@ -57,7 +57,7 @@ void UnitPlanes::reserve(std::size_t planes) {
 
 void UnitPlanes::close() noexcept {
   const std::size_t used = size_;
-  // Planes that no point violates fill the last vector.
+  // The last vector is filled with planes that no point violates.
   constexpr double zero[3] = {};
   while (size_ % most_lanes != 0) push(zero, -std::numeric_limits<double>::infinity());
   size_ = used;

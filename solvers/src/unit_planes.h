@@ -12,17 +12,16 @@
 
 namespace keepout::active_set {
 
-/// Stands where there is no row or plane.
+/// The number in place of a row or plane that does not exist.
 inline constexpr int no_row = -1;
 
-/// A row, which may be a plane, and the distance of a point on its wrong side; no_row if there is
-/// none.
+/// A row or plane, and the distance of a point on its wrong side; no_row without one.
 struct Violated {
   int row = no_row;
   double by = -std::numeric_limits<double>::infinity();
 };
 
-/// Sums in one order, which is that of the vector code as well.
+/// Adds in the same order as the vector code.
 inline double dot(const double* a, const double* b) noexcept {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -33,14 +32,14 @@ inline double missing(const double* normal, double offset, const double* point) 
   return offset - dot(normal, point);
 }
 
-/// Returns true if n . n is that of a unit vector, up to the rounding of its computation.
+/// Returns true if n . n is that of a unit vector, up to rounding.
 inline bool is_unit(double square) noexcept { return std::abs(square - 1.0) <= 1e-12; }
 
 inline bool is_unit_in_range(const HalfSpace& plane) noexcept {
   return is_unit(dot(plane.normal, plane.normal)) && std::abs(plane.offset) <= largest;
 }
 
-/// Planes with unit normals, coordinate by coordinate, to find the one violated most.
+/// Planes with unit normals, coordinate by coordinate, to find the one that is violated most.
 class UnitPlanes {
  public:
   void reserve(std::size_t planes);
@@ -58,7 +57,7 @@ class UnitPlanes {
     return usable;
   }
 
-  /// Precondition: fewer than reserved.
+  /// Adds a plane. Precondition: the reserve is not full.
   void push(const double* normal, double offset) noexcept {
     x_[size_] = normal[0];
     y_[size_] = normal[1];
@@ -67,15 +66,15 @@ class UnitPlanes {
     ++size_;
   }
 
-  /// Ends the list: must be called before most_violated().
+  /// Ends the list. Must be called before most_violated().
   void close() noexcept;
 
-  /// Returns the plane violated most, or least satisfied; of equals the first. Bitwise identical on
-  /// every target. Precondition: closed; the point is finite.
+  /// Returns the plane that is violated most, or satisfied least; the first of equals. Bitwise
+  /// identical on every target. Precondition: closed; the point is finite.
   Violated most_violated(const double* point) const noexcept;
 
  private:
-  // The widest vector; the lists are filled up to whole ones.
+  // The most lanes of a vector. The lists are filled up to whole vectors.
   static constexpr std::size_t most_lanes = 8;
 
   std::size_t size_ = 0;

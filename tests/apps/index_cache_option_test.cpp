@@ -90,7 +90,7 @@ TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
   folder.write("occupied", "a file where the folder should be");
   const std::string replay = "replay gear.stl --poses poses.txt --out steps.csv --index-cache ";
   const ProcessOutcome no_folder = succeeded(folder.run(replay + "occupied/below"));
-  EXPECT_CONTAINS(no_folder.output, "keepout: the index is not kept");
+  EXPECT_CONTAINS(no_folder.output, "keepout: the index is not stored");
   EXPECT_CONTAINS(no_folder.output, "Not a directory");
   // As when the disk is full: no file may become larger than this.
   const ProcessOutcome full =
@@ -101,9 +101,9 @@ TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
   const std::string all =
       folder.run("simulate gear.stl --out r.html --strokes 1 --cycles 20 --index-cache occupied")
           .output;
-  const std::size_t first = all.find("the index is not kept");
+  const std::size_t first = all.find("the index is not stored");
   ASSERT_NE(first, std::string::npos) << all;
-  EXPECT_EQ(all.find("the index is not kept", first + 1), std::string::npos) << all;
+  EXPECT_EQ(all.find("the index is not stored", first + 1), std::string::npos) << all;
   EXPECT_LACKS(folder.run(replay + "kept").output, "keepout:");
 }
 

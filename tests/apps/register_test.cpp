@@ -60,6 +60,7 @@ TEST_F(Register, DoubtsAWrongUnitOnStderrAndFailsUnlessItIsTrustedAnyway) {
   EXPECT_TRUE(
       doubt.starts_with("keepout: do not trust it: the model's points are spread 0.001 times"))
       << doubt;
+  EXPECT_CONTAINS(doubt, "If the measured ones are in mm, leave out --measured-in m");
   EXPECT_EQ(status, EXIT_FAILURE);
   EXPECT_CONTAINS(printed, "--target X Y Z");
   EXPECT_EQ(text({.unit = LengthUnit::metre, .trusted_anyway = true}), printed);
@@ -72,8 +73,7 @@ TEST_F(Register, DoubtsAWrongUnitOnStderrAndFailsUnlessItIsTrustedAnyway) {
 
 TEST_F(Register, NamesTheFileOfPointsThatFixNoRotation) {
   file = folder.write("line.csv", "0,0,0,10,20,30\n0,0,90,10,20,120\n0,0,50,10,20,80\n");
-  EXPECT_CONTAINS(error_of([&] { text({}); }),
-                  "line.csv: fit_rigid: the measured points lie on a line");
+  EXPECT_CONTAINS(error_of([&] { text({}); }), "line.csv: the measured points lie on a line");
 }
 
 }  // namespace

@@ -139,12 +139,16 @@ wrong_lines = [
     ("verify cube --shard 3/2", "--shard: expected I/N, part I of N, "),
     ("bench --seconds soon", f"--seconds: {above_0}'soon'"),
     ("bench --radius 1,x", f"--radius: {above_0}'x'"),
+    *((line, f"{line.split()[-2]}: expected a value before and behind each comma, not '{line.split()[-1]}'") for line in (
+        "bench --radius 1,,2", "bench --index wide_bvh,", "simulate cube --activation ,paper", "verify --scenario guides,,moving",
+        "simulate cube --robot psm --speed 1,,5", "plan --resolution 0.1,,0.01")),
+    ("bench --radius=1,,2 --seed 3", "--radius: expected a value before and behind each comma, not '1,,2'"),
     ("bench --queries 0", "--queries: expected a whole number from 5 to 10000000, not '0'"),
     ("bench --triangles 0", "--triangles: expected a whole number from 1000 to 200000000, not '0'"),
     ("compare cube --pairs 0", "--pairs: expected a whole number from 10 to 1000000, not '0'"),
     ("plan --seconds soon", "--seconds: expected seconds above 0 and not above 86400, not 'soon'"),
     ("plan --problems 0", "--problems: expected a whole number from 1 to 10000, not '0'"),
-    ("plan --resolution 2", "--resolution: expected a share of the extent from 0.000001 to 1, not '2'"),
+    ("plan --resolution 2", "--resolution: expected a fraction of the extent from 0.000001 to 1, not '2'"),
 ]
 
 # Files that are missing, no files, or of another kind; outputs that cannot be. The message has all of the texts.
@@ -180,7 +184,7 @@ files = [
     ("verify --merge poses.txt", "poses.txt: is not a whole result"),
     *((line, "margin 0 and tool_radius 0 together must be well above") for line in (
         f"{to_s} --margin 0", "replay cube --poses poses.txt --out s.csv --margin 0", "serve cube --margin 0")),
-    (f"{to_s} --margin 1e14 --radius 1e-3", "radius: expected more than 1e-9 of tool_radius and margin together", "got 0.001"),
+    (f"{to_s} --margin 1e14 --radius 1e-3", "radius: expected more than 1e-9 of tool_radius plus margin", "got 0.001"),
     (f"{to_s} --closed-loop --max-step 9", "--max-step"),
     # Outputs.
     ("replay cube.off --poses poses.txt --out no/s.csv", "no/s.csv: cannot write here (No such file or directory)"),

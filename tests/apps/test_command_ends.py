@@ -13,6 +13,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 keepout = os.environ["KEEPOUT_COMMAND"]
@@ -68,7 +69,7 @@ def test_simulate_keeps_the_strokes_that_are_finished(tmp_path, number):
     strokes = record["runs"][0]["summary"]["strokes"]
     assert status == 130 and not record["complete"]
     assert all(run["summary"]["cycles"] == 100 * strokes > 0 for run in record["runs"]), "whole strokes only"
-    assert f"keepout: stopped; {strokes:,} of 100,000 strokes were finished, and are kept in keepout-report.html" in err
+    assert f"keepout: stopped; {strokes:,} of 100,000 strokes were finished, and are kept in keepout-report.html and r.json" in err
     assert "Report, with tables and settings, no pictures: keepout-report.html" in out
     assert "It was stopped" in (tmp_path / "keepout-report.html").read_text()
 
@@ -103,14 +104,15 @@ def test_simulate_writes_nothing_before_a_stroke_is_finished(tmp_path, number):
 def test_replay_keeps_the_steps_that_are_finished(tmp_path):
     count = 1_000_000
     (tmp_path / "poses").write_text("0 0 51 0.1 0 -0.4\n" * count)
-    process = start(tmp_path, "replay", "cube", "--poses", "poses", "--out", "s.csv", "--activation", "all_faces")
+    process = start(tmp_path, "replay", "cube", "--poses", "poses", "--out", "s.csv", "--planes", "p.csv",
+                    "--activation", "all_faces")
     while not (parts := list(tmp_path.glob("s.csv.partial-*"))) or parts[0].stat().st_size < 1000:
         time.sleep(0.01)
     status, out, err = stopped(process, signal.SIGTERM)
     lines = (tmp_path / "s.csv").read_text().splitlines()
     assert status == 130 and 1 < len(lines) < count
     assert lines[-1].count(",") == lines[0].count(","), "whole lines only"
-    assert f"keepout: stopped; {len(lines) - 1:,} of 1,000,000 steps were finished, and are kept in s.csv" in err
+    assert f"keepout: stopped; {len(lines) - 1:,} of 1,000,000 steps were finished, and are kept in s.csv and p.csv" in err
     assert out.startswith(f"{len(lines) - 1:,} steps -> s.csv")
 
 
@@ -148,6 +150,26 @@ def test_a_signal_before_anything_is_finished_ends_the_command_at_once(tmp_path,
     assert process.returncode == 130
     assert err.endswith("keepout: stopped before anything was finished: nothing was written\n")
     assert [path.name for path in tmp_path.iterdir()] == ["fan.off"]
+
+
+@pytest.mark.parametrize("line", ["simulate cube big.stl --robot psm --strokes 1 --cycles 10 --speed 1",
+                                  "verify cube big.stl --robot psm --cycles 10", "verify cube big.stl --steps 1e4"])
+def test_a_signal_while_a_later_mesh_is_loaded_keeps_what_is_finished(tmp_path, line):
+    random = np.random.default_rng(1)
+    triangles = np.zeros(500_000, [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    triangles["corners"] = random.uniform(-100, 100, (len(triangles), 1, 3)) + random.uniform(-0.1, 0.1, (len(triangles), 3, 3))
+    (tmp_path / "big.stl").write_bytes(bytes(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes())
+    process = start(tmp_path, *line.split(), "--json", "r.json")
+    memory = Path(f"/proc/{process.pid}/status")
+    while int(re.search(r"VmRSS:\s*(\d+) kB", memory.read_text())[1]) < 120_000:  # the cube takes a third of it
+        assert process.poll() is None
+        time.sleep(0.005)
+    begin = time.monotonic()
+    status, _, err = stopped(process, signal.SIGINT)
+    assert time.monotonic() - begin < soon
+    assert status == 130, err
+    record = json.loads((tmp_path / "r.json").read_text())
+    assert record["complete"] is False and "big" not in json.dumps(record.get("rows"))
 
 
 def write_fan(path, triangles):
@@ -352,6 +374,11 @@ def test_quiet_keeps_warnings_and_goes_before_and_behind_the_command(tmp_path):
     assert "Try next" not in out and "keepout-report.html" in out
     status, out, err = run(tmp_path, "simulate", "cube", "--strokes", "1", "--cycles", "10")
     assert "plain page" in err and "Try next" in out
+    assert run(tmp_path, "convert", "cube", "m.ply")[0] == 0
+    out = run(tmp_path, "simulate", "m.ply", "--scale", "2.5", "--untagged", "lps", "--strokes", "1", "--cycles", "10")[1]
+    assert "keepout inspect m.ply --untagged LPS --scale 2.5 " in out
+    assert "keepout convert m.ply --untagged LPS --scale 2.5 CONVERTED.ply " in out
+    assert "keepout verify CONVERTED.ply " in out
 
 
 def test_a_tool_that_never_moves_is_not_praised(tmp_path):

@@ -165,8 +165,8 @@ void expect_refused(const Points& measured, const Points& model, const std::vect
 TEST(RigidFit, SaysWhatIsWrongWithItsPoints) {
   const Points& good = on_a_head;
   const Points two(good.begin(), good.begin() + 2);
-  expect_refused(two, two, {}, "2 pairs; three fix a rotation");
-  expect_refused({}, {}, {}, "0 pairs");
+  expect_refused(two, two, {}, "needs at least three pairs of points");
+  expect_refused({}, {}, {}, "there are 0");
   expect_refused(good, two, {}, "5 measured points, but 2 of the model");
   expect_refused(good, good, {1, 1}, "2 weights for 5 pairs");
   for (const double bad : {0.0, -1.0, std::nan(""), test::infinity}) {

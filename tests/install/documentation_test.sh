@@ -16,13 +16,21 @@ docs=$PWD/moved/share/doc/keepout/docs
 [ "$("$keepout" docs serve)" = "$docs/serve.md" ] || fail "docs serve says: $("$keepout" docs serve)"
 said=$("$keepout" docs)
 [ "${said%%$'\n'*}" = "$docs" ] || fail "docs says: $said"
+without_links() { sed -Ez 's/\[([^]]*)\]\([^)]*\)/\1/g' "$1"; }
 for page in "$here"/../../docs/*.md; do
   name=$(basename "$page" .md)
-  cmp "$page" "$docs/$name.md" || fail "$name.md is not installed as it is"
+  cmp <(without_links "$page") <(without_links "$docs/$name.md") || fail "$name.md is not installed as it is"
   grep -q "^  $name  *[A-Z\`k]" <<< "$said" || fail "docs does not list $name: $said"
 done
 ! said=$("$keepout" docs sevre 2>&1) || fail "there is a page 'sevre'"
 [[ $said == *"did you mean 'serve'?"* ]] || fail "docs sevre says: $said"
+
+links=0
+while IFS=: read -r page target; do
+  [ -e "$(dirname "$page")/${target#](}" ] || fail "$page: there is no ${target#](}"
+  links=$((links + 1))
+done < <(grep -roE '\]\([A-Za-z0-9_-]*[./][A-Za-z0-9_./-]*[)#]' --include='*.md' "$docs/.." | sed 's/[)#]$//')
+[ $links -gt 200 ] || fail "only $links links"
 
 commands=$("$keepout" --help | sed -nE '/^Commands/,/^$/s/^  ([a-z]+) {3,}.*/\1/p' | sort -u)
 [ "$(wc -l <<< "$commands")" -gt 10 ] || fail "help lists few commands: $commands"
@@ -66,6 +74,7 @@ completes() {
 cmp moved/share/bash-completion/completions/keepout{,-bench}
 completes insp inspect
 completes ben bench
+completes help insp inspect
 completes docs gui guides
 completes inspect --self --self-intersections
 completes replay cube --index wide_ wide_bvh

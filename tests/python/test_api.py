@@ -139,7 +139,7 @@ def test_a_guard_follows_anatomy_that_moves():
     assert before.mesh is not guard.mesh  # and stays as it is
     grid = keepout.Index(guard.mesh, "pd_tree").refitted(keepout.Mesh(2 * vertices, triangles))
     assert grid.name == "pd_tree" and grid.distances([(0, 0, 0)])[0] > 15
-    with pytest.raises(keepout.Error, match="triangles are to be the same"):
+    with pytest.raises(keepout.Error, match="triangles must be the same"):
         before.refitted(keepout.Mesh(vertices, triangles[1:]))
 
 
@@ -204,7 +204,7 @@ def test_an_index_is_kept_on_the_disk_and_shared(mesh, tmp_path):
 def test_an_index_that_cannot_be_kept_is_told_of(mesh, tmp_path):
     in_the_way = tmp_path / "cache"
     in_the_way.write_text("no folder")
-    with pytest.warns(UserWarning, match="not kept for the next time"):
+    with pytest.warns(UserWarning, match="not stored for the next start"):
         keepout.Index(mesh, cache=in_the_way)
 
 
@@ -212,14 +212,21 @@ def test_welding_and_inspection():
     vertices, triangles = sphere()
     soup = vertices[triangles].reshape(-1, 3)
     apart = np.arange(len(soup)).reshape(-1, 3)
-    loose = keepout.Mesh(soup, apart).inspect()
+    with pytest.warns(UserWarning, match="^Mesh: the surface is open") as said:
+        loose = keepout.Mesh(soup, apart)
+    assert loose.warnings == [str(warning.message) for warning in said]
+    loose = loose.inspect()
     assert not loose.closed and loose.boundary_edges == 3 * len(triangles)
     assert loose.genus is None and loose.signed_volume is None and "open" in str(loose)
     welded = keepout.Mesh(soup, apart, weld=True)
     found = welded.inspect(self_intersections=True)
     assert len(welded.vertices) == len(vertices) and found.watertight and found.genus == 0
     assert found.self_intersections == 0 and "watertight" in repr(found)
-    flipped = keepout.Mesh(vertices, triangles[:, ::-1]).inspect()
+    assert welded.warnings == []
+    with pytest.warns(UserWarning, match="^Mesh: the surface is closed and faces inward"):
+        flipped = keepout.Mesh(vertices, triangles[:, ::-1]).inspect()
+    with pytest.warns(UserWarning, match='^Mesh: the mesh is 0.2 mm across .*unit="'):
+        keepout.Mesh(vertices / vertices.max() / 10, triangles)
     assert flipped.inside_out and flipped.signed_volume < 0
     normals = welded.normals
     assert np.all(np.einsum("ij,ij->i", normals, welded.vertices[welded.triangles[:, 0]]) > 0)

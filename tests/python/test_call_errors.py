@@ -57,6 +57,13 @@ step = "step(tip, desired, jacobian=None, rows=None)"
         (lambda: tip.free_polytope(origin, "wide"), "free_polytope: radius: expected a number, got 'wide'"),
         (lambda: tip.steps([origin], [origin], threads=1.5), "steps: threads: expected a whole number or None, got 1.5"),
         (lambda: Region.ball(origin, "1"), "ball: radius: expected a number, got '1'"),
+        (lambda: Region.ball(origin, True), "ball: radius: expected a number, got True"),
+        (lambda: Region.ball(origin, np.True_), "ball: radius: expected a number, got numpy.bool"),
+        (lambda: Region.ball(origin, np.array(["0.3"])), "ball: radius: expected a number, got numpy.ndarray"),
+        (lambda: Joint("a", lower=False), "Joint: lower: expected a number or None, got False"),
+        (lambda: Guide.point("a", True, origin, ball), "point: link: expected a whole number, got True"),
+        (lambda: mesh.inspect(places=True), "inspect: places: expected a whole number, got True"),
+        (lambda: tip.steps([origin], [origin], threads=True), "steps: threads: expected a whole number or None, got True"),
         (lambda: Guide.point("a", "ball"), "point: region: expected a keepout.Region, got 'ball'"),
         (lambda: Guide.point("a", 6.5, origin, ball), "point: link: expected a whole number, got 6.5"),
         (lambda: Guide.point(None, ball), "point: name: expected a string, got None"),
@@ -90,6 +97,17 @@ def test_any_signature_is_understood(signatures, args, kwargs, says):
     text = f"f(): incompatible function arguments. The following argument types are supported:\n{numbered}\nInvoked with: 1\n"
     assert in_our_words(text, args, kwargs) == says
     assert in_our_words("something else", args, kwargs) is None
+
+
+def test_numbers_of_numpy_are_numbers():
+    for one in (1, np.float32(1), np.int8(1), np.uint64(1), np.array(1.0)):
+        assert Region.ball(origin, one).excess((2, 0, 0)) == 1.0
+        assert MotionConstraint(mesh, margin=one).margin == 1.0
+    for no_number in (True, np.True_, np.array(["0.3"])):
+        with pytest.raises(keepout.Error, match="^margin: expected .*, got (True|numpy)"):
+            MotionConstraint(mesh, margin=no_number)
+        with pytest.raises(keepout.Error, match="^max_rows: expected .*, got (True|numpy)"):
+            MotionConstraint(mesh, max_rows=no_number)
 
 
 def test_a_long_text_is_told_short():

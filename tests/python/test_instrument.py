@@ -158,7 +158,13 @@ def test_proofs_change_nothing_for_the_steps_and_options_something():
     with pytest.raises(keepout.Error, match="band"):
         guards[1].set_options(margin=0.001)
     assert guards[1].margin == 2.0
-    assert 0.002 < guards[0].instrument.recommended_band(0.01) < 0.5
+    instrument = guards[0].instrument
+    assert 0.002 < instrument.recommended_band(0.01) < 0.5
+    for period in (-1, 0, np.nan, np.inf):
+        with pytest.raises(keepout.Error, match="^period: expected a number above 0"):
+            instrument.recommended_band(period)
+    with pytest.raises(keepout.Error, match="^least: expected .*, got -1"):
+        instrument.recommended_band(0.01, least=-1)
 
 
 def test_chains_of_tables_and_files_are_the_same(tmp_path):

@@ -123,7 +123,11 @@ def test_what_is_no_label_map_is_one_sentence(tmp_path):
         (b"space origin", b"space roigin", "no 'space origin'"),
         (b"encoding: raw", b"encoding: bzip2", "bzip2"),
         (b"encoding: raw", b"encoding: gzip", "gzip"),
-        (b"sizes: 50", b"sizes: 51", "numbers for 51 x 40 x 30"),
+        (b"sizes: 50", b"sizes: 51", "has 120000 bytes for 51 x 40 x 30 voxels, which take 122400; copy it again"),
+        (b"sizes: 50", b"sizes: -50", "has 'sizes: -50 40 30', not three whole numbers"),
+        (good, good + b"x", "has 120001 bytes"),
+        (b"space directions: (", b"space directions: (0,0,1) (", "not 3 of three numbers in brackets"),
+        (b"space origin: (", b"space origin: (x,", "not 1 of three numbers in brackets"),
         (b"kinds: ", b'space units: "m" "m" "m"\nkinds: ', "lengths in m; save it in mm"),
         (b"kinds: ", b"space: LPS\nkinds: ", "states 'space' twice"),
         (b"space origin: (", b"space origin: (nan,0,0)\n#(", "place no voxels"),
@@ -156,6 +160,24 @@ def test_what_is_no_label_map_is_one_sentence(tmp_path):
             [sys.executable, script, tmp_path / file, tmp_path / "m.ply"], capture_output=True, text=True
         )
         assert ended.returncode == 1 and says in ended.stderr and "Traceback" not in ended.stderr, ended.stderr
+
+
+def test_an_empty_map_and_an_output_that_cannot_be_written_are_named(tmp_path):
+    for values, output, says in [
+        (0 * labels(), "m.ply", "a.nii: has no labels: all of its voxels are 0"),
+        (labels(), "no/m.ply", "m.ply: cannot be written (No such file or directory)"),
+    ]:
+        command = [sys.executable, script, write_nifti(tmp_path / "a.nii", values), tmp_path / output]
+        ended = subprocess.run(command, capture_output=True, text=True)
+        assert ended.returncode == 1 and says in ended.stderr and len(ended.stderr.splitlines()) == 1, ended.stderr
+
+
+def test_labels_of_eight_bytes_are_read(tmp_path):
+    expected, _ = mesh_of(write_nrrd(tmp_path / "a.nrrd", labels(), "raw"), tmp_path)
+    header = (tmp_path / "a.nrrd").read_bytes().split(b"\n\n", 1)[0].replace(b"unsigned short", b"long long")
+    (tmp_path / "b.nrrd").write_bytes(header + b"\n\n" + labels().astype(">i8").tobytes(order="F"))
+    mesh, _ = mesh_of(tmp_path / "b.nrrd", tmp_path)
+    np.testing.assert_array_equal(mesh.vertices, expected.vertices)
 
 
 def test_parts_that_smoothing_removes_are_reported(tmp_path):

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Where the mesh is in the robot's frame, and how well that is known."""
 
+import warnings
+
 import numpy as np
+import pytest
 
 import keepout
 
@@ -42,3 +45,23 @@ def test_weights_residuals_and_errors_are_those_of_numpy():
     several = keepout.registration_margin(fit, [(20, -30, 20), (0, 0, 60)], fle=0.5)
     np.testing.assert_allclose(several, worst * np.sqrt(16.8119), rtol=1e-5)
     assert keepout.registration_margin(fit, (20, -30, 20)) > 0
+
+
+def test_an_fle_that_contradicts_the_residuals_is_doubted():
+    fit = keepout.fit_rigid(noisy, model)
+    assert fit.doubt_of(0.5) == ""
+    assert "the FRE is" in fit.doubt_of(0.05)
+    for use in (keepout.registration_margin, keepout.target_error):
+        with pytest.warns(UserWarning, match="do not trust the registration: the FRE is .* FLE of 0.05"):
+            use(fit, (0, 0, 0), fle=0.05)
+        with pytest.warns(UserWarning, match="do not trust the registration: .*1000"):
+            use(keepout.fit_rigid(measured / 1000, model), (0, 0, 0))
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            use(fit, (0, 0, 0), fle=0.5)
+            use(fit, (0, 0, 0))
+        for fle in (0.0, -1.0, np.nan):
+            with pytest.raises(keepout.Error, match="fle must be above 0 and finite"):
+                use(fit, (0, 0, 0), fle=fle)
+            with pytest.raises(keepout.Error, match="fle must be above 0 and finite"):
+                fit.doubt_of(fle)

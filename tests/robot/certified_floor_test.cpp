@@ -88,15 +88,15 @@ TEST(CertifiedFloor, OfACycleThatYieldedIsKeptWhenTheMeshRests) {
   InstrumentOptions options{.recovery = 0.0};
   const double kept = options.margin - options.band;
   InstrumentConstraint guard = guard_of(wall(0.0), arm, options);
-  const double clearance_fraction = 0.75;
-  const double at = lever - 1.0 - level * kept - spare;  // where the wall comes to rest
-  const double way = options.margin - level * kept - spare;
+  const double fraction = 0.75;
+  const double at = lever - 1.0 - fraction * kept - spare;  // where the wall comes to rest
+  const double way = options.margin - fraction * kept - spare;
   guard.place(0, {Vec3(at - way, 0, 0), Mat3::Identity()},
               {.linear = Vec3(way / options.period, 0, 0)});
   std::vector<double> q{0.0};
   const InstrumentStep yielded = guard.step(q, std::vector<double>{0.0});
   ASSERT_EQ(yielded.status, Status::degraded) << yielded.reason();
-  ASSERT_EQ(yielded.clearance_fraction, level);
+  ASSERT_EQ(yielded.clearance_fraction, fraction);
   q[0] += yielded.increment[0];
   const Pose rest = guard.place_of(0);
   ASSERT_NEAR(rest.position.x(), at, 1e-9);
@@ -106,7 +106,7 @@ TEST(CertifiedFloor, OfACycleThatYieldedIsKeptWhenTheMeshRests) {
     ASSERT_EQ(step.clearance_fraction, 1.0) << name(step.status);
     if (step.ok()) q[0] += step.increment[0];
     const double clear = lever * std::cos(q[0]) - 1.0 - rest.position.x();
-    ASSERT_GE(clear, level * kept - 3.0 * guard.tolerance()) << name(step.status) << cycle;
+    ASSERT_GE(clear, fraction * kept - 3.0 * guard.tolerance()) << name(step.status) << cycle;
     if (cycle == 0) {
       EXPECT_TRUE(step.ok()) << step.reason();
     }

@@ -12,7 +12,7 @@ mkdir -p "$work"/{apps/web,build/release/apps/keepout,build/wasm,programs}
 cp "$source/run" "$work"
 cp -r "$source/cmake" "$work"
 cp "$source/apps/web/build" "$work/apps/web"
-touch "$work"/build/{release,wasm}/build.ninja
+touch "$work"/build/{release,wasm}/build.ninja "$work/build/release/apps/keepout/keepout-bench"
 touch "$work/apps/web/"{package.json,.npmrc}
 echo 'first' > "$work/apps/web/package-lock.json"
 mkdir "$work/apps/web/src"
@@ -44,7 +44,7 @@ else
     printf '%s\n' "${bundled-<!-- keepout live: the anatomy goes here -->}" > "$KEEPOUT_PAGES/live.html"
 fi
 PROGRAM
-program "$work/build/release/apps/keepout/keepout" <<< 'echo "in ${KEEPOUT_WEB:-nowhere}"'
+program "$work/build/release/apps/keepout/keepout" <<< ''
 
 # run STATUS ARGS...: ./run ends so; what it said is in told, what it called in called.
 run() {
@@ -79,7 +79,6 @@ says "going on: reports will be plain"
 run well
 calls_it "npm ci"
 calls_no wasm
-says "in $work/build/web"
 [ -s "$work/build/web/report_with_anatomy.html" ] || fault "there is no front end"
 run well simulate cube
 calls_no "npm"
@@ -94,7 +93,6 @@ calls_it "npm run"
 run well live cube
 calls_it "cmake --build --preset wasm"
 calls_no "npm ci"
-says "in $work/build/web"
 [ -s "$page" ] || fault "there is no page"
 [ -L "$work/apps/web/node_modules" ] || fault "the libraries are among the sources"
 

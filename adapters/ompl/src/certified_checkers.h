@@ -10,13 +10,17 @@
 
 namespace keepout {
 
-// What OMPL asks about states and motions, of tips and of whole instruments alike. A `Proof` knows
-// what a state stands for, and may be asked from any thread:
+// The checkers of states and motions for OMPL, for tips and whole instruments. A `Proof` knows the
+// meaning of a state. Any thread may call its functions.
 //
-//   bool stands(state)                   it may be stood on
-//   bool goes(from, to)                  the whole motion is proven, both of its ends included
-//   double goes_until(from, to, end)     the fraction of a motion that is proven from its start on,
-//                                        and the state there
+//   bool stands(state)
+//       True if the state is valid.
+//
+//   bool goes(from, to)
+//       True if the whole motion is proven, including both ends.
+//
+//   double goes_until(from, to, end)
+//       The fraction of a motion that is proven from its start on, and the state at its end.
 
 template <class Proof>
 class CertifiedStates final : public ompl::base::StateValidityChecker {
@@ -45,7 +49,7 @@ class CertifiedMotions final : public ompl::base::MotionValidator {
   bool checkMotion(const ompl::base::State* from, const ompl::base::State* to,
                    std::pair<ompl::base::State*, double>& last_valid) const override {
     if (checkMotion(from, to)) return true;
-    // Only now, as few ask for it. Not all ask for the state.
+    // Computed only here, because few callers need it. Some do not need the state.
     ompl::base::State* const end = si_->cloneState(from);
     last_valid.second = si_->satisfiesBounds(to) ? proof_.goes_until(from, to, end) : 0.0;
     if (last_valid.first != nullptr) si_->copyState(last_valid.first, end);
@@ -54,7 +58,7 @@ class CertifiedMotions final : public ompl::base::MotionValidator {
   }
 
  private:
-  /// OMPL's own counters are no atomic ones.
+  /// OMPL's own counters are not atomic.
   bool counted(bool is_valid) const {
     const std::lock_guard lock(count_);
     ++(is_valid ? valid_ : invalid_);

@@ -13,7 +13,9 @@ template <class Guard>
 GuardPoolOf<Guard>::GuardPoolOf(std::function<Guard()> make, std::size_t most)
     : make_(std::move(make)), most_(most) {
   if (!make_ || most_ == 0) {
-    throw Error("a pool of guards needs a function that makes a constraint, and room for one");
+    throw Error(
+        "a pool of guards needs a function that makes a constraint, and a capacity of at least "
+        "one");
   }
   free_.push_back(std::make_unique<Guard>(make_()));
   made_ = 1;
@@ -32,16 +34,16 @@ void GuardPoolOf<Guard>::GiveBack::operator()(Guard* guard) const noexcept {
 template <class Guard>
 std::unique_ptr<Guard> GuardPoolOf<Guard>::made_anew(std::unique_lock<std::mutex>& lock) {
   ++made_;
-  lock.unlock();  // an index takes its time
+  lock.unlock();  // building an index takes time
   std::unique_ptr<Guard> guard;
   try {
     guard = std::make_unique<Guard>(make_());
   } catch (...) {
-    // A planner's thread has nobody who would catch it, and there is one to wait for.
+    // No caller could catch an exception in a planner's thread. It can wait for another guard.
   }
   lock.lock();
   try {
-    free_.reserve(made_);  // giving back shall not throw
+    free_.reserve(made_);  // so that giving back does not throw
   } catch (...) {
     guard.reset();
   }

@@ -65,12 +65,12 @@ class JointSpace final : public base::RealVectorStateSpace {
   Joints weights_;
 };
 
-/// How far each joint moves a point of a body, for a unit of its own.
+/// Returns the largest displacement of a body's point by each joint, for a unit of the joint.
 Joints weights_of(const Instrument& instrument) {
   const Chain& chain = instrument.chain();
   Joints weights{};
   ChainState state;
-  std::vector<int> at(static_cast<std::size_t>(chain.size()), 0);  // 0, 1, 2: low, halfway, high
+  std::vector<int> at(static_cast<std::size_t>(chain.size()), 0);  // 0, 1, 2: low, middle, high
   std::vector<double> q(at.size());
   while (true) {
     for (std::size_t k = 0; k < at.size(); ++k) {
@@ -89,12 +89,12 @@ Joints weights_of(const Instrument& instrument) {
     while (next < at.size() && ++at[next] == 3) at[next++] = 0;
     if (next == at.size()) break;
   }
-  // One that moves no point of a body: no distance may be 0 but that of a state to itself.
+  // Joints that move no point of a body get a weight too, so that different states have a distance.
   for (double& weight : weights) weight = weight > 0.0 ? weight : 1e-3;
   return weights;
 }
 
-/// Throws Error unless the space is one of the joints and the pool is there.
+/// Throws Error unless the space is a joint space and there is a pool.
 void require_joint_space(const std::shared_ptr<base::SpaceInformation>& space,
                          const std::shared_ptr<InstrumentPool>& guards) {
   if (!space) throw Error("planning: there is no SpaceInformation");
@@ -106,7 +106,7 @@ void require_joint_space(const std::shared_ptr<base::SpaceInformation>& space,
     throw Error("planning: '" + space->getStateSpace()->getName() + "' has " +
                 std::to_string(space->getStateDimension()) +
                 " dimensions and is not a RealVectorStateSpace of " + std::to_string(chain.size()) +
-                ", one for each joint: make_joint_space makes it");
+                ", one for each joint: use make_joint_space");
   }
   const base::RealVectorBounds& bounds = real->getBounds();
   for (unsigned int i = 0; i < real->getDimension(); ++i) {
@@ -121,10 +121,10 @@ void require_joint_space(const std::shared_ptr<base::SpaceInformation>& space,
   }
 }
 
-/// A motion, in pieces on which no point of a body goes farther than the thickest body is wide.
-/// What is near a long motion is much, and mostly far from any part of it: pieces cost less. As
-/// their ends are rounded, by 1e-16 of a position, they are apart from the motion by a small part
-/// of the tolerance.
+/// A motion in pieces. On each piece no point of a body moves farther than the thickest body is
+/// wide. A long motion has many triangles near it, but most are far from any one piece, so pieces
+/// cost less. Rounding moves the ends of pieces by 1e-16 of a position, a small part of the
+/// tolerance.
 struct Pieces {
   Pieces(const Instrument& instrument, const double* q, const double* to)
       : n(static_cast<std::size_t>(instrument.chain().size())), from(q), end(to) {
@@ -153,7 +153,7 @@ struct Pieces {
   double count = 1.0;
 };
 
-/// The share of a motion that is proven, from its start on: 1 if all is.
+/// Returns the fraction of a motion that is proven from its start on; 1 for all of it.
 double proven_share(InstrumentConstraint& guard, const Pieces& pieces) {
   for (double i = 0.0; i < pieces.count; i += 1.0) {
     Joints start{}, increment{};
@@ -163,13 +163,13 @@ double proven_share(InstrumentConstraint& guard, const Pieces& pieces) {
     }
     const MotionProof proof = guard.prove({start.data(), pieces.n}, {increment.data(), pieces.n});
     if (proof.is_clear()) continue;
-    // Recovering: it starts too close, and nothing of it counts.
+    // A recovering motion starts too close, so no part of it counts.
     return (i + (proof.status == Status::recovering ? 0.0 : proof.fraction)) / pieces.count;
   }
   return 1.0;
 }
 
-/// What the checkers ask of an instrument: see certified_checkers.h.
+/// The proofs for an instrument: see certified_checkers.h.
 struct JointProof {
   std::shared_ptr<InstrumentPool> guards;
 
@@ -183,7 +183,7 @@ struct JointProof {
     const InstrumentPool::Loan guard = guards->borrow();
     const Pieces pieces(guard->instrument(), values_of(from), values_of(to));
     double* const there = values_of(end);
-    // The state there is rounded: where it is found too close by that, a little less will do.
+    // Rounding may put the end too close; then a slightly shorter motion is tried.
     double less = 1.0 / (64.0 * pieces.count);
     for (double fraction = proven_share(*guard, pieces); fraction > 0.0;
          fraction -= less, less *= 2.0) {
@@ -208,7 +208,7 @@ std::shared_ptr<base::StateSpace> make_joint_space(const Instrument& instrument)
     const JointLimits& limits = chain.joint(k).limits;
     if (!(limits.lower < limits.upper) || !std::isfinite(limits.upper - limits.lower)) {
       throw Error("planning: joint '" + chain.joint(k).name +
-                  "' has no limits, or no room between them: give it some to plan within");
+                  "' has no limits, or no range between them: set limits to plan within");
     }
   }
   return std::make_shared<JointSpace>(chain, weights_of(instrument));

@@ -28,7 +28,7 @@ namespace {
 
 namespace base = ompl::base;
 
-/// The place that a state of three real numbers stands for.
+/// Returns the position of a state of three real numbers.
 Vec3 tip_of(const base::State* state) noexcept {
   const double* values = state->as<base::RealVectorStateSpace::StateType>()->values;
   return {values[0], values[1], values[2]};
@@ -41,7 +41,7 @@ void put(const Vec3& tip, base::State* state) noexcept {
   values[2] = tip.z();
 }
 
-/// Throws Error unless the space is one of tips and the pool is there.
+/// Throws Error unless the space is one of tips and there is a pool.
 void require_tip_space(const std::shared_ptr<base::SpaceInformation>& space,
                        const std::shared_ptr<GuardPool>& guards) {
   if (!space) throw Error("planning: there is no SpaceInformation");
@@ -65,14 +65,14 @@ void require_tip_space(const std::shared_ptr<base::SpaceInformation>& space,
   }
 }
 
-/// The bounds of a space of tips.
+/// Returns the bounds of a space of tips.
 Box bounds_of(const base::SpaceInformation& space) {
   const auto& bounds = space.getStateSpace()->as<base::RealVectorStateSpace>()->getBounds();
   return {Vec3(bounds.low[0], bounds.low[1], bounds.low[2]),
           Vec3(bounds.high[0], bounds.high[1], bounds.high[2])};
 }
 
-/// What the checkers ask of a tip: see certified_checkers.h.
+/// The proofs for a tip: see certified_checkers.h.
 struct TipProof {
   std::shared_ptr<GuardPool> guards;
 
@@ -89,8 +89,8 @@ struct TipProof {
   }
 };
 
-/// See make_sliding_connect. OMPL's planner with another way to grow its trees: a proven step leads
-/// to each of their motions from its parent, or away from it, which is the same line.
+/// See make_sliding_connect. OMPL's planner with another way to grow its trees. Each motion in a
+/// tree is connected to its parent by a proven step, in one direction or the other.
 class SlidingConnect final : public ompl::geometric::RRTConnect {
  public:
   SlidingConnect(const base::SpaceInformationPtr& space, std::shared_ptr<GuardPool> guards,
@@ -98,8 +98,8 @@ class SlidingConnect final : public ompl::geometric::RRTConnect {
       : RRTConnect(space), guards_(std::move(guards)), options_(options) {
     setName("SlidingConnect");
     specs_.approximateSolutions = false;
-    params_.remove("intermediate_states");          // all of a way are in the tree
-    ProjectingSteer(*guards_->borrow(), options_);  // what is wrong with the options is thrown here
+    params_.remove("intermediate_states");          // all states of a path are in the tree
+    ProjectingSteer(*guards_->borrow(), options_);  // throws for invalid options
     addPlannerProgressProperty("steering time REAL", [this] { return std::to_string(steering_); });
     addPlannerProgressProperty("ways INTEGER", [this] { return std::to_string(ways_); });
   }
@@ -126,16 +126,16 @@ class SlidingConnect final : public ompl::geometric::RRTConnect {
     motion->parent = parent;
     motion->root = parent != nullptr ? parent->root : motion->state;
     tree->add(motion.get());
-    return motion.release();  // OMPL lets go of what is in a tree
+    return motion.release();  // OMPL frees the motions in a tree
   }
 
-  /// The motion at the end of the way, which starts at `from`.
+  /// Adds the path, which starts at `from`. Returns the motion at its end.
   Motion* add_way(const TreeData& tree, Motion* from, std::span<const Vec3> way) const {
     for (const Vec3& tip : way.subspan(1)) from = add(tree, tip, from);
     return from;
   }
 
-  /// One iteration from one of the trees; whether it met the other.
+  /// Makes one iteration from one of the trees. Returns true if it met the other tree.
   bool grow(const Steer& steer, const TreeData& tree, const TreeData& other, Motion& sample,
             Motion*& end, Motion*& end_of_other) const;
   void add_solution(const Motion* from_start, const Motion* from_goal);
@@ -143,7 +143,7 @@ class SlidingConnect final : public ompl::geometric::RRTConnect {
   std::shared_ptr<GuardPool> guards_;
   SteerOptions options_;
   double steering_ = 0.0;  // [s]
-  std::size_t ways_ = 0;   // steered
+  std::size_t ways_ = 0;   // number of steered paths
 };
 
 bool SlidingConnect::grow(const Steer& steer, const TreeData& tree, const TreeData& other,
@@ -167,7 +167,7 @@ void SlidingConnect::add_solution(const Motion* from_start, const Motion* from_g
     states.push_back(from_start->state);
   }
   std::reverse(states.begin(), states.end());
-  // Both ends are the same place.
+  // The last state of one tree is the first of the other.
   while ((from_goal = from_goal->parent) != nullptr) states.push_back(from_goal->state);
   const auto path = std::make_shared<ompl::geometric::PathGeometric>(si_);
   for (const base::State* state : states) path->append(state);
@@ -189,7 +189,7 @@ base::PlannerStatus SlidingConnect::solve(const base::PlannerTerminationConditio
     return way;
   };
 
-  // The space's own checker may be anything: what it lets pass is asked about here as well.
+  // The space's own checker may be any, so this also tests the states that it accepts.
   while (const base::State* state = pis_.nextStart()) {
     if (keeps_margin(*guard, tip_of(state))) add(tStart_, tip_of(state), nullptr);
   }

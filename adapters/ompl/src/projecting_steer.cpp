@@ -14,8 +14,8 @@ bool is_within(const Box& box, const Vec3& point) noexcept {
   return (point.array() >= box.low.array()).all() && (point.array() <= box.high.array()).all();
 }
 
-/// A long step that is held back gives more away than short ones do; unless it comes nearer by
-/// this fraction of its length.
+/// A long step that is limited loses more motion than short ones do. It is kept only if it comes
+/// nearer to the target by this fraction of its length.
 constexpr double good_gain = 0.5;
 
 }  // namespace
@@ -43,7 +43,7 @@ ProjectingSteer::Way ProjectingSteer::steer(const Vec3& from, const Vec3& toward
   if (!towards.allFinite() || !is_within(bounds, from) || !keeps_margin(*guard_, from)) {
     return ended(Ending::not_free);
   }
-  if (!(longest > 0.0)) return ended(Ending::length);  // no number, neither
+  if (!(longest > 0.0)) return ended(Ending::length);  // also for NaN
   double longest_step = guard_->options().radius;
   for (std::size_t steps = 0; steps < options_.most_steps; ++steps) {
     const Vec3 tip = points_.back();

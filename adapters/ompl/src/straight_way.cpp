@@ -7,18 +7,19 @@
 namespace keepout {
 namespace {
 
-/// One step makes the whole of it. A tip that is too close recovers, and none of that counts.
+/// Returns true if one step makes all of the motion. A recovery does not count, as the tip is too
+/// close.
 bool steps_to(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
   const Vec3 desired = to - from;
   const Step step = guard.step({.tip = from, .desired = desired});
   return step.ok() && step.status != Status::recovering && step.motion == desired;
 }
 
-/// More than any planner asks for; it bounds the time that a way of absurd length takes.
+/// More than any planner needs. It bounds the time for a path of absurd length.
 constexpr double most_pieces = 1e6;
 
-/// The pieces of a way. Their ends are rounded, by some 1e-16 of a coordinate: the straight line
-/// and the pieces are so much apart, which is a small part of the tau that the promise leaves.
+/// The pieces of a path. Their ends are rounded by about 1e-16 of a coordinate. The distance
+/// between pieces and straight line is a small part of the tau that the proof allows.
 struct Pieces {
   Vec3 from;
   Vec3 to;
@@ -29,10 +30,10 @@ struct Pieces {
   }
 };
 
-/// One piece after the other, as far as each is proven; of the first that is not, so many halvings
-/// are tried. `from` itself is not asked about.
-ProvenPrefix traversal(MotionConstraint& guard, const Vec3& from, const Vec3& to,
-                       int halvings) noexcept {
+/// Proves one piece after another, as far as each can be proved. For the first unproven piece,
+/// tries `halvings` parts of it. Does not test `from` itself.
+ProvenPrefix proven_part(MotionConstraint& guard, const Vec3& from, const Vec3& to,
+                         int halvings) noexcept {
   const double length = (to - from).norm();
   const Pieces pieces{from, to, std::max(1.0, std::ceil(length / guard.options().radius))};
   ProvenPrefix prefix{.fraction = 0.0, .end = from, .may_start = true};
@@ -48,7 +49,7 @@ ProvenPrefix traversal(MotionConstraint& guard, const Vec3& from, const Vec3& to
     if (extend_to(k / pieces.count)) continue;
     double step = 0.5 / pieces.count;
     for (int i = 0; i < halvings; ++i) {
-      // Equal shares would say that nothing was gained.
+      // Equal fractions would mean no gain.
       if (prefix.fraction + step > prefix.fraction) extend_to(prefix.fraction + step);
       step *= 0.5;
     }
@@ -64,12 +65,12 @@ bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept {
 }
 
 bool proves(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
-  return traversal(guard, from, to, 0).whole();
+  return proven_part(guard, from, to, 0).whole();
 }
 
 ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept {
   if (!keeps_margin(guard, from)) return {.end = from};
-  return traversal(guard, from, to, 8);
+  return proven_part(guard, from, to, 8);
 }
 
 }  // namespace keepout

@@ -15,7 +15,7 @@
 namespace keepout {
 namespace {
 
-/// An axis that is off by no more is a unit vector with few digits.
+/// An axis whose length differs from 1 by at most this is a unit vector with few digits.
 constexpr double axis_digits = 1e-3;
 constexpr std::size_t most_listed = 20;  // names in a message
 
@@ -61,7 +61,7 @@ urdf::LinkConstSharedPtr only_leaf(const urdf::LinkConstSharedPtr& base) {
   throw Error("more than one link is a tip: name one of " + listed(leaves));
 }
 
-/// What a chain needs of one joint.
+/// Reads one joint for a chain.
 class JointReader {
  public:
   JointReader(const urdf::Joint& joint, const TiXmlElement& element, double scale)
@@ -77,7 +77,7 @@ class JointReader {
   }
 
   Joint read(const Pose& origin) const {
-    if (joint_.type == urdf::Joint::FLOATING) refuse("is floating: begin the chain behind it");
+    if (joint_.type == urdf::Joint::FLOATING) refuse("is floating: begin the chain after it");
     if (joint_.type == urdf::Joint::PLANAR) refuse("is planar: write single joints instead");
     if (joint_.mimic) refuse("mimics another: make it fixed, or end the chain before it");
     return {.name = joint_.name,
@@ -101,13 +101,13 @@ class JointReader {
 
   JointLimits limits() const {
     JointLimits limits;
-    if (!joint_.limits) return limits;  // continuous: urdfdom refuses all others
+    if (!joint_.limits) return limits;  // continuous: urdfdom rejects all others
     limits.velocity = scale_ * joint_.limits->velocity;
     if (!(limits.velocity > 0.0)) refuse("has a velocity limit not above zero: write its speed");
     if (!std::isfinite(limits.velocity)) refuse("has a velocity limit that is not finite");
     if (joint_.type == urdf::Joint::CONTINUOUS) return limits;
     for (const char* end : {"lower", "upper"}) {
-      // urdfdom takes 0, and the joint might be kept from all that it may do.
+      // urdfdom assumes 0, which could exclude allowed positions.
       if (element_.FirstChildElement("limit")->Attribute(end)) continue;
       refuse("has no " + std::string(end) + " limit: write it, or make the joint continuous");
     }
@@ -152,7 +152,8 @@ UrdfChain chain_of(const UrdfDescription& read, std::string_view base, std::stri
                 "' and '" + end->name + "', not 1 to " + std::to_string(Chain::most_joints) +
                 ": name another base or tip");
   }
-  [[maybe_unused]] const Chain usable(chain.joints, {}, chain.flange);  // or says why not
+  [[maybe_unused]] const Chain usable(chain.joints, {}, chain.flange);  // throws if the chain is
+                                                                        // not valid
   return chain;
 }
 
@@ -169,17 +170,17 @@ UrdfChain parse_chain(std::string_view text, std::string_view name, std::string_
 
 UrdfChain read_chain(const std::filesystem::path& file, std::string_view base, std::string_view tip,
                      double scale) {
-  std::error_code none;  // such a path is no file that can be opened either
+  std::error_code none;  // such a path cannot be opened either
   const std::filesystem::file_status status = std::filesystem::status(file, none);
   if (std::filesystem::is_directory(status)) {
-    throw Error(file.string() + ": is a folder; name a file of URDF in it");
+    throw Error(file.string() + ": is a directory; name a URDF file in it");
   }
-  // Opening a pipe might wait for ever.
+  // Opening a pipe might never return.
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw Error(file.string() + ": is not a regular file; copy what it gives to one");
+    throw Error(file.string() + ": is not a regular file; copy its contents to one");
   }
   std::ifstream stream(file, std::ios::binary);
-  // A byte more than is allowed, so that what is too large, or has no end, is seen to be.
+  // One byte more than the limit, to detect files that are too large or endless.
   std::string text(most_bytes_of_urdf + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.gcount() == 0) {

@@ -13,13 +13,13 @@
 namespace keepout {
 namespace {
 
-/// Freeing a model calls itself for each link of the longest chain.
+/// Freeing a model recurses over the links of the longest chain.
 constexpr std::size_t most_joints_of_robot = 1000;
 
-/// Since console_bridge has one handler for all threads.
+/// console_bridge has one handler for all threads.
 std::mutex console;
 
-/// While it lives, what urdfdom has to say is kept here and printed nowhere.
+/// Collects urdfdom's messages during its life, so that urdfdom prints nothing.
 class HeardMessages : private console_bridge::OutputHandler {
  public:
   HeardMessages() {
@@ -28,7 +28,7 @@ class HeardMessages : private console_bridge::OutputHandler {
   }
   ~HeardMessages() override {
     console_bridge::setLogLevel(level_before_);
-    // Twice: console_bridge keeps the one before as well, and that is not to be this one.
+    // Called twice: console_bridge also keeps the previous handler, which must not be this object.
     console_bridge::useOutputHandler(handler_before_);
     console_bridge::useOutputHandler(handler_before_);
   }
@@ -58,8 +58,8 @@ std::string attribute(const TiXmlElement* element, const char* name) {
               "', and a link has one parent: remove one of them");
 }
 
-/// That no link has two parents, and none is below itself: urdfdom lets the first pass, does not
-/// say where the second is, and leaks it.
+/// Throws Error if a link has two parents, or is below itself. urdfdom accepts the first fault. For
+/// the second it states no place, and leaks memory.
 void require_tree(const std::map<std::string, const TiXmlElement*>& joints) {
   struct Above {
     std::string link;
@@ -100,8 +100,8 @@ UrdfDescription describe(std::string_view text) {
   }
   for (const TiXmlElement* part = robot->FirstChildElement(); part != nullptr;
        part = part->NextSiblingElement()) {
-    if (!part->ValueStr().starts_with("xacro:")) continue;  // urdfdom would pass over it
-    throw Error("holds <" + part->ValueStr() +
+    if (!part->ValueStr().starts_with("xacro:")) continue;  // urdfdom would ignore it
+    throw Error("contains <" + part->ValueStr() +
                 ">, which is xacro; expand it first: xacro FILE > robot.urdf");
   }
   for (const TiXmlElement* joint = robot->FirstChildElement("joint"); joint != nullptr;

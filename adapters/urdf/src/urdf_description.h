@@ -11,15 +11,15 @@
 
 namespace keepout {
 
-/// A robot as urdfdom understands it, and as it stands in the file: urdfdom fills in what is
-/// missing and passes over what is there twice. Its links are a tree.
+/// A robot as urdfdom interprets it, and as it is in the file. urdfdom adds missing parts and
+/// ignores duplicates. Its links are a tree.
 struct UrdfDescription {
   std::shared_ptr<urdf::ModelInterface> model;
   std::shared_ptr<TiXmlDocument> document;
   std::map<std::string, const TiXmlElement*> joints;  // by name
 };
 
-/// Reads one. Throws Error: see read_chain.
+/// Reads a robot. Throws Error: see read_chain.
 UrdfDescription describe(std::string_view text);
 
 }  // namespace keepout

@@ -13,7 +13,7 @@ constexpr std::size_t most_tags = 200'000;
 constexpr int deepest = 64;
 constexpr std::size_t nowhere = std::string_view::npos;
 
-/// Where the tag that `text` begins with ends: its '>', outside of quotes.
+/// Returns the end of the tag that `text` begins with: its '>', outside of quotes.
 std::size_t end_of_tag(std::string_view text) {
   char quote = 0;
   for (std::size_t i = 1; i < text.size() && i < most_bytes_of_tag && text[i] != '<'; ++i) {
@@ -28,7 +28,7 @@ std::size_t end_of_tag(std::string_view text) {
   return nowhere;
 }
 
-/// How many levels deeper it is behind a tag.
+/// Returns the change of depth by a tag.
 int levels(std::string_view tag) {
   if (tag.starts_with("</")) return -1;
   return tag.starts_with("<!") || tag.starts_with("<?") || tag.ends_with("/>") ? 0 : 1;

@@ -73,21 +73,6 @@ Json record_of(const RobotStart& start) {
   return {{"base", base}, {"positions", start.positions}};
 }
 
-/// Returns the words that name the mesh on a command line: its name, and the options that it was
-/// read with.
-std::string command_name(const std::filesystem::path& mesh, const LoadOptions& load) {
-  std::string words = shell_word(mesh.string());
-  for (const auto& [option, space] :
-       {std::pair("--space", load.space), std::pair("--untagged", load.untagged)}) {
-    if (space == AnatomicalSpace::unstated) continue;
-    words.append(" ").append(option).append(" ").append(name(space));
-  }
-  if (!load.unit.empty()) words += " --unit " + load.unit;
-  if (load.scale) words += " --scale " + keepout::text_of(OptionValue(*load.scale));
-  if (load.flip) words += " --flip";
-  return words;
-}
-
 constexpr std::uint64_t starts_tried = 64;
 
 /// Returns the start of an instrument before a mesh, all of it farther away than the margin. The
@@ -124,7 +109,7 @@ Anatomy anatomy_of(const std::filesystem::path& name, const LiveOptions& options
                              options.constraint.options.margin);
   }
   Anatomy anatomy{.facts = {{"name", name.filename().string()},
-                            {"command_name", command_name(name, options.load)},
+                            {"command_name", mesh_words(name, options.load)},
                             {"vertices", loaded.mesh->vertex_count()},
                             {"triangles", loaded.mesh->triangle_count()},
                             {"coordinates", bytes.coordinates},

@@ -13,6 +13,7 @@
 #include "record/json_parts.h"
 #include "record/plain_page.h"
 #include "record/report_page.h"
+#include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
 
@@ -105,6 +106,14 @@ void RecordFiles::add_to(CLI::App& command) {
 std::optional<std::filesystem::path> RecordFiles::kept_json() const {
   if (json || !page || entry_of_open_file(*page) || missing_template().empty()) return json;
   return page->string() + ".json";
+}
+
+std::string RecordFiles::names() const {
+  std::vector<std::string> names;
+  for (const auto& path : {page, kept_json(), csv}) {
+    if (path) names.push_back(path->string());
+  }
+  return listed(names);
 }
 
 void write_record(OutputFiles& outputs, const Json& record, const RecordFiles& files) {

@@ -55,6 +55,9 @@ struct RecordFiles {
   /// the page goes to stdout or another open file.
   std::optional<std::filesystem::path> kept_json() const;
 
+  /// Returns the names of all files that are written, as a list for a sentence.
+  std::string names() const;
+
   /// Opens all of them: "--json", "--csv" and "--out". Throws Error as OutputFiles and file_of_mesh
   /// do. `meshes`: files and fixtures that the command reads. `option`: what the user calls them.
   template <class Meshes = std::initializer_list<std::filesystem::path>>

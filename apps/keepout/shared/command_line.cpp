@@ -321,6 +321,20 @@ std::vector<Guide> guides_of(std::span<const std::string> texts, Guided guided) 
   return guides;
 }
 
+void refuse_empty_items(const CLI::App& command, std::span<const std::string> words) {
+  const CLI::Option* open = nullptr;  // to which the next words belong
+  for (const std::string& word : words) {
+    const std::size_t equals = is_option(word) ? word.find('=') : std::string::npos;
+    if (is_option(word)) open = command.get_option_no_throw(word.substr(0, equals));
+    if (is_option(word) && equals == std::string::npos) continue;
+    if (open == nullptr || open->get_delimiter() != ',') continue;
+    const std::string list = equals == std::string::npos ? word : word.substr(equals + 1);
+    if ((',' + list + ',').find(",,") == std::string::npos) continue;
+    throw CLI::ValidationError(open->get_name(),
+                               "expected a value before and behind each comma, not '" + list + "'");
+  }
+}
+
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const CLI::App& command = chosen.empty() ? app : *chosen.front();

@@ -186,6 +186,9 @@ std::vector<std::string> command_names(const CLI::App& app);
 /// Returns the names of a command's options, with their dashes.
 std::vector<std::string> option_names(const CLI::App& command);
 
+/// Throws CLI::ValidationError if a list has an empty item, as in '1,,2': CLI11 leaves it out.
+void refuse_empty_items(const CLI::App& command, std::span<const std::string> words);
+
 /// What is wrong with a command line, in words that name the option and its value, with a hint at
 /// what was meant and at the help. `error`: what app.parse() threw, and no call for help.
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error);

@@ -64,6 +64,10 @@ void print_completions(const CLI::App& app, std::span<const std::string> words, 
   const std::string start = words.back() == "=" ? "" : words.back();
   const bool is_option = open == nullptr && start.starts_with("-");
   if (open == nullptr && !is_option) open = argument_after(*command, arguments);
+  if (open != nullptr && command->get_name() == "help") {  // it takes the name of a command
+    command = &app;
+    open = nullptr;
+  }
   const bool is_of_mesh = open != nullptr && is_mesh(*open);
   std::vector<std::string> candidates = is_option         ? option_names(*command)
                                         : is_of_mesh      ? fixture_names()

@@ -12,6 +12,7 @@
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/diagnostics.h"
+#include "keepout/option_table.h"
 #include "shared/names.h"
 #include "shared/progress.h"
 
@@ -113,6 +114,19 @@ std::filesystem::path file_of_mesh(const std::filesystem::path& name) {
   // load_mesh() refuses a folder, and a path that cannot be followed, and says why.
   if (exists || (error && error != std::errc::no_such_file_or_directory)) return name;
   refuse(name);
+}
+
+std::string mesh_words(const std::filesystem::path& mesh, const LoadOptions& load) {
+  std::string words = shell_word(mesh.string());
+  for (const auto& [option, space] :
+       {std::pair("--space", load.space), std::pair("--untagged", load.untagged)}) {
+    if (space == AnatomicalSpace::unstated) continue;
+    words.append(" ").append(option).append(" ").append(name(space));
+  }
+  if (!load.unit.empty()) words += " --unit " + load.unit;
+  if (load.scale) words += " --scale " + keepout::text_of(OptionValue(*load.scale));
+  if (load.flip) words += " --flip";
+  return words;
 }
 
 LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions& options) {

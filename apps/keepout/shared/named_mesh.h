@@ -25,6 +25,10 @@ std::vector<std::string> fixture_names();
 /// fixture is not prepared.
 std::filesystem::path file_of_mesh(const std::filesystem::path& name);
 
+/// Returns the words that name the mesh on a command line: its name, and the options that it was
+/// read with.
+std::string mesh_words(const std::filesystem::path& mesh, const LoadOptions& load);
+
 /// Reads or generates it. Throws Error.
 LoadedMesh read_named_mesh(const std::filesystem::path& name, const LoadOptions& options = {});
 

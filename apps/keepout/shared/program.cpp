@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -158,9 +159,11 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
   CLI::App app("keepout keeps a tool out of a triangle mesh of anatomy. All lengths are in mm.",
                called_as(argv[0]));
   set_up(app, commands);
-  if (print_for_files(app, {argv + 1, argv + argc})) return EXIT_SUCCESS;
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (print_for_files(app, words)) return EXIT_SUCCESS;
   try {
     app.parse(argc, argv);
+    refuse_empty_items(*app.get_subcommands().front(), words);
   } catch (const CLI::Success& call_for_help) {
     // CLI11 prints the help of the program although the command is mistyped.
     const std::vector<std::string> extra = app.remaining();
@@ -190,10 +193,11 @@ int run(const std::vector<Command>& commands, int argc, char** argv) {
 int run_program(const std::vector<Command>& commands, int argc, char** argv) {
   prepare_process();
   outlive_readers();
+  int status = EXIT_FAILURE;
   try {
-    return flushed(run(commands, argc, argv));
+    status = flushed(run(commands, argc, argv));
   } catch (const PreparationInterrupted&) {
-    return exit_interrupted;  // fixture_path() has said so
+    status = exit_interrupted;  // fixture_path() has said so
   } catch (const Error& error) {
     std::cerr << "keepout: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {
@@ -201,7 +205,8 @@ int run_program(const std::vector<Command>& commands, int argc, char** argv) {
   } catch (const std::exception& error) {
     std::cerr << "keepout: unexpected: " << error.what() << '\n';
   }
-  return EXIT_FAILURE;
+  if (has_left_work_behind) std::_Exit(status);
+  return status;
 }
 
 }  // namespace keepout::app

@@ -50,6 +50,8 @@ std::ostream& notices() {
 
 void warn_on_stderr(const std::string& text) {
   static std::set<std::string> said;
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   if (!said.insert(text).second) return;
   const char* const clear = ::isatty(STDERR_FILENO) == 1 ? "\r\033[K" : "";
   std::fprintf(stderr, "%skeepout: %s\n", clear, text.c_str());

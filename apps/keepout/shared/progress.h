@@ -23,7 +23,7 @@ bool is_quiet();
 std::ostream& notices();
 
 /// Prints a warning on stderr, "keepout: TEXT", after clearing a line that shows progress. Prints
-/// the same text only once. For one thread.
+/// the same text only once.
 void warn_on_stderr(const std::string& text);
 
 /// Shows on stderr how much of a long piece of work is done: on a terminal in a line that is

@@ -80,6 +80,8 @@ StopSignal::~StopSignal() {
 
 void StopSignal::keep_from_now_on() const noexcept { ends_process = false; }
 
+bool StopSignal::has_something_to_keep() const noexcept { return !ends_process.load(); }
+
 int StopSignal::file() const noexcept { return event_file.load(); }
 
 bool StopSignal::has_come() const noexcept { return noted.load(); }

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <optional>
 #include <string_view>
+#include <thread>
+#include <utility>
 
 namespace keepout::app {
 
@@ -34,11 +40,37 @@ class StopSignal {
   /// To be called once there is something to keep: from now on, signals are noted.
   void keep_from_now_on() const noexcept;
 
+  /// True after keep_from_now_on().
+  bool has_something_to_keep() const noexcept;
+
   /// Readable from the first such signal on.
   int file() const noexcept;
 
   /// Whether there was such a signal.
   bool has_come() const noexcept;
 };
+
+/// True if unless_stopped() has left work behind: the process must then end without destructors of
+/// static objects.
+inline std::atomic<bool> has_left_work_behind{false};
+
+/// Does work that asks for no signal, such as loading a mesh. Once there is something to keep, it
+/// runs on a thread of its own, which is left behind if a signal comes first: then returns nothing.
+/// `work` must own what it uses, but for what lives as long as the process.
+template <class Work>
+auto unless_stopped(const StopSignal& stop, Work work) -> std::optional<decltype(work())> {
+  if (!stop.has_something_to_keep()) return work();
+  if (stop.has_come()) return std::nullopt;
+  std::packaged_task<decltype(work())()> task(std::move(work));
+  auto result = task.get_future();
+  std::thread(std::move(task)).detach();
+  constexpr std::chrono::milliseconds between_looks{20};
+  while (result.wait_for(between_looks) != std::future_status::ready) {
+    if (!stop.has_come()) continue;
+    has_left_work_behind = true;
+    return std::nullopt;
+  }
+  return result.get();
+}
 
 }  // namespace keepout::app

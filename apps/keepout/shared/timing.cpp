@@ -19,4 +19,23 @@ Timing timing_of(std::vector<double>& samples) {
   return timing;
 }
 
+void Times::add(double us) {
+  constexpr std::size_t most = std::size_t{1} << 20;
+  longest_ = std::max(longest_, us);
+  if (++count_ % every_ != 0) return;
+  kept_.push_back(us);
+  if (kept_.size() < most) return;
+  for (std::size_t i = 0; i < most / 2; ++i) kept_[i] = kept_[2 * i + 1];
+  kept_.resize(most / 2);
+  every_ *= 2;
+}
+
+Timing Times::timing() const {
+  std::vector<double> samples = kept_;
+  Timing timing = timing_of(samples);
+  timing.max = longest_;
+  timing.samples = count_;
+  return timing;
+}
+
 }  // namespace keepout::app

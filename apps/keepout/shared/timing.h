@@ -28,4 +28,20 @@ struct Timing {
 /// Sorts the samples. [us] All zero where there are none.
 Timing timing_of(std::vector<double>& samples);
 
+/// Any number of times, in bounded memory: beyond a million it keeps every second time, then every
+/// fourth, and so on.
+class Times {
+ public:
+  void add(double us);
+
+  /// The longest of all times, and percentiles of those that are kept.
+  Timing timing() const;
+
+ private:
+  std::vector<double> kept_;  // [us]
+  std::size_t count_ = 0;     // of all
+  std::size_t every_ = 1;     // one in so many is kept
+  double longest_ = 0.0;      // [us]
+};
+
 }  // namespace keepout::app

@@ -89,11 +89,18 @@ class GuardedInstrument final : public SimulatedTool {
         margin_(options.constraint.options.margin),
         guides_(guides_of(options.guides, Guided::instrument)) {}
 
-  std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
+  std::shared_ptr<const Mesh> open(const std::filesystem::path& path,
+                                   const StopSignal& stop) override {
     const std::string name = path.stem().string();
-    const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, options_.load).mesh;
-    require_area(path.string(), *mesh);
-    on_.emplace(RobotScene{{name, mesh, options_.constraint.index}, margin_});
+    auto opened = unless_stopped(
+        stop, [=, load = options_.load, index = options_.constraint.index, margin = margin_] {
+          const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, load).mesh;
+          require_area(path.string(), *mesh);
+          return std::make_unique<RobotScene>(RobotScene{{name, mesh, index}, margin});
+        });
+    if (!opened) return nullptr;
+    on_ = *std::move(opened);
+    const std::shared_ptr<const Mesh> mesh = on_->scene.mesh();
     Json& drawn = meshes_.emplace_back(drawn_mesh(name, *mesh));
     drawn["surface"] = on_->scene.has_sides() ? "closed" : "open";
     drawn["strokes"] = Json::array();
@@ -152,6 +159,7 @@ class GuardedInstrument final : public SimulatedTool {
     cycle.outcome = !step.ok()                    ? Outcome::stopped
                     : step.status != Status::free ? Outcome::limited
                                                   : Outcome::moved_freely;
+    cycle.guides_inside = guides_inside(step.guides);
     const oracle::RobotVerdict verdict = judge_->judge(q_);
     cycle.is_breach = verdict.limits_broken;
     cycle.is_guide_left = verdict.is_guide_left;
@@ -198,27 +206,29 @@ class GuardedInstrument final : public SimulatedTool {
     // A mesh without a stroke that is finished.
     if (meshes_.back()["strokes"].empty()) meshes_.erase(meshes_.size() - 1);
     const bool has_guides = !guides_.empty();
+    const std::vector<std::string> untested = untested_guides(runs, options_.guides);
     const std::string in_guides = has_guides ? ", and in its guides" : "";
-    Json record =
-        new_record({.kind = "simulate_robot",
-                    .command = options_.command,
-                    .subject = "A simulated operator drove the instrument of a robot, " +
-                               options_.robot + ", against anatomy: the same strokes in each mode",
-                    .headline = std::string("The certified step ") +
-                                (broken == 0 ? "kept shaft, wrist and jaw off the anatomy" +
-                                                   in_guides + " in all "
-                                             : "broke its promise in some of ") +
-                                counted(cycles, "cycle") + "." +
-                                (still.empty() ? ""
-                                               : " The instrument stood still in all cycles of " +
-                                                     listed(still) + ": nothing was tested there."),
-                    .machine = this_machine(),
-                    .settings = {{"robot", options_.robot},
-                                 {"strokes", grouped(options_.strokes.count)},
-                                 {"cycles per stroke", grouped(options_.strokes.cycles)},
-                                 {"margin", trimmed(margin_) + " mm"},
-                                 {"seed", std::to_string(options_.strokes.seed)},
-                                 {"index", options_.constraint.index}}});
+    Json record = new_record(
+        {.kind = "simulate_robot",
+         .command = options_.command,
+         .subject = "A simulated operator drove the instrument of a robot, " + options_.robot +
+                    ", against anatomy: the same strokes in each mode",
+         .headline =
+             std::string("The certified step ") +
+             (broken == 0 ? "kept shaft, wrist and jaw off the anatomy" + in_guides + " in all "
+                          : "broke its promise in some of ") +
+             counted(cycles, "cycle") + "." +
+             (still.empty() ? ""
+                            : " The instrument stood still in all cycles of " + listed(still) +
+                                  ": nothing was tested there.") +
+             sentence_on_untested(untested),
+         .machine = this_machine(),
+         .settings = {{"robot", options_.robot},
+                      {"strokes", grouped(options_.strokes.count)},
+                      {"cycles per stroke", grouped(options_.strokes.cycles)},
+                      {"margin", trimmed(margin_) + " mm"},
+                      {"seed", std::to_string(options_.strokes.seed)},
+                      {"index", options_.constraint.index}}});
     if (has_guides) record["settings"]["guides"] = listed(options_.guides);
     record["certified_mm"] = margin_ - joints_->options().band;
     for (std::size_t b = 0; b < body_names.size(); ++b) {
@@ -230,14 +240,14 @@ class GuardedInstrument final : public SimulatedTool {
     return {.record = std::move(record),
             .columns = mode_columns(has_guides),
             .legend = columns_meaning,
-            .is_broken = broken > 0};
+            .is_broken = broken > 0 || (has_guides && untested.size() == guides_.size())};
   }
 
  private:
   const SimulateOptions& options_;
   double margin_;  // [mm]
   std::vector<Guide> guides_;
-  std::optional<RobotScene> on_;
+  std::unique_ptr<RobotScene> on_;
   Json meshes_ = Json::array();
   std::array<double, manners.size()> told_ = {};  // of the strokes kept on the last mesh [mm]
   std::optional<InstrumentConstraint> joints_;

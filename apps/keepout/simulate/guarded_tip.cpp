@@ -20,7 +20,7 @@ class GuardedTip final : public SimulatedTool {
     require_within_reach(options.max_step, options.constraint.options.radius);
   }
 
-  std::shared_ptr<const Mesh> open(const std::filesystem::path& path) override {
+  std::shared_ptr<const Mesh> open(const std::filesystem::path& path, const StopSignal&) override {
     const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, options_.load).mesh;
     constraints_.emplace_back();
     for (const std::string& rule : options_.rules) {
@@ -65,6 +65,7 @@ class GuardedTip final : public SimulatedTool {
       cycle.outcome = !step.ok() || is_still        ? Outcome::stopped
                       : step.status != Status::free ? Outcome::limited
                                                     : Outcome::moved_freely;
+      cycle.guides_inside = guides_inside(step.guides);
       cycle.step_us = static_cast<float>(1e-3 * static_cast<double>(times.total()));
       motion = step.motion;
     }

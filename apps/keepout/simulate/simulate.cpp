@@ -10,6 +10,7 @@
 
 #include "keepout/error.h"
 #include "record/report_page.h"
+#include "shared/named_mesh.h"
 #include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
@@ -56,7 +57,8 @@ Runs run_strokes(SimulatedTool& tool, const std::vector<std::filesystem::path>& 
   Progress progress("simulate", all.planned);
   for (const auto& mesh : meshes) {
     progress.show(mesh.stem().string());
-    all.mesh = tool.open(mesh);
+    all.mesh = tool.open(mesh, stop);
+    if (!all.mesh) return all;
     const std::vector<std::string> guards = tool.guards();
     for (const double speed : speeds) {
       std::vector<RunTally> runs;
@@ -89,15 +91,22 @@ void print_next(const SimulateOptions& options, const Json& record, std::ostream
       << options.files.page->string() << '\n';
   if (is_quiet() || options.called_as.empty()) return;
   const std::string robot = options.robot.empty() ? "" : " --robot " + options.robot;
-  const std::string mesh =
-      shell_word(options.meshes.empty() ? "skull" : options.meshes.front().string());
+  const std::filesystem::path name = options.meshes.empty() ? "skull" : options.meshes.front();
+  const std::string mesh = mesh_words(name, options.load);
+  std::string verified = shell_word(name.string());  // by a command that takes meshes as they are
+  std::vector<std::pair<std::string, const char*>> lines{
+      {"inspect " + mesh, "what the mesh is made of, and what is wrong with it"}};
+  if (mesh != verified) {
+    verified = "CONVERTED.ply";
+    lines.emplace_back("convert " + mesh + " " + verified, "the mesh as it was read, for verify");
+  }
+  lines.emplace_back(
+      "verify " + verified + (robot.empty() ? " --steps 1e5" : robot + " --cycles 1e4"),
+      "attack the certified rule; an exact oracle judges");
+  lines.emplace_back("simulate YOUR_MESH.stl" + robot, "the same on a mesh of yours, in mm");
+  lines.emplace_back("--help", "all commands");
   out << "\nTry next:\n";
-  for (auto [arguments, what] : std::initializer_list<std::pair<std::string, const char*>>{
-           {"inspect " + mesh, "what the mesh is made of, and what is wrong with it"},
-           {"verify " + mesh + (robot.empty() ? " --steps 1e5" : robot + " --cycles 1e4"),
-            "attack the certified rule; an exact oracle judges"},
-           {"simulate YOUR_MESH.stl" + robot, "the same on a mesh of yours, in mm"},
-           {"--help", "all commands"}}) {
+  for (auto& [arguments, what] : lines) {
     constexpr std::size_t column = 40;
     arguments.insert(0, options.called_as + ' ');
     arguments.resize(std::max(arguments.size(), column), ' ');
@@ -145,7 +154,7 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
     out.flush();
     std::cerr << "keepout: stopped; " << grouped(done.finished) << " of "
               << counted(done.planned, "stroke") << " were finished, and are kept in "
-              << options.files.page->string() << '\n';
+              << options.files.names() << '\n';
   }
   if (timings.is_wrong) {
     std::cerr << "keepout: parts give wrong answers: see the benchmark in the report\n";

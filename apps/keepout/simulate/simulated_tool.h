@@ -25,7 +25,7 @@ struct SimulationResult {
   Json record;                // see docs/records.md
   Columns<RunTally> columns;  // of the table of all runs
   std::string_view legend = {};
-  bool is_broken = false;  // a promise was
+  bool is_broken = false;  // a promise was broken, or no guide was tested
 };
 
 /// The tool that an operator moves over meshes, under each of its guards, in the closed loop of
@@ -34,8 +34,9 @@ class SimulatedTool {
  public:
   virtual ~SimulatedTool() = default;
 
-  /// Loads the next mesh. Throws Error.
-  virtual std::shared_ptr<const Mesh> open(const std::filesystem::path& mesh) = 0;
+  /// Loads the next mesh. Returns null if a signal comes meanwhile. Throws Error.
+  virtual std::shared_ptr<const Mesh> open(const std::filesystem::path& mesh,
+                                           const StopSignal& stop) = 0;
   /// Returns the names of the guards; "none" lets the tool go anywhere.
   virtual std::vector<std::string> guards() const = 0;
   /// Draws the next stroke. Throws Error if there is no place for it.

@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "keepout/geometry/shapes.h"
+#include "keepout/step/guide.h"
 #include "shared/timing.h"
 
 namespace keepout::app {
@@ -39,6 +41,7 @@ struct Cycle {
   bool is_guide_left = false;  // by more than is promised
   double guide_excess =
       -far;  // largest of a tip's guides at the end; -infinity without guides [mm]
+  std::uint32_t guides_inside = 0;  // a bit for each guide: inside as the cycle began
 
   /// Returns the smallest clearance; NaN if one is, as no clearance is proved then.
   double least() const {
@@ -72,6 +75,7 @@ struct RunTally {
   std::size_t breaches = 0;                  // cycles
   std::size_t guides_left = 0;               // cycles in which a guide was left
   double farthest_out = -Cycle::far;         // largest excess of a tip's guides [mm]
+  std::uint32_t guides_inside = 0;           // a bit for each guide: inside in any cycle
   std::size_t strokes_inside = 0;            // with at least one cycle inside
   std::size_t strokes_breached = 0;          // with a cycle inside, or with a breach
   std::size_t starts_too_close = 0;          // strokes that began nearer than is required
@@ -87,5 +91,15 @@ struct RunTally {
   /// Returns true if the tool moved in no cycle, so the guard was not tested.
   bool stood_still() const { return cycles > 0 && with(Outcome::stopped) == cycles; }
 };
+
+/// Returns Cycle::guides_inside, from the guides of a step.
+std::uint32_t guides_inside(std::span<const GuideState> guides);
+
+/// Returns the guides that no guarded tool was ever inside, in quotation marks. `texts`: of all.
+std::vector<std::string> untested_guides(std::span<const RunTally> runs,
+                                         std::span<const std::string> texts);
+
+/// Returns a sentence on untested guides, after a space; empty if there are none.
+std::string sentence_on_untested(const std::vector<std::string>& guides);
 
 }  // namespace keepout::app

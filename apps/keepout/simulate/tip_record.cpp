@@ -296,6 +296,7 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
   const double margin = required_clearance(options.constraint.options);
   const TipScene scene{audit.surface(), options.constraint.tool.has_value(),
                        !options.guides.empty()};
+  const std::vector<std::string> untested = untested_guides(runs, options.guides);
   Json record = new_record(
       {.kind = "simulate",
        .command = options.command,
@@ -304,7 +305,7 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
                   "): " + counted(free.strokes, "stroke") + ", " + counted(free.cycles, "cycle") +
                   " of 1 ms, without a fixture and under " + counted(runs.size() - 1, "rule") +
                   ", margin " + length_text(margin),
-       .headline = headline(runs, scene, margin),
+       .headline = headline(runs, scene, margin) + sentence_on_untested(untested),
        .machine = this_machine(),
        .settings = settings_of(options)});
   std::vector<Moments> moments;
@@ -324,7 +325,7 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
     for (const Pose& goal : followed.stroke.goals) hand.push_back(place(goal.position));
   }
   const Columns<RunTally> columns = columns_of(scene);
-  bool is_broken = false;
+  bool is_broken = scene.has_guides && untested.size() == options.guides.size();
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const std::string& rule = runs[r].guard;
     const bool is_free = rule == no_rule;

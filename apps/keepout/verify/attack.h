@@ -16,7 +16,7 @@ class Attack {
   virtual ~Attack() = default;
 
   /// Draws the start of the next trajectory; loads the mesh before the first. Returns its largest
-  /// number of cycles; 0 if there is none.
+  /// number of cycles; 0 if there is none, or no mesh.
   virtual std::uint64_t begin() = 0;
 
   /// Commands a motion, makes the step, has it judged, tallies it and applies it. `number`: of the
@@ -27,7 +27,7 @@ class Attack {
   virtual bool is_done() const = 0;
 
   Tally row;
-  std::vector<double> step_us = {}, point_us = {};  // the times of the steps, see Tally
+  Times step_times = {}, point_times = {};  // of the steps, see Tally
 };
 using Attacks = std::vector<std::unique_ptr<Attack>>;
 

@@ -14,6 +14,7 @@ Next run(Attack& attack, const Advanced& advanced) {
   const std::string name = row.mesh + (row.scenario.empty() ? "" : ", " + row.scenario);
   Next next = Next::go_on;
   std::uint64_t most = attack.begin();
+  if (most == 0 && !attack.is_done()) return Next::stop;  // a signal came while its mesh was loaded
   const BenchClock::time_point start = BenchClock::now();
   while (most > 0) {
     const std::uint64_t before = row.cycles;
@@ -22,8 +23,8 @@ Next run(Attack& attack, const Advanced& advanced) {
     next = advanced(row.cycles - before, name);
     most = next == Next::go_on ? attack.begin() : 0;
   }
-  row.step = timing_of(attack.step_us);
-  row.point = timing_of(attack.point_us);
+  row.step = attack.step_times.timing();
+  row.point = attack.point_times.timing();
   row.seconds = microseconds_since(start) * 1e-6;
   return next;
 }
@@ -57,8 +58,11 @@ Findings run_campaign(const Campaign& campaign, std::span<const Arena> arenas,
   Next next = Next::go_on;
   for (auto& attack : campaign.is_of_instruments() ? attacks_on_instruments(campaign, arenas)
                                                    : attacks_on_tips(campaign, arenas, findings)) {
-    const bool is_run = next == Next::go_on;
-    if (is_run) next = run(*attack, advanced);
+    bool is_run = next == Next::go_on;
+    if (is_run) {
+      next = run(*attack, advanced);
+      is_run = attack->row.starts > 0 || attack->is_done();
+    }
     findings.is_complete = findings.is_complete && attack->is_done();
     // Shards of tips have the same rows, so that they add up.
     if (is_run || !campaign.is_of_instruments()) findings.rows.push_back(std::move(attack->row));

@@ -60,7 +60,7 @@ void require_area(const std::string& name, const Mesh& mesh);
 /// or a kind of mesh, of which one is drawn anew for each start of an instrument.
 struct Arena {
   std::string mesh;
-  std::function<std::vector<Scene>()> load = {};
+  std::function<std::vector<Scene>()> load = {};             // none once a signal has come
   std::function<std::shared_ptr<Scene>(Random&)> draw = {};  // instead
 };
 

@@ -113,6 +113,7 @@ class TipAttack final : public Attack {
     if (is_done()) return 0;
     if (scenes_.empty()) {
       scenes_ = arenas_[arena_].load();
+      if (scenes_.empty()) return 0;
       for (const Scene& scene : scenes_) guards_.push_back(campaign_.make_guard(scene));
       row.triangles = scenes_.front().mesh()->triangle_count();
     }

@@ -51,9 +51,15 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
                 " steps to share out; ask for fewer shards or more steps");
   }
   std::vector<std::string> missing;
-  const std::vector<Arena> arenas = arenas_of(options, missing);
+  std::vector<Arena> arenas = arenas_of(options, missing);
   for (const std::string& mesh : missing) out << "note: " << mesh << '\n';
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
+  for (Arena& arena : arenas) {
+    if (!arena.load) continue;
+    arena.load = [load = std::move(arena.load), &stop] {
+      return unless_stopped(stop, load).value_or(std::vector<Scene>{});
+    };
+  }
   Progress progress("verify", campaign.length(arenas.size()));
   Findings findings =
       run_campaign(campaign, arenas,

@@ -20,7 +20,7 @@
 namespace keepout::app {
 namespace {
 
-/// Room for what is within 5 mm anywhere on the meshes here.
+/// Capacity for the triangles within 5 mm anywhere on these meshes.
 constexpr Capacity room{.triangles = std::size_t{1} << 17,
                         .planes = std::size_t{1} << 16,
                         .variables = 3,
@@ -30,7 +30,7 @@ Surface resampled_bunny(std::size_t triangles) {
   return surface_of(*make_mesh({std::string(resampled_mesh), triangles}));
 }
 
-/// Half of them one after the other, as a loop would ask; half from all over.
+/// Returns half of the sample in a row, as a loop would step, and half from everywhere.
 std::vector<Motion> sample_of(std::span<const Motion> motions) {
   constexpr std::size_t most_samples = 500;
   const std::size_t in_a_row = std::min(most_samples / 2, motions.size());
@@ -41,7 +41,7 @@ std::vector<Motion> sample_of(std::span<const Motion> motions) {
   return sample;
 }
 
-constexpr int most_rounds = 50;  // about ten are enough where most tips find room
+constexpr int most_rounds = 50;  // about ten are enough if most tips have enough space
 
 Vec3 somewhere_free(const Mesh& mesh, NearestTriangle& nearest, const FreeSpace& space,
                     Random& random) {
@@ -51,7 +51,7 @@ Vec3 somewhere_free(const Mesh& mesh, NearestTriangle& nearest, const FreeSpace&
     const double distance = nearest(tip, middle).closest.distance;
     if (distance > space.nearest && distance < space.farthest) return tip;
   }
-  throw Error("hardly anywhere has the mesh free space around it; is it in another unit?");
+  throw Error("the mesh has hardly any free space around it; is it in another unit?");
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ std::vector<Motion> pressed_motions(const IndexedMesh& on, std::size_t count,
     for (Vec3 tip : surface_points(*on.mesh, strokes, 1.5 * kind.clearance, random)) {
       const ClosestPoint closest = nearest(tip, 2.0 * kind.clearance).closest;
       if (closest.distance < kind.clearance) continue;
-      constexpr double not_quite = 0.999;  // or rounding would make it too close
+      constexpr double not_quite = 0.999;  // rounding must not make it too close
       tip += not_quite * (1.0 - kind.clearance / closest.distance) * closest.offset;
       const Vec3 heading = random.direction();
       for (std::size_t cycle = 0; cycle < cycles_of_a_stroke && motions.size() < count; ++cycle) {
@@ -146,8 +146,8 @@ std::vector<Motion> pressed_motions(const IndexedMesh& on, std::size_t count,
     }
   }
   if (motions.size() < count) {
-    throw Error("hardly anywhere has the mesh room for a tip that is " +
-                length_text(kind.clearance) + " off it");
+    throw Error("the mesh has hardly any place for a tip that is " + length_text(kind.clearance) +
+                " away from it");
   }
   return motions;
 }
@@ -164,13 +164,13 @@ std::vector<Motion> free_motions(const IndexedMesh& on, std::size_t count, const
     const double length = random.uniform(kind.shortest, kind.longest);
     const Hit hit = nearest(tip, distance + kind.longest);
     distance = hit.closest.distance;
-    // At the bounds of the space it turns around, gently.
+    // Turns gently at the bounds of the space.
     const Vec3 away = -hit.closest.offset / distance;
     constexpr double gentle = 0.3;
     if (distance < space.nearest + 5.0 * kind.longest) heading += gentle * away;
     if (distance > space.farthest - 5.0 * kind.longest) heading -= gentle * away;
     heading.normalize();
-    // Where that is not enough it turns on the spot.
+    // Turns on the spot if that is not enough.
     if (distance < space.nearest + kind.longest) heading = away;
     if (distance > space.farthest - kind.longest) heading = -away;
     motions.push_back({.tip = tip, .desired = length * heading});
@@ -189,7 +189,7 @@ std::vector<Motion> held_back_motions(const IndexedMesh& on, std::size_t count,
       if (guard.step(motion).status == Status::limited) motions.push_back(motion);
     }
   }
-  if (motions.empty()) throw Error("hardly anywhere does the mesh hold a motion back");
+  if (motions.empty()) throw Error("the mesh limits hardly any of the motions");
   return motions;
 }
 

@@ -50,7 +50,7 @@ void measure_builds(SpeedRun& run, const IndexedMesh& on) {
   }
 }
 
-/// The surface as it breathes: every vertex is elsewhere, and neighbors stay neighbors.
+/// Returns the surface deformed as by breathing: every vertex moves, and neighbors stay neighbors.
 std::shared_ptr<const Mesh> deformed(const Mesh& mesh) {
   Surface surface = surface_of(mesh);
   for (Vec3& vertex : surface.vertices) {
@@ -63,7 +63,7 @@ std::shared_ptr<const Mesh> deformed(const Mesh& mesh) {
 void measure_refit(SpeedRun& run, const IndexedMesh& on) {
   const std::shared_ptr<const Mesh> moved = deformed(*on.mesh);
   const auto index = std::make_shared<WideBvh>(on.mesh, 1);
-  // There and back, so that each time all have moved.
+  // There and back, so that all vertices move each time.
   bool is_moved = false;
   const MeasuredSide refit = timed_whole("refit", 2 * run.effort.builds + 1, [&] {
     index->refit(is_moved ? on.mesh : moved, 1);
@@ -92,11 +92,11 @@ void measure_memory(SpeedRun& run, const IndexedMesh& on) {
            .figure = index + mesh});
 }
 
-/// A mesh that was loaded.
+/// A loaded mesh.
 struct Loaded {
   IndexedMesh mesh;
   MeasuredSide time;      // from the file to the index, on two cores
-  double peak_gib = 0.0;  // of memory meanwhile
+  double peak_gib = 0.0;  // of memory during loading
 };
 
 Loaded load(SpeedRun& run, std::size_t triangles) {
@@ -117,7 +117,7 @@ std::string millions(std::size_t triangles) {
                                : rounded(1e-6 * static_cast<double>(triangles), 2) + " M";
 }
 
-/// The usual contact, beside that on the mesh of all other rows.
+/// Adds the usual steps in contact, compared with those on the mesh of all other rows.
 void add_contact(SpeedRun& run, const IndexedMesh& on, std::size_t triangles, double most) {
   MeasuredSide contact = in_contact(run, on);
   contact.name = millions(triangles) + " triangles";
@@ -126,7 +126,7 @@ void add_contact(SpeedRun& run, const IndexedMesh& on, std::size_t triangles, do
                 contact, run.contact_side));
 }
 
-/// Large steps over a fine mesh, in microseconds.
+/// Adds large steps over a fine mesh, in µs.
 void add_large_steps(SpeedRun& run, const IndexedMesh& on, std::size_t triangles) {
   const MeasuredSide side =
       in_contact(run, on, {.clearance = 1.1, .shortest = 1.0, .longest = 5.0});
@@ -150,8 +150,8 @@ void add_large_steps(SpeedRun& run, const IndexedMesh& on, std::size_t triangles
 
 constexpr unsigned cores = 2;
 
-/// What assimp makes of a mesh file, as a program that uses it alone would read it: triangulated,
-/// and not welded, which costs it least. Throws Error, also in a build without assimp.
+/// Reads a mesh file as a program with assimp alone would: triangulated, and not welded, which is
+/// fastest. Throws Error, also in a build without assimp.
 Surface assimp_surface([[maybe_unused]] const std::filesystem::path& file) {
 #if KEEPOUT_WITH_ASSIMP
   Assimp::Importer importer;
@@ -180,7 +180,7 @@ Surface assimp_surface([[maybe_unused]] const std::filesystem::path& file) {
 #endif
 }
 
-/// As a program begins: the index is read from its cache if there is one.
+/// Does what a program does at its start; reads the index from its cache if there is one.
 void first_step(const std::filesystem::path& file, const std::filesystem::path& cache = {}) {
   const std::shared_ptr<const Mesh> mesh = load_mesh(file).mesh;
   const std::shared_ptr<const SpatialIndex> index =
@@ -227,7 +227,8 @@ void measure_first_step(SpeedRun& run) {
   run.show("from a file to the first step");
   const std::filesystem::path file = fixture_path(run.effort.file);
   const OnCores two(cores);
-  const std::size_t count = load_mesh(file).mesh->triangle_count();  // and the file is in memory
+  const std::size_t count =
+      load_mesh(file).mesh->triangle_count();  // loads the file into the page cache
   const std::string work = "binary STL, " + counted(count, "triangle") + ", to first step, 2 cores";
   const MeasuredSide theirs = attempted("assimp + FCL OBBRSS", [&] {
     const auto mesh = std::make_shared<const Mesh>(assimp_surface(file));
@@ -242,7 +243,7 @@ void measure_first_step(SpeedRun& run) {
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);
   });
-  first_step(file, folder);  // builds the index, and puts it there
+  first_step(file, folder);  // builds the index and caches it
   const MeasuredSide with_cache = timed_whole("ours, index from the cache", run.effort.builds,
                                               [&] { first_step(file, folder); });
   run.add(ratio(work, "(assimp + FCL's tree) / ours, with the index cache", at_least(50.0), theirs,

@@ -19,7 +19,7 @@ cpu_set_t allowed_cores() noexcept {
   return cores;
 }
 
-/// As the process began: before anything here has kept it on fewer.
+/// The cores that the process may use at its start.
 const cpu_set_t allowed_at_first = allowed_cores();
 
 }  // namespace
@@ -62,11 +62,11 @@ keepout::app::CallCounts keepout::app::calls_of_this_thread() noexcept { return 
 
 namespace {
 
-// Of the thread, and so without a cost worth speaking of to those who are timed.
+// One counter for each thread, so that counting costs almost no time.
 constinit thread_local keepout::app::CallCounts counts;
 
-/// A function of the C library that is stood in for here, found when it is first called: the same,
-/// whoever finds it.
+/// A function of the C library that this file replaces, looked up on its first call. All threads
+/// find the same address, so no lock is needed.
 template <class Argument>
 using Original = std::atomic<int (*)(Argument*)>;
 constinit Original<pthread_mutex_t> lock_mutex = nullptr;
@@ -87,8 +87,8 @@ int call(Original<Argument>& original, const char* name, Argument* argument) {
 bool keepout::app::counts_calls() noexcept { return true; }
 keepout::app::CallCounts keepout::app::calls_of_this_thread() noexcept { return counts; }
 
-// The GNU C library keeps its own allocation under these names for those who stand in for it.
-// Operator new, and Eigen, come through here as well.
+// The GNU C library offers its allocation under these names to programs that replace malloc.
+// Operator new and Eigen call these functions as well.
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
@@ -117,7 +117,7 @@ int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
   *memory = memalign(alignment, size);
   return *memory != nullptr ? 0 : ENOMEM;
 }
-void free(void* memory) { __libc_free(memory); }  // of one kind with the others
+void free(void* memory) { __libc_free(memory); }  // must match the other functions
 
 int pthread_mutex_lock(pthread_mutex_t* mutex) {
   ++counts.locks;

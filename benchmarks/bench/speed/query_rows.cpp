@@ -15,7 +15,7 @@
 namespace keepout::app {
 namespace {
 
-/// The triangle's point nearest to p, region by region of its plane.
+/// Returns the triangle's point nearest to p, by the regions of its plane.
 ///
 /// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
 Vec3 nearest_point(const Triangle& triangle, const Vec3& p) noexcept {
@@ -41,22 +41,22 @@ Vec3 nearest_point(const Triangle& triangle, const Vec3& p) noexcept {
   return a + vb * share * ab + vc * share * ac;
 }
 
-/// Whether a triangle touches a ball, as the engine's kernel has it.
+/// Returns true if a triangle touches a ball, as the engine's kernel decides.
 bool kernel(const Triangle& triangle, const Ball& ball) noexcept {
   return closest_point(triangle, ball.center).distance <= ball.radius;
 }
 
-/// The same by the shortest code there is wherever that is sure: the kernel tells features apart,
-/// and has its roundings under control, at several times the cost.
+/// Like kernel(), but by the shortest code wherever its answer is sure. The kernel also classifies
+/// features and controls rounding, at several times the cost.
 bool lean_test(const Triangle& triangle, const Ball& ball) noexcept {
   const double squared = (nearest_point(triangle, ball.center) - ball.center).squaredNorm();
   const double limit = ball.radius * ball.radius;
-  constexpr double doubt = 1e-6;  // of the limit: far more than rounding, but for needles
+  constexpr double doubt = 1e-6;  // of the limit: far above rounding, except for needles
   if (std::abs(squared - limit) > doubt * limit) return squared <= limit;
-  return kernel(triangle, ball);  // NaN comes here as well
+  return kernel(triangle, ball);  // NaN also gets here
 }
 
-/// Asks an index for the triangles within balls.
+/// Queries an index for the triangles within balls.
 class Searcher {
  public:
   /// Both must outlive this.
@@ -68,7 +68,7 @@ class Searcher {
     index_.collect(ball, candidates_);
   }
 
-  /// The candidates if they are the answer; else those of them that the test leaves.
+  /// Returns the candidates if the index is exact, otherwise those that pass the test.
   template <class Test>
   std::span<const TriangleId> answer(const Ball& ball, Test&& test) noexcept {
     collect(ball);
@@ -80,11 +80,11 @@ class Searcher {
     return found_.view();
   }
 
-  /// The same in the order of their numbers. Throws Error if they are more than there is room for.
+  /// Like answer(), but sorted. Throws Error if the candidates exceed the capacity.
   template <class Test>
   std::vector<TriangleId> sorted_answer(const Ball& ball, Test&& test) {
     const std::span<const TriangleId> ids = answer(ball, test);
-    if (candidates_.overflowed()) throw Error("too many triangles are within reach of a query");
+    if (candidates_.overflowed()) throw Error("a query found too many triangles");
     std::vector<TriangleId> sorted(ids.begin(), ids.end());
     std::sort(sorted.begin(), sorted.end());
     return sorted;
@@ -99,7 +99,7 @@ class Searcher {
   TriangleBuffer found_ = TriangleBuffer(candidates_.capacity());
 };
 
-/// Balls, and the answers of an index that is right, for others to be held to.
+/// Balls, and the answers of a correct index for comparison.
 struct Question {
   double radius;
   std::vector<Ball> balls = {};
@@ -107,8 +107,8 @@ struct Question {
   double found_mean = 0.0;
 };
 
-/// Throws Error when the index does not agree with brute force in a sample of the places: a fault
-/// of ours.
+/// Throws Error if the index disagrees with brute force at a sample of the places: a bug in
+/// keepout.
 Question question_of(const IndexedMesh& right, double radius, std::span<const Vec3> places) {
   Question question{.radius = radius};
   Searcher searcher(*right.mesh, *right.index);
@@ -136,7 +136,8 @@ std::vector<Vec3> places_near(const Mesh& mesh, std::size_t count, Random random
   return places;
 }
 
-/// What one index takes, also for the table of all of them. Exact indices answer by candidates.
+/// Times one index, and adds the figures to the table of all indices. For an exact index the answer
+/// is the candidates.
 QueryFigures measure(SpeedRun& run, const std::string& name, const IndexedMesh& on,
                      const Question& question, int passes) {
   QueryFigures figures{.index = name, .radius = question.radius, .found_mean = question.found_mean};

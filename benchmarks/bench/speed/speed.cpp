@@ -33,7 +33,7 @@ constexpr void (*families[])(SpeedRun&) = {
 std::size_t TimeHistogram::bin_of(std::uint64_t ns) noexcept {
   if (ns < 1) return 0;
   const unsigned doubling = static_cast<unsigned>(std::bit_width(ns)) - 1;
-  // The three bits after the first: bins of equal width within a doubling.
+  // The three bits after the first one: bins of equal width within a doubling.
   const std::uint64_t place = doubling >= bits_of_a_bin ? ns >> (doubling - bits_of_a_bin)
                                                         : ns << (bits_of_a_bin - doubling);
   return std::min<std::size_t>(doubling * bins_of_a_doubling + (place - bins_of_a_doubling),
@@ -127,7 +127,7 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   progress.interrupt();
   print_head(run);
   out.flush();
-  if (!one.holds()) out << "The system does not let this process stay on one core.\n";
+  if (!one.holds()) out << "The system does not let this process bind itself to one core.\n";
   const StopSignal stop(keeps_what_is_finished);
   run.bunny = with_index(bunny_of(triangles));
   for (const auto measure : families) {

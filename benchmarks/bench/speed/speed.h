@@ -23,28 +23,28 @@
 
 namespace keepout::app {
 
-/// Counts times in memory of a fixed size: 1 ns to 4 s, each doubling in eight bins of equal width,
-/// so that a bin tells a time to an eighth.
+/// Counts times in memory of a fixed size. Covers 1 ns to 4 s, with eight bins of equal width for
+/// each doubling, so that a bin resolves a time to an eighth.
 ///
-/// Source: G. Tene, HdrHistogram, of the layout of bins.
+/// Source of the layout of bins: G. Tene, HdrHistogram.
 class TimeHistogram {
  public:
   static constexpr unsigned bins_of_a_doubling = 8;
   static constexpr std::size_t bins = 32 * bins_of_a_doubling;
 
-  /// What lies outside is counted in the first or the last bin. [ns]
+  /// Counts a time; times out of range go to the first or the last bin. [ns]
   void add(std::uint64_t ns) noexcept;
 
   std::uint64_t count(std::size_t bin) const noexcept { return counts_[bin]; }
   std::uint64_t total() const noexcept { return total_; }
   std::uint64_t longest() const noexcept { return longest_; }  // [ns]
 
-  /// Where a bin begins; it ends where the next begins. [ns]
+  /// Returns the start of a bin, which is the end of the one before. [ns]
   static double beginning_of(std::size_t bin) noexcept;
   static std::size_t bin_of(std::uint64_t ns) noexcept;
 
-  /// The end of the bin that the share of all times reaches, 0.999 of them for one; none, if
-  /// nothing was added. [ns]
+  /// Returns the end of the bin that contains the percentile; share 0.999 for 99.9 %. Empty if no
+  /// time was added. [ns]
   std::optional<double> percentile(double share) const noexcept;
 
  private:
@@ -53,26 +53,26 @@ class TimeHistogram {
   std::uint64_t longest_ = 0;
 };
 
-/// What was timed under one name, or why it was not. The median of what takes less than 0.2 us is
-/// that of batches, each divided by its length, for reading the clock would be a good part of it;
-/// the percentiles beside it are of single ones, the clock's reading included.
+/// The times of one side of a comparison, or why it was not timed. Below 0.2 µs, reading the clock
+/// would distort the median; it is then that of batches, each divided by its length. All other
+/// percentiles are of single calls and include reading the clock.
 struct MeasuredSide {
   std::string name = {};
   Timing us = {};
-  std::size_t batch = 1;     // how many were timed at once, for the median
+  std::size_t batch = 1;     // calls in a batch, for the median
   std::string refusal = {};  // empty: it was timed
   bool is_wrong = false;     // refused because of a wrong answer
 };
 
-/// The lesser of each percentile of two passes over the same work: what else the machine did
-/// meanwhile only ever adds.
+/// Returns the smaller of each percentile of two passes over the same work: other load on the
+/// machine only adds time.
 Timing least_of(const Timing& one, const Timing& other);
 
-/// Times do_one(0) ... do_one(count - 1), one after the other, in batches of so many, so many times
-/// over, or once if it takes long: the least of each percentile. Precondition: batch <= count.
+/// Times do_one(0) ... do_one(count - 1) in batches, in up to `passes` passes; makes no further
+/// pass if they take long. Returns the least of each percentile. Precondition: batch <= count.
 template <class Work>
 Timing timed_in_batches(std::size_t batch, std::size_t count, int passes, Work&& do_one) {
-  constexpr double patience = 5e6;  // what takes longer is not repeated [us]
+  constexpr double patience = 5e6;  // longer work is not repeated [us]
   std::optional<Timing> least;
   std::vector<double> samples;
   samples.reserve(count / batch);
@@ -90,10 +90,10 @@ Timing timed_in_batches(std::size_t batch, std::size_t count, int passes, Work&&
   return *least;
 }
 
-/// The same one by one, and the median of what is too short for that in batches.
+/// Times calls one by one; if they are very short, takes the median from batches.
 template <class Work>
 MeasuredSide timed(std::string name, std::size_t count, int passes, Work&& do_one) {
-  constexpr double worth_batching = 0.2;  // below, reading the clock would be a good part [us]
+  constexpr double worth_batching = 0.2;  // below, reading the clock would distort the time [us]
   constexpr std::size_t batch = 32;
   MeasuredSide side{.name = std::move(name), .us = timed_in_batches(1, count, passes, do_one)};
   if (side.us.p50 >= worth_batching || count < batch) return side;
@@ -102,13 +102,13 @@ MeasuredSide timed(std::string name, std::size_t count, int passes, Work&& do_on
   return side;
 }
 
-/// How long the work takes as a whole: the median of so many times.
+/// Times work as a whole: the median of `times` calls.
 template <class Work>
 MeasuredSide timed_whole(std::string name, std::size_t times, Work&& work) {
   return timed(std::move(name), times, 1, [&](std::size_t) { work(); });
 }
 
-/// The same once, of another library. An Error that it throws is the refusal.
+/// Times the work of another library once. If it throws an Error, the message is the refusal.
 template <class Work>
 MeasuredSide attempted(std::string name, Work&& work) {
   try {
@@ -118,17 +118,17 @@ MeasuredSide attempted(std::string name, Work&& work) {
   }
 }
 
-/// What a figure must come to.
+/// The required value of a figure.
 inline Json at_least(double value) { return {{"at_least", value}}; }
 inline Json at_most(double value) { return {{"at_most", value}}; }
 
-/// One line of the table: a figure, what it must come to, and what it was made of.
+/// A row of the table: a figure, its required value, and the times behind it.
 struct SpeedRow {
-  std::string work = {};              // what is done, on what
+  std::string work = {};              // the work and its mesh
   std::string compared = {};          // "FCL's tree / wide_bvh"
   Json demand = {};                   // at_least() or at_most()
   std::string unit = "x";             // of the figure; x: a ratio
-  std::optional<double> figure = {};  // none: not measured, and the remark says why
+  std::optional<double> figure = {};  // empty: not measured, and the remark says why
   std::vector<MeasuredSide> sides = {};
   std::string remark = {};
   bool is_wrong = false;  // a side gave a wrong answer
@@ -139,37 +139,38 @@ struct SpeedRow {
   }
 };
 
-/// numerator / denominator, of the medians. Where a side is missing, so is the figure, and the
-/// remark says why.
+/// Returns the row for numerator / denominator, of the medians. If a side is missing, there is no
+/// figure, and the remark gives the reason.
 SpeedRow ratio(std::string work, std::string compared, const Json& demand,
                const MeasuredSide& numerator, const MeasuredSide& denominator);
 
-/// What one index takes for a sphere query, for information.
+/// The times of a sphere query with one index, for information.
 struct QueryFigures {
   std::string index = {};
   double radius = 0.0;      // [mm]
   double found_mean = 0.0;  // triangles within the ball
   MeasuredSide candidates = {};
-  MeasuredSide answer = {};       // those of them within the ball, by the engine's kernel: ids only
-  MeasuredSide lean_answer = {};  // the same by the least code that decides the same
+  MeasuredSide answer = {};       // those within the ball, by the engine's kernel: ids only
+  MeasuredSide lean_answer = {};  // those within the ball, by the shortest code that decides the
+                                  // same
 };
 
-/// How much of everything is measured.
+/// The extent of the measurements.
 struct Effort {
   std::size_t queries;     // places of a sphere query
-  std::size_t steps;       // of ours
-  std::size_t slow_steps;  // of the libraries
-  std::size_t cold_steps;  // between which the caches are emptied
+  std::size_t steps;       // of keepout
+  std::size_t slow_steps;  // of other libraries
+  std::size_t cold_steps;  // before each of which the caches are emptied
   std::size_t builds;      // of an index
-  int passes;              // over the same work, of which the least counts
-  const char* file;        // fixture that is loaded
+  int passes;              // over the same work; the fastest counts
+  const char* file;        // sample mesh to load
 };
 
-/// One run of the table, as its families of rows are measured one after the other.
+/// A run of the table; the families of rows are measured in turn.
 struct SpeedRun {
   const BenchOptions& options;
   const Effort& effort;
-  std::size_t triangles;  // of the bunny, on which all is measured unless said
+  std::size_t triangles;  // of the bunny, which all rows use unless stated
   Progress& progress;
   std::ostream& out;
   std::string mesh;  // the name of that bunny
@@ -178,54 +179,54 @@ struct SpeedRun {
   Machine machine = this_machine();
   std::vector<SpeedRow> rows = {};
   std::vector<QueryFigures> queries = {};
-  Json histogram = nullptr;  // the times of a great many steps, beside those of an empty loop
-  std::string histogram_words = {};  // how long these steps took
-  bool complete = true;  // or interrupted: the rows are those that were measured until then
-  std::vector<std::string> wrong = {};  // what gave wrong answers
+  Json histogram = nullptr;             // the times of very many steps, and of an empty loop
+  std::string histogram_words = {};     // how long these steps took
+  bool complete = true;                 // false after a stop: some rows are missing
+  std::vector<std::string> wrong = {};  // the parts that gave wrong answers
 
-  // Figures that other rows are set against.
+  // Times that other rows are compared with.
   MeasuredSide libraries = {};     // FCL's tree and SLSQP, the paper's rule at 5 mm
-  MeasuredSide contact_side = {};  // certified, ours
-  MeasuredSide free_side = {};     // the same, in free space
+  MeasuredSide contact_side = {};  // certified, keepout
+  MeasuredSide free_side = {};     // certified, keepout, in free space
 
-  /// The same motions for whoever asks for them.
+  /// Returns a new generator with the same seed, so that all parts get the same motions.
   Random random() const { return Random(options.seed); }
 
-  /// As many motions in contact as our steps are timed on.
+  /// Returns as many motions in contact as keepout's steps are timed on.
   std::vector<Motion> contact(const IndexedMesh& on, const MotionKind& kind = {}) const {
     return pressed_motions(on, effort.steps, kind, random());
   }
 
-  /// Says what is being measured.
+  /// Shows the work that is being measured.
   void show(const std::string& work) { progress.show(work); }
 
-  /// Takes down a row, and prints it.
+  /// Stores a row and prints it.
   void add(SpeedRow row);
   void set_histogram(const TimeHistogram& steps, const TimeHistogram& nothing);
 };
 
-/// For a terminal: where it ran; and in the end what every index takes for a query, and which rows
+/// Output for a terminal: the machine; at the end the query times of every index, and the rows that
 /// fall short.
 void print_head(const SpeedRun& run);
 void print_summary(const SpeedRun& run);
 
-/// The record of it: see docs/records.md.
+/// Returns the record: see docs/records.md.
 Json record_of(const SpeedRun& run);
 
-/// The steps of one on these motions; refused where the other's are not the same: see
+/// Times the steps of `one` on these motions; refuses if those of `other` differ: see
 /// disagreement().
 MeasuredSide time_steps(std::string name, MotionConstraint& one, MotionConstraint& other,
                         std::span<const Motion> motions, int passes, double accuracy = 0.0);
 
-/// Our certified step on these motions; refused where it is not the same on the same index that
-/// only answers queries, bit for bit.
+/// Times keepout's certified step on these motions. Refuses unless it is bitwise identical on the
+/// same index with queries only.
 MeasuredSide time_certified(const SpeedRun& run, const IndexedMesh& on, const std::string& name,
                             double margin, std::span<const Motion> motions);
 
-/// The same on a tool that slides along the surface, at the margin.
+/// Times certified steps of a tool that slides along the surface, at the margin.
 MeasuredSide in_contact(SpeedRun& run, const IndexedMesh& on, const MotionKind& kind = {});
 
-/// An index that ours is set against, and how many times as long it must take.
+/// An index to compare with, and how many times as long it must take.
 struct Rival {
   std::string_view index;
   std::string_view name;
@@ -235,48 +236,50 @@ struct Rival {
 inline constexpr std::array rivals{Rival{"fcl_obbrss", "FCL's tree", 38.0, 10.0, 15.0},
                                    Rival{"embree", "Embree", 10.0, 5.0, 3.0}};
 
-/// Throws Error when the index does not find what brute force finds, at some places near the mesh.
+/// Throws Error if the index disagrees with brute force at a sample of places near the mesh.
 void hold_to_brute_force(const IndexedMesh& on, Random random);
 
-// The families of rows. Each verifies what it times beforehand: a wrong answer is not timed, and
-// the row says so.
+// The families of rows. Each verifies its parts first; a wrong answer is not timed, and the row
+// says so.
 
-/// Triangles within a ball at random places near the surface, ids only: every index, and its
-/// candidates by one scalar exact test where it is not exact by itself.
+/// Finds triangles within a ball at random places near the surface, ids only, with every index. If
+/// the index is not exact, tests its candidates one by one.
 void measure_sphere_queries(SpeedRun& run);
 
-/// A whole step with the paper's rule, in contact: ours, and what the usual libraries would make.
+/// Times a whole step with the paper's rule, in contact: keepout, and the usual libraries.
 void measure_paper_steps(SpeedRun& run);
 
-/// A whole certified step, in contact and in free space, at two margins and lengths of motion.
+/// Times a whole certified step, in contact and in free space, for two margins and lengths of
+/// motion.
 void measure_certified_steps(SpeedRun& run);
 
-/// Tips all over the surface, as a planner asks.
+/// Times steps of tips all over the surface, as for a planner.
 void measure_unrelated_states(SpeedRun& run);
 
-/// Steps before each of which the caches are emptied.
+/// Times steps with empty caches.
 void measure_cold_caches(SpeedRun& run);
 
-/// What the index takes to be built, to be refitted, and to hold.
+/// Measures build, refit and memory of the index.
 void measure_index_costs(SpeedRun& run);
 
-/// Page faults, allocations and locks of steps after warm-up, and a histogram of their times.
+/// Counts page faults, allocations and locks of steps after warm-up, and makes a histogram of
+/// times.
 void measure_steadiness(SpeedRun& run);
 
-/// The inside of a sphere: at the center all triangles are equally far.
+/// Times steps inside a sphere: at the center all triangles are equally far.
 void measure_concave_sphere(SpeedRun& run);
 
-/// From a file to the first step.
+/// Times the start, from a file to the first step.
 void measure_first_step(SpeedRun& run);
 
-/// Certified steps on meshes of 16 and 100 million triangles.
+/// Times certified steps on meshes of 16 and 100 million triangles.
 void measure_large_meshes(SpeedRun& run);
 
-// What the system gives to this process while it measures, and what it tells of it.
+// Resources of this process while it measures.
 
-/// Keeps the calling thread, and those that it starts, on so many cores: the one that it is on, and
-/// others that it was allowed when the process began. Then as before. Where the system refuses,
-/// nothing happens, and holds() says so.
+/// Binds the calling thread, and threads that it starts, to `count` cores: the current one, and
+/// others that the process was allowed at its start. The destructor undoes it. If the system
+/// refuses, it does nothing, and holds() is false.
 class OnCores {
  public:
   explicit OnCores(unsigned count) noexcept;
@@ -291,21 +294,21 @@ class OnCores {
   bool holds_ = false;
 };
 
-/// Begins anew what peak_memory() tells. Where the system refuses, the peak is that since the
-/// process began.
+/// Resets peak_memory(). If the system refuses, the peak counts from the start of the process.
 void reset_peak_memory();
 
-/// Of this thread since it began.
+/// Returns the page faults of this thread since its start.
 std::uint64_t page_faults();
 
-/// What this thread has asked of the heap and of locks since it began. malloc and its kin, and
-/// pthread's mutexes and locks, are counted as they are called, by standing in for them.
+/// The calls of heap and lock functions by this thread since its start. The program replaces
+/// malloc, its relatives, and pthread's mutexes and locks by functions that count.
 struct CallCounts {
   std::size_t allocations = 0;
   std::size_t locks = 0;
 };
 
-/// Whether this build counts: one with a sanitizer does not, for that stands in for them too.
+/// True if this build counts. One with a sanitizer does not, because the sanitizer replaces the
+/// same functions.
 bool counts_calls() noexcept;
 
 CallCounts calls_of_this_thread() noexcept;

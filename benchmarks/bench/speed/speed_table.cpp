@@ -11,29 +11,30 @@
 namespace keepout::app {
 namespace {
 
-/// As it stands behind a number.
+/// Returns the unit as text after a number.
 std::string unit_of(const SpeedRow& row) {
   return row.unit == "x" || row.unit.empty() ? row.unit : " " + row.unit;
 }
 
 std::string name_of(const SpeedRow& row) { return row.work + ": " + row.compared; }
 
-/// "at least 38x", "at most 45 bytes".
+/// Returns text such as "at least 38x" or "at most 45 bytes".
 std::string demand_text(const SpeedRow& row) {
   const bool least = row.demand.contains("at_least");
   return (least ? "at least " : "at most ") + trimmed(row.demand.front().get<double>()) +
          unit_of(row);
 }
 
-/// "41.2x"; "-" where nothing was measured.
+/// Returns text such as "41.2x"; "-" if it was not measured.
 std::string figure_of(const SpeedRow& row) {
   if (!row.figure) return "-";
   return (row.unit == "x" ? rounded(*row.figure) : trimmed(*row.figure, 3)) + unit_of(row);
 }
 
-/// "5.13 / 7.90 / 12.1 us": median, p99 and p99.9, as far as there are enough samples.
+/// Returns text such as "5.13 / 7.90 / 12.1" with a unit: median, p99 and p99.9, as far as there
+/// are enough samples.
 std::string times_text(const Json& us) {
-  // From seconds down to nanoseconds, in one unit for all three.
+  // One unit for all three times, from seconds down to nanoseconds.
   const bool long_ones = us["p50"] >= 1e4;
   std::string text;
   for (const char* percentile : {"p50", "p99", "p999"}) {
@@ -44,7 +45,7 @@ std::string times_text(const Json& us) {
   return text + (long_ones ? " ms" : " us");
 }
 
-/// A mean of counts: 0.130, 26.2, 10,151.
+/// Returns a mean of counts as text: 0.130, 26.2, 10,151.
 std::string mean_text(const Json& json) {
   const double mean = json.get<double>();
   return !(mean >= 1e3) ? rounded(mean) : grouped(static_cast<std::size_t>(std::llround(mean)));
@@ -107,7 +108,7 @@ Json json_of(const TimeHistogram& histogram) {
           {"bins", std::move(bins)}};
 }
 
-/// How many demands are met, in a sentence.
+/// Returns a sentence with the number of demands that are met.
 std::string headline(const SpeedRun& run) {
   std::size_t met = 0, missing = 0;
   for (const SpeedRow& row : run.rows) {

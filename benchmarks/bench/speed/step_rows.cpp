@@ -18,13 +18,13 @@ namespace {
 
 constexpr std::string_view their_index = "fcl_obbrss", their_solver = "nlopt_slsqp";
 
-/// Twice the last cache. What a virtual machine tells of it may be the whole machine's. [bytes]
+/// Twice the last-level cache. A virtual machine may report the cache of the whole host. [bytes]
 std::size_t more_than_caches_hold() {
   constexpr long least = 64L << 20, most = 256L << 20;
   return static_cast<std::size_t>(std::clamp(2 * sysconf(_SC_LEVEL3_CACHE_SIZE), least, most));
 }
 
-/// Does it so many times; the clock is read once each time.
+/// Repeats the work; reads the clock once each time.
 template <class Work>
 void fill(TimeHistogram& histogram, std::size_t times, Work&& work) {
   using std::chrono::nanoseconds;
@@ -100,10 +100,10 @@ void measure_unrelated_states(SpeedRun& run) {
   };
   const MeasuredSide ours = time_certified(run, on, "ours", kind.clearance, motions);
   MeasuredSide theirs{.refusal = "this build has no FCL"};
-  if (index_backends().has(their_index)) {  // which has no wide instructions anywhere
+  if (index_backends().has(their_index)) {  // FCL has no wide instructions on any target
     theirs = time_plain(std::string(their_index), {on.mesh, make_index(their_index, on.mesh)});
   }
-  SpeedRow row = ratio("certified, unrelated states that are held back, margin .2 mm",
+  SpeedRow row = ratio("certified, unrelated states that the surface limits, margin .2 mm",
                        "scalar / ours", at_least(8.0), theirs, ours);
   row.sides.push_back(time_plain("wide_bvh", queried(on)));
   run.add(std::move(row));
@@ -179,8 +179,8 @@ void measure_steadiness(SpeedRun& run) {
     add_count("locks", calls_after.locks - calls.locks);
   }
 
-  // Nothing but waiting, as often and as long as the median step: what it shows beyond that is the
-  // machine's doing.
+  // An empty loop that waits as often and as long as the median step: its outliers come from the
+  // machine.
   const auto median =
       std::chrono::nanoseconds(static_cast<std::int64_t>(times.percentile(0.5).value_or(0.0)));
   fill(nothing, steps, [&](std::size_t, BenchClock::time_point last) {

@@ -7,16 +7,16 @@
 
 namespace keepout {
 
-/// A list with a capacity declared at construction: it never allocates afterwards, and it never
-/// drops an element silently. What does not fit is remembered as an overflow, which the step turns
-/// into a status.
+/// A list with a fixed capacity: it never allocates after construction, and never drops an element
+/// silently. If an element does not fit, the buffer records an overflow, which a step reports as a
+/// status.
 template <class T>
 class Buffer {
  public:
-  /// Makes room for `capacity` items. Allocates; nothing after it does.
+  /// Allocates memory for `capacity` items. No other function allocates.
   explicit Buffer(std::size_t capacity) : items_(capacity) {}
 
-  /// Appends, or marks the overflow when full.
+  /// Appends an item, or records an overflow if the buffer is full.
   void push(const T& item) noexcept {
     if (size_ < items_.size()) {
       items_[size_++] = item;
@@ -25,53 +25,54 @@ class Buffer {
     }
   }
 
-  /// Marks the overflow: there is more than is written here.
+  /// Records an overflow: there are more items than the buffer holds.
   void give_up() noexcept { overflowed_ = true; }
 
-  /// Takes in the first `count` items of those that the caller wrote at end(): a way to append many
-  /// at once. Precondition: there is room, size() + count <= capacity().
+  /// Appends the first `count` items that the caller has written at end(). Precondition: size() +
+  /// count <= capacity().
   void grow(std::size_t count) noexcept { size_ += count; }
 
-  /// Keeps the first `count` items, and forgets an overflow. Precondition: count <= size().
+  /// Removes all items except the first `count`, and clears an overflow. Precondition: count <=
+  /// size().
   void shrink(std::size_t count) noexcept {
     size_ = count;
     overflowed_ = false;
   }
 
-  /// Replaces the contents. The items must not be in this buffer.
+  /// Replaces the contents. Precondition: `items` is not a view of this buffer.
   void assign(std::span<const T> items) noexcept {
     clear();
     for (const T& item : items) push(item);
   }
 
-  /// Lets go of all items, and forgets an overflow.
+  /// Removes all items, and clears an overflow.
   void clear() noexcept {
     size_ = 0;
     overflowed_ = false;
   }
 
-  /// True if anything was pushed beyond the capacity since the last clear().
+  /// Returns true if an overflow was recorded since the last shrink() or clear().
   bool overflowed() const noexcept { return overflowed_; }
-  /// Whether nothing is in it.
+  /// Returns true if the buffer has no items.
   bool empty() const noexcept { return size_ == 0; }
-  /// How many items are in it.
+  /// Returns the number of items.
   std::size_t size() const noexcept { return size_; }
-  /// How many there is room for.
+  /// Returns the largest number of items.
   std::size_t capacity() const noexcept { return items_.size(); }
 
-  /// Item i. Precondition: i < size().
+  /// Returns item i. Precondition: i < size().
   T& operator[](std::size_t i) noexcept { return items_[i]; }
-  /// Item i. Precondition: i < size().
+  /// Returns item i. Precondition: i < size().
   const T& operator[](std::size_t i) const noexcept { return items_[i]; }
-  /// The first item, and where the next one would go: valid as long as the buffer lives.
+  /// Returns the first item. The pointer is valid as long as the buffer lives.
   T* begin() noexcept { return items_.data(); }
-  /// Behind the last item; room up to capacity() follows.
+  /// Returns the end of the items; the memory up to capacity() may be written.
   T* end() noexcept { return items_.data() + size_; }
-  /// The first item.
+  /// Returns the first item.
   const T* begin() const noexcept { return items_.data(); }
-  /// Behind the last item.
+  /// Returns the end of the items.
   const T* end() const noexcept { return items_.data() + size_; }
-  /// All items. Valid until the contents change.
+  /// Returns all items. The view is valid until the contents change.
   std::span<const T> view() const noexcept { return {items_.data(), size_}; }
 
  private:

@@ -5,8 +5,8 @@
 
 namespace keepout {
 
-/// What construction throws: the message names the thing at fault and what to do about it.
-/// Nothing on the control path throws; a step returns a status instead.
+/// The exception that constructors and builders throw. Its message names the faulty input and the
+/// remedy. No function of the control path throws: a step returns a status instead.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -8,43 +8,44 @@
 
 namespace keepout {
 
-/// Follows all links of a path, also where its end does not exist yet. Sets `error` if they lead in
-/// a circle.
+/// Returns the path after all symbolic links; its end need not exist. Sets `error` if the links
+/// form a loop.
 std::filesystem::path follow_links(std::filesystem::path path, std::error_code& error);
 
-/// A file that appears whole or not at all: written beside its place under another name, then
-/// renamed. A link is followed: the file that it points to is replaced, the link stays.
+/// Replaces a file completely or not at all: writes a temporary file in the same directory, then
+/// renames it. If the path is a symbolic link, the file that the link points to is replaced.
 class FileReplacement {
  public:
-  /// Writes under a random name. Refuses to replace a directory, a pipe or a device: see error().
+  /// Opens a temporary file with a random name. Does not replace a directory, a pipe or a device:
+  /// see error().
   explicit FileReplacement(const std::filesystem::path& path);
-  /// Writes under a name that the caller chooses, in the same directory.
+  /// Opens the given temporary file, which must be in the same directory.
   FileReplacement(const std::filesystem::path& path, const std::filesystem::path& temporary);
-  /// Removes what was not committed.
+  /// Removes the temporary file if it was not committed.
   ~FileReplacement();
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;
 
-  /// Accepts formatted text.
+  /// Returns the stream for formatted text.
   std::ostream& stream() noexcept { return file_; }
   /// Appends bytes.
   void write(const void* bytes, std::size_t size);
 
-  /// The first failure so far.
+  /// Returns the first failure so far.
   const std::error_code& error() const noexcept { return error_; }
 
-  /// Ends the writing, and returns the first failure. Of several files that belong together,
-  /// finish() all before the commit() of any.
+  /// Ends the writing, and returns the first failure. If several files belong together, call
+  /// finish() for all before commit() for any.
   std::error_code finish();
 
-  /// Finishes, and moves the file to its place. Returns the first failure.
+  /// Finishes, and renames the temporary file to the path. Returns the first failure.
   std::error_code commit();
 
  private:
   void note_failure();
 
   std::error_code error_ = {};
-  std::filesystem::path path_;  // links followed
+  std::filesystem::path path_;  // after all links
   std::filesystem::path temporary_;
   std::ofstream file_;
   bool is_committed_ = false;

@@ -11,22 +11,22 @@
 
 namespace keepout {
 
-// A module is a shared object, such as keepout-modules/fcl.so, that brings parts of another
-// library. Only the module links that library. keepout loads a module when one of its parts is
-// first asked for. It looks in the folder that the environment variable KEEPOUT_MODULES names, and
-// otherwise in the folder `keepout-modules` beside the program or the library, or in the library
-// folder of their prefix.
+// A module is a shared object, such as keepout-modules/fcl.so, with parts that use another library.
+// Only the module links that library. keepout loads a module at the first request for one of its
+// parts. It searches the directory in the environment variable KEEPOUT_MODULES. Without that
+// variable, it searches the directory `keepout-modules` beside the program or the library, or in
+// the library directory of their prefix.
 
-/// Returns true if the file of that module exists.
+/// Returns true if the file of the module exists.
 bool has_module(const char* module);
 
-/// Returns the address of a table that the module exports under the name `table`; null if there is
-/// no such module, or if it has no such table. Loads the module the first time. Throws Error if the
-/// module cannot be loaded, or is one of another version of keepout.
+/// Returns the address of a table that the module exports under the name `table`; null if the
+/// module or the table does not exist. Loads the module the first time. Throws Error if the module
+/// cannot be loaded, or is for another version of keepout.
 const void* table_in_module(const char* module, const char* table);
 
 /// Returns the parts that the module exports as a std::span<const Part> under the name `table`;
-/// otherwise as table_in_module.
+/// otherwise like table_in_module.
 template <class Part>
 std::span<const Part> parts_in_module(const char* module, const char* table) {
   const void* const parts = table_in_module(module, table);
@@ -34,16 +34,18 @@ std::span<const Part> parts_in_module(const char* module, const char* table) {
                           : *static_cast<const std::span<const Part>*>(parts);
 }
 
-/// All parts of one kind: keepout's own and those in modules. A table lasts as long as the program.
+/// The table of all parts of one kind: keepout's own and those in modules. A table must live as
+/// long as the program.
 template <class Part>
 class PartTable {
  public:
-  /// `kind` names the parts in messages; `table`, their tables in modules.
+  /// Makes the table. `kind`: the name of the parts in messages. `table`: the name of their tables
+  /// in modules.
   PartTable(std::string_view kind, std::span<const Part> own, std::span<const PeerPart> peers,
             const char* table)
       : kind_(kind), own_(own), peers_(peers), table_(table) {}
 
-  /// Returns all parts, our own first. Loads every module that there is. Parts of a module that
+  /// Returns all parts, keepout's own first. Loads all existing modules. Parts of a module that
   /// cannot be loaded are absent.
   Registry<Part> all() const {
     std::call_once(is_complete_, [this] {
@@ -59,8 +61,8 @@ class PartTable {
     return {kind_, all_, absent_};
   }
 
-  /// Returns the part of that name. Loads at most the module that brings it. Throws Error for an
-  /// unknown or absent part, as refuse_name does, and for a module that cannot be loaded.
+  /// Returns the part of that name. Loads at most the module with the part. Throws Error for an
+  /// unknown or absent part, like refuse_name, and for a module that cannot be loaded.
   const Part& named(std::string_view name) const {
     if (const Part* const own = with_name(own_, name)) return *own;
     for (const PeerPart& peer : peers_) {
@@ -71,7 +73,7 @@ class PartTable {
     return all().named(name);
   }
 
-  /// Returns the names of the parts that can be had. Loads nothing.
+  /// Returns the names of the available parts. Loads no module.
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     for (const Part& part : own_) names.emplace_back(part.name);

@@ -17,25 +17,25 @@
 
 namespace keepout {
 
-// A table of options names each member of a struct of options once, with its unit, its range and a
-// sentence. The range checks, the Python module and its stubs, `keepout serve`, the commands and
-// docs/options.md read it.
+// A table of options describes each member of a struct of options once: name, unit, range and
+// meaning. It is read by the range checks, the Python module and its stubs, `keepout serve`, the
+// commands and docs/options.md.
 
-/// Numbers that an option may have: those from `least` to `most`, and 0 if `has_zero`.
+/// The allowed numbers of an option: from `least` to `most`, and 0 if `has_zero`.
 struct Range {
   double least = 0.0;     // end of the range, included
   double most = 0.0;      // end of the range, included
   bool has_zero = false;  // 0 is allowed too
 };
 
-/// Above 0, and at most `most`.
+/// Returns the range of numbers above 0 and at most `most`.
 constexpr Range above_zero(double most) {
   return {std::numeric_limits<double>::denorm_min(), most};
 }
 
 inline constexpr Range positive_length{shortest_length, longest_length};       // a length above 0
-inline constexpr Range zero_or_length{shortest_length, longest_length, true};  // or none
-inline constexpr Range not_negative{0.0, longest_length};  // of any size, however small
+inline constexpr Range zero_or_length{shortest_length, longest_length, true};  // or 0
+inline constexpr Range not_negative{0.0, longest_length};  // also below shortest_length
 
 /// The kind of value of an option.
 enum class OptionKind : std::uint8_t {
@@ -53,38 +53,37 @@ using OptionValue = std::variant<double, std::int64_t, bool, std::string>;
 struct OptionText {
   std::string_view name;                         // in Python and in serve
   std::string_view meaning;                      // one sentence
-  OptionKind kind = OptionKind::number;          // of its value
+  OptionKind kind = OptionKind::number;          // of the value
   std::string_view unit = {};                    // of a number; empty if it has none
   Range range = {};                              // of a number or a whole number
   std::span<const std::string_view> names = {};  // of a choice
-  std::string_view command = {};                 // its name for the commands, if another
+  std::string_view command = {};                 // the name for the commands, if different
 
-  /// Returns its name for the commands, without "--": `command`, or `name` with '-' for '_'.
+  /// Returns the name for the commands, without "--": `command`, or `name` with '-' for '_'.
   std::string flag() const;
 
-  /// Returns the values that the option may have, in words. Allocates.
+  /// Returns a description of the allowed values. Allocates.
   std::string expected() const;
 
-  /// Returns the value that a text stands for. Throws Error for a value that the option may not
-  /// have.
+  /// Returns the value of a text. Throws Error for a value that is not allowed.
   OptionValue parsed(const std::string& text) const;
 
-  /// Returns a value as the option stores it: a whole number for a number becomes one. Throws
-  /// Error, naming the option, what was expected and what was given, for a value that it may not
-  /// have.
+  /// Returns a value as the option stores it: a whole number is converted if the option is a
+  /// number. Throws Error, which states the option, the allowed values and the given value, for a
+  /// value that is not allowed.
   OptionValue accepted(OptionValue value) const;
 
-  /// Throws Error for a value that the option may not have.
+  /// Throws Error for a value that is not allowed.
   [[noreturn]] void refuse(std::string_view given) const;
 };
 
-/// An option that is a member of `Options`.
+/// An option that is a member of the struct `Options`.
 template <class Options>
 struct Option : OptionText {
   OptionValue (*get)(const Options&) = nullptr;         // reads the member
   void (*put)(Options&, const OptionValue&) = nullptr;  // writes it; precondition: accepted()
 
-  /// Sets the member. Throws Error for a value that the option may not have.
+  /// Sets the member. Throws Error for a value that is not allowed.
   void set(Options& options, OptionValue value) const { put(options, accepted(std::move(value))); }
 };
 
@@ -100,7 +99,8 @@ Value value_of(Value Options::*);
 
 inline constexpr std::array<std::string_view, 0> no_names{};
 
-/// Drops the sentences of options in programs that show none, such as the pages' module.
+/// Removes the meanings of options from programs that do not show them, such as the module of the
+/// web pages.
 constexpr std::string_view kept_meaning([[maybe_unused]] std::string_view meaning) {
 #ifdef KEEPOUT_NO_MEANINGS
   return {};
@@ -111,8 +111,9 @@ constexpr std::string_view kept_meaning([[maybe_unused]] std::string_view meanin
 
 }  // namespace detail
 
-/// Describes a member of a struct of options. Its kind is that of the member; an enumeration is a
-/// choice of `Names`, which its values have from 0 on. Unit, range and command: see OptionText.
+/// Describes a member of a struct of options. The type of the member gives the kind. An enumeration
+/// is a choice of `Names`, the names of its values from 0 on. Unit, range and command: see
+/// OptionText.
 template <auto Member, const auto& Names = detail::no_names>
 constexpr auto option(std::string_view name, std::string_view unit, Range range,
                       std::string_view meaning, std::string_view command = {}) {
@@ -148,13 +149,13 @@ constexpr auto option(std::string_view name, std::string_view unit, Range range,
   return option;
 }
 
-/// The same of an option without unit and range.
+/// Describes a member without unit and range.
 template <auto Member, const auto& Names = detail::no_names>
 constexpr auto option(std::string_view name, std::string_view meaning) {
   return option<Member, Names>(name, {}, {}, meaning);
 }
 
-/// Returns the option of that name. Precondition: the table has it.
+/// Returns the option of that name. Precondition: the table has such an option.
 template <class Table>
 constexpr const auto& option_named(const Table& table, std::string_view name) {
   const auto* option = table.data();
@@ -162,7 +163,7 @@ constexpr const auto& option_named(const Table& table, std::string_view name) {
   return *option;
 }
 
-/// Throws Error, naming the option, unless each of the options has a value that it may have.
+/// Throws Error, which names the option, if the value of an option is not allowed.
 template <class Table, class Options>
 void require_in_range(const Table& table, const Options& options) {
   for (const auto& option : table) option.accepted(option.get(options));

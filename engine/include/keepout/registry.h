@@ -11,48 +11,48 @@
 
 namespace keepout {
 
-/// Of the known names the one that was probably meant by a mistyped one, for "did you mean": the
-/// one with the fewest letters put in, left out, exchanged or swapped with their neighbor, if they
-/// are at most a third of all; else the first that has all of it in one piece. Capitals count as
-/// small letters, '_' as '-'. Of equals the first; nothing if none is close. Allocates.
+/// Returns the known name that is most similar to a mistyped one, for "did you mean". This is the
+/// name with the fewest letters inserted, deleted, replaced or swapped with their neighbor, if they
+/// are at most a third of all. Otherwise it is the first name that contains the mistyped one. Upper
+/// and lower case are equal, and so are '_' and '-'; ties go to the first name. Returns empty if no
+/// name is similar. Allocates.
 std::optional<std::string_view> nearest_name(std::string_view mistyped,
                                              std::span<const std::string_view> names);
 
-/// Whether a part takes memory from the heap while it answers.
+/// The use of heap memory by a part while it computes.
 enum class Allocation : std::uint8_t {
-  never,  // fit for the control path
-  inside  // the library behind it does: for comparison, not for real time
+  never,  // suitable for the control path
+  inside  // the underlying library allocates: for comparison, not for real time
 };
 
-/// A part of another library, which a module of ours brings: see keepout/module.h.
+/// A part that uses another library, provided by a module: see keepout/module.h.
 struct PeerPart {
-  std::string_view name;         // to ask for it by
-  std::string_view needs;        // the library, its Debian package and our option
-  const char* module = nullptr;  // the name of its file, without .so
+  std::string_view name;         // for Registry::named
+  std::string_view needs;        // the library, its Debian package and the build option
+  const char* module = nullptr;  // the name of the module's file, without .so
 };
 
-/// Throws Error for a name that no part of a kind has. The message lists the names there are and
-/// suggests the nearest one, or says what an absent part needs. `what` is the kind of part.
+/// Throws Error for a name that no part has. The message lists the known names and suggests the
+/// most similar one, or reports what an absent part needs. `what`: the kind of part.
 [[noreturn]] void refuse_name(std::string_view name, std::span<const std::string_view> known,
                               std::string_view what, std::span<const PeerPart> absent);
 
-/// All parts of one kind that this build has, to choose from by name: a view of tables that last as
-/// long as the program.
+/// All available parts of one kind, by name: a view of tables that live as long as the program.
 template <class Part>
 class Registry : public std::span<const Part> {
  public:
-  /// `kind`: as messages name it.
+  /// Makes the view. `kind`: the name of the parts in messages.
   Registry(std::string_view kind, std::span<const Part> parts,
            std::span<const PeerPart> absent = {}) noexcept
       : std::span<const Part>(parts), kind_(kind), absent_(absent) {}
 
-  /// The parts of other libraries that cannot be had here.
+  /// Returns the parts of other libraries that are not available.
   std::span<const PeerPart> absent() const noexcept { return absent_; }
 
   /// Returns true if there is a part of that name.
   bool has(std::string_view name) const noexcept { return find(name) != nullptr; }
 
-  /// Returns the part of that name. Throws Error, as refuse_name does, if there is none.
+  /// Returns the part of that name. Throws Error, like refuse_name, if there is no such part.
   const Part& named(std::string_view name) const {
     if (const Part* const part = find(name)) return *part;
     std::vector<std::string_view> known;

@@ -6,17 +6,16 @@
 
 namespace keepout {
 
-/// The instruction sets which the library was built for and this processor has, the fastest first:
-/// such as AVX3, AVX2, SSE4, SSSE3, SSE2, as Highway names them (AVX3 is AVX-512). Steps are the
-/// same on each, bit for bit; only their times differ, so a figure without its target says little.
+/// Returns the SIMD targets that the library supports and this processor has, the fastest first.
+/// The names are those of Highway: AVX3 (AVX-512), AVX2, SSE4, SSSE3, SSE2. Steps are bitwise
+/// identical on each target; only their times differ, so report a time with its target.
 std::vector<std::string_view> simd_targets();
 
-/// The one that everything runs on: the fastest, unless `use_simd_target` chose another.
+/// Returns the target in use: the fastest, unless `use_simd_target` has chosen another.
 std::string_view simd_target() noexcept;
 
-/// Runs everything in this process on that one from now on: to time what another processor would
-/// do, or to test it. Not while another thread steps. Throws Error unless it is among
-/// simd_targets().
+/// Selects the target for this process, to measure or test what another processor would do. No
+/// other thread may run a step meanwhile. Throws Error unless simd_targets() has the name.
 void use_simd_target(std::string_view name);
 
 }  // namespace keepout

@@ -7,14 +7,14 @@
 
 namespace keepout {
 
-/// The outcome of a step or a query. The first five come with a motion that may be executed, which
-/// may be zero; every other one comes with zero motion.
+/// The outcome of a step or a query. The first five come with a motion that may be executed (it may
+/// be zero). All others come with zero motion.
 enum class Status : std::uint8_t {
   free,              // the desired increment: no constraint limits it; of a polytope: complete
   limited,           // the nearest motion that the constraints allow: see Limits
-  recovering,        // something was too close or out of its region: the motion recovers from it
-  truncated,         // a shorter motion: nothing longer was proved, see Limits
-  degraded,          // instruments only: a mesh approaches too fast to keep the clearance
+  recovering,        // a tip or body too close, or a guided point outside its region, recovers
+  truncated,         // a shorter motion, as no longer motion was proved: see Limits
+  degraded,          // instruments only: a mesh approaches too fast to maintain the clearance
   infeasible,        // the constraints contradict each other
   ill_posed,         // the Jacobian lacks full column rank and there is no damping
   invalid_input,     // a number is not finite or out of range
@@ -22,11 +22,11 @@ enum class Status : std::uint8_t {
   over_capacity,     // more triangles, planes, rows or joints than the capacity holds
   unsolved,          // the search ended without a motion that could be proved
   inside,            // the tip or a body is on the forbidden side, and does not escape
-  touching,          // on the surface: the free side is unknown
-  margin_too_small,  // the margin or band is lost in the rounding of lengths this large
-  mesh_changed,      // the index was refit to another mesh, which is not followed yet
+  touching,          // the tip or a body is on the surface: the free side is unknown
+  margin_too_small,  // rounding hides the margin or band, as lengths are too large
+  mesh_changed,      // the index was refit, and the constraint does not follow the new mesh yet
   out_of_budget,     // the work budget of the cycle ended before a motion was proved
-  unsupported,       // polytopes only: the rule cannot answer this query
+  unsupported,       // polytopes only: the rule does not support this query
   // Names before version 0.3.
   fallback [[deprecated("use truncated")]] = truncated,
   yielding [[deprecated("use degraded")]] = degraded,
@@ -35,19 +35,19 @@ enum class Status : std::uint8_t {
 /// Number of statuses.
 inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::unsupported) + 1;
 
-/// Subject of a step or query: the reasons name what it has.
+/// The subject of a step or query, named in reasons.
 enum class Subject : std::uint8_t { tip, instrument, polytope };
 
-/// Returns true if a motion comes with the status, which may be executed.
+/// Returns true if the status comes with a motion that may be executed.
 constexpr bool is_ok(Status status) noexcept { return status <= Status::degraded; }
 
-/// Returns the name as it stands in the enumeration, for files and logs.
+/// Returns the name of the enumerator, for files and logs.
 std::string_view name(Status status) noexcept;
 
 /// Returns one line on what happened and what to do about it.
 std::string_view reason(Status status, Subject subject) noexcept;
 
-/// A cause why a motion is not the desired one, or a finding that goes with it.
+/// A cause that makes a motion differ from the desired one, or a related finding.
 enum class Limit : std::uint8_t {
   mesh,            // the required clearance from a mesh
   guide,           // a guide: see GuideState
@@ -55,19 +55,18 @@ enum class Limit : std::uint8_t {
   joint_velocity,  // a velocity or increment limit of a joint
   rows,            // the caller's own rows
   radius,          // the radius of the motion sphere, or in a recovery twice the retreat
-  linearization,   // the true motion of the joints departs too far from the linear task, or a
-                   // motion would cost the task more than standing still
+  linearization,   // the true joint motion is far from the linear one, or worse than zero motion
   budget,          // the work budget of the cycle ended
-  capacity,        // a store was too small
-  truncated,       // only a part of a motion was proved, or one towards a nearer target
-  joints_outside,  // a joint starts outside its position limits; it may stay or come back
-  singularity,  // from this pose the joints, as they are damped, make less than half of the motion
+  capacity,        // a buffer was too small
+  truncated,       // only a part of a motion was proved, or a motion towards a nearer target
+  joints_outside,  // a joint starts outside its position limits; it may stay or return
+  singularity,     // in this pose the damped joints make less than half of the motion
 };
 
 /// Number of limits.
 inline constexpr std::size_t limit_count = static_cast<std::size_t>(Limit::singularity) + 1;
 
-/// Returns the name as it stands in the enumeration, for files and logs.
+/// Returns the name of the enumerator, for files and logs.
 std::string_view name(Limit limit) noexcept;
 
 /// A set of limits.
@@ -77,9 +76,9 @@ class Limits {
   constexpr void add(Limit limit) noexcept { bits_ |= bit(limit); }
   /// Adds all limits of another set.
   constexpr void add(const Limits& others) noexcept { bits_ |= others.bits_; }
-  /// Returns true if the set has a limit.
+  /// Returns true if the set contains a limit.
   constexpr bool has(Limit limit) const noexcept { return (bits_ & bit(limit)) != 0; }
-  /// Returns true if there is no limit.
+  /// Returns true if the set is empty.
   constexpr bool empty() const noexcept { return bits_ == 0; }
   /// Returns the set as bits: bit i is limit i.
   constexpr std::uint16_t bits() const noexcept { return bits_; }

@@ -7,7 +7,7 @@ namespace keepout {
 
 Ball searched_ends(const RuleInput& input) noexcept {
   if (input.searched_region == EndRegion::motion_sphere) return {input.tip, input.longest};
-  // Projections of the target on a convex set that holds 0 lie in the ball over it (Thales).
+  // The projections of the target on convex sets that contain 0 lie in the ball over it (Thales).
   return {input.tip + 0.5 * input.target, 0.5 * input.target.norm()};
 }
 

@@ -5,13 +5,14 @@
 
 namespace keepout {
 
-/// Where on a segment the origin's nearest point lies.
+/// The point of a segment that is nearest to the origin.
 struct OnSegment {
   Vec3 point;
-  int end;  // 0: at a, 1: at b, -1: in between
+  int end;  // 0: a, 1: b, -1: in between
 };
 
-/// Of the segment from a to b. Its bits depend on which of the two comes first.
+/// Returns the nearest point of the segment from a to b. Its last digits depend on the order of a
+/// and b.
 inline OnSegment closest_on_segment(const Vec3& a, const Vec3& b) noexcept {
   const Vec3 along = b - a;
   const double from_a = -a.dot(along);

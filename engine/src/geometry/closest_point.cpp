@@ -9,11 +9,13 @@
 namespace keepout {
 namespace {
 
-// A height below this share of the longest side is rounding: such a triangle is its longest edge.
+// A height below this fraction of the longest side is rounding: the triangle counts as its longest
+// edge.
 constexpr double no_height = 1e-14;
 
-/// The origin's projection on the plane of a triangle, if it falls inside. The plane's frame is the
-/// longest side and the height upon it, orthogonalized twice, so that even needles lose no digits.
+/// Projects the origin on the plane of a triangle. Returns true if the projection is inside. The
+/// plane's frame is the longest side and the height on it, orthogonalized twice, so that even
+/// needles lose no digits.
 bool project_inside(const Vec3& a, const Vec3& b, const Vec3& apex, Vec3& projection) noexcept {
   const Vec3 base = b - a;
   const double base2 = base.squaredNorm();
@@ -33,7 +35,7 @@ bool project_inside(const Vec3& a, const Vec3& b, const Vec3& apex, Vec3& projec
   return true;
 }
 
-/// Edge between two corners, by the numbers of the triangle's own winding.
+/// Returns the edge between two corners, by the numbers of the triangle's own winding.
 constexpr Feature edge_between(int i, int j) noexcept {
   const int opposite = 3 - i - j;
   return static_cast<Feature>(static_cast<int>(Feature::edge_0) + (opposite + 1) % 3);
@@ -63,7 +65,7 @@ ClosestPoint closest_point_of_ordered(const Triangle& triangle, const Vec3& quer
   const std::array<Vec3, 3> p{triangle[0] - query, triangle[1] - query, triangle[2] - query};
   for (int corner = 0; corner < 3; ++corner) {
     const Vec3& here = p[corner];
-    // Beyond both sides that meet there; true for NaN, as of a side without a length.
+    // Beyond both sides that meet there. True for NaN, which a side of length zero gives.
     const auto is_beyond = [&](const Vec3& other) { return !(-here.dot(other - here) > 0.0); };
     if (is_beyond(p[(corner + 1) % 3]) && is_beyond(p[(corner + 2) % 3])) {
       return {here, here.norm(), vertex_feature(corner)};
@@ -87,8 +89,8 @@ ClosestPoint closest_point_of_ordered(const Triangle& triangle, const Vec3& quer
     return {projection, projection.norm(), Feature::face};
   }
 
-  // Not inside: the nearest point of the nearest side. All three are tried, since at an obtuse
-  // corner the side that the projection lies beyond need not be the nearest one.
+  // The projection is not inside, so the nearest side has the nearest point. All three sides are
+  // tried: at an obtuse corner the projection can be beyond a side that is not the nearest.
   ClosestPoint best{Vec3::Zero(), 0.0, Feature::vertex_0};
   double best2 = -1.0;
   for (const auto& side : sides) {

@@ -20,8 +20,8 @@ constexpr double largest_length = 1e30;
 // Cubes of the lengths between two points must not underflow.
 constexpr double least_gap = 1e-30;
 
-/// Returns each place once: two equal points span no edge. Stops at too many points, as its time
-/// grows with their square.
+/// Returns each place once, because two equal points span no edge. Stops at too many points, as the
+/// time grows with their square.
 std::vector<Vec3> distinct(std::vector<Vec3> points) {
   std::vector<Vec3> kept;
   for (const Vec3& p : points) {
@@ -35,7 +35,7 @@ void check(const std::vector<Vec3>& points, double radius) {
   if (points.empty() || points.size() > ConvexTool::most_points) {
     throw Error("a convex tool has 1 to " + std::to_string(ConvexTool::most_points) +
                 " points in different places, not " + (points.empty() ? "none" : "more") +
-                ": leave out those inside of the hull of the others");
+                ": leave out points inside the hull of the others");
   }
   if (!(radius >= 0.0 && radius <= largest_length)) {
     throw Error("the radius of a convex tool must be a number from 0 to 1e30, not " +
@@ -48,7 +48,7 @@ void check(const std::vector<Vec3>& points, double radius) {
     for (const Vec3* other = &points.front(); other != &p; ++other) {
       if ((p - *other).cwiseAbs().maxCoeff() < least_gap) {
         throw Error(
-            "two points of a convex tool are nearer than 1e-30 to each other, and yet not in the "
+            "two points of a convex tool are nearer than 1e-30 to each other, but not in the "
             "same place: leave one of them out");
       }
     }
@@ -63,15 +63,15 @@ Ball ball_around(const std::vector<Vec3>& points, double radius) {
   }
   double farthest = 0.0;
   for (const Vec3& p : points) farthest = std::max(farthest, (p - box.center()).norm());
-  // Wider by some roundings.
+  // Wider by a few roundings.
   return {box.center(), (farthest + radius) * (1.0 + 1e-15)};
 }
 
-// Corners whose height is below this fraction of their longest side are on a line to within
-// rounding and have no normal.
+// If the height of three corners is below this fraction of their longest side, they are on a line
+// up to rounding and have no normal.
 constexpr double needle = 1e-14;
 
-// Some roundings of a unit vector.
+// A few roundings of a unit vector.
 constexpr double same_direction = 1e-15;
 
 void add_once(std::vector<Vec3>& directions, const Vec3& n) {
@@ -81,8 +81,8 @@ void add_once(std::vector<Vec3>& directions, const Vec3& n) {
   if (!known) directions.push_back(n);
 }
 
-/// Returns true if points are clearly on both sides of a plane: beyond rounding and the normal's
-/// own error.
+/// Returns true if points are clearly on both sides of a plane, beyond rounding and the error of
+/// its normal.
 bool cuts(std::span<const Vec3> points, const Vec3& on_plane, const Vec3& n, double error) {
   bool above = false, below = false;
   for (const Vec3& p : points) {
@@ -101,13 +101,13 @@ struct HullDirections {
   std::vector<Vec3> edges;  // at least the directions of its edges
 };
 
-/// Returns those of the points' convex hull, which may be flat, straight or a point. Tries every
-/// triple, so that no degenerate case needs care: O(n^4), 10 ms for 64 points.
+/// Returns the directions of the convex hull of points, which may be flat, straight or a point.
+/// Tries every triple, so that degenerate cases need no special code: O(n^4), 10 ms for 64 points.
 HullDirections hull_directions(std::span<const Vec3> points) {
   const std::size_t count = points.size();
   HullDirections directions;
-  // Each edge of a hull with faces belongs to a triple of corners of a face. Only triples that are
-  // proved to be no face are left out.
+  // Each edge of a hull with faces is in a triple of corners of a face. A triple is left out only
+  // if it is proved to be no face.
   std::vector<bool> is_edge(count * count, count == 2);
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = i + 1; j < count; ++j) {
@@ -170,7 +170,7 @@ ConvexTool ConvexTool::hull(std::span<const Vec3> points, double radius) {
 ConvexTool ConvexTool::rotated(const Eigen::Matrix3d& rotation) const {
   const Eigen::Matrix3d unit = rotation.transpose() * rotation;
   if (!unit.isIdentity(1e-9) || !(rotation.determinant() > 0.0)) {
-    throw Error("a tool is turned by a rotation: an orthogonal matrix whose determinant is 1");
+    throw Error("a tool must be rotated by a rotation matrix: orthogonal, with determinant 1");
   }
   std::vector<Vec3> turned;
   for (const Vec3& p : points_) turned.push_back(rotation * p);

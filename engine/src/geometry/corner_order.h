@@ -8,17 +8,18 @@
 
 namespace keepout {
 
-/// The corners of a triangle, by number, in lexicographic order of their coordinates. Computing in
-/// this order makes a result independent of how the triangle happens to be wound or rotated.
+/// The corners of a triangle, by number, in lexicographic order of their coordinates. A result that
+/// is computed in this order does not depend on the triangle's winding or rotation.
 struct CornerOrder {
   std::array<int, 3> corner;
   bool odd;  // an odd permutation of the winding
 };
 
-/// Of corners at the same place, the earlier in the winding comes first.
+/// Returns the order of a triangle's corners. The earlier in the winding comes first of equal
+/// corners.
 inline CornerOrder corner_order(const Triangle& triangle) noexcept {
-  // Without branches, which no processor could foresee: each corner's place is the number of those
-  // before it, and equal ones keep their order.
+  // Without branches, which no processor could predict. The place of a corner is the number of
+  // corners before it, and equal corners keep their order.
   const auto before = [&](int i, int j) {
     const Vec3& a = triangle[i];
     const Vec3& b = triangle[j];
@@ -36,8 +37,9 @@ inline CornerOrder corner_order(const Triangle& triangle) noexcept {
   return order;
 }
 
-/// By the corners, each triangle's in lexicographic order: a total order, but for duplicates, that
-/// does not depend on numbering or winding.
+/// Returns true if one triangle comes before the other, comparing their corners in lexicographic
+/// order. This is a total order, except for duplicates, that does not depend on numbering or
+/// winding.
 inline bool comes_before(const Triangle& one, const Triangle& other) noexcept {
   const CornerOrder mine = corner_order(one);
   const CornerOrder theirs = corner_order(other);

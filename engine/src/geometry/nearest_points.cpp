@@ -13,8 +13,8 @@
 namespace keepout {
 namespace {
 
-/// A corner of the Minkowski difference core - triangle. The search is for the difference's point
-/// nearest to the origin.
+/// A corner of the Minkowski difference core - triangle. The search finds the point of this
+/// difference that is nearest to the origin.
 struct Vertex {
   Vec3 at;
   const Vec3* point;
@@ -34,7 +34,7 @@ struct Simplex {
   }
 };
 
-/// A simplex that has the origin's nearest point in its interior.
+/// A simplex that has its nearest point to the origin in its interior.
 struct Nearest {
   Simplex simplex;
   Vec3 at;
@@ -58,7 +58,7 @@ class Difference {
   }
 
   /// Returns the start of the search: the triangle's point nearest to the first point. For a core
-  /// of one point it is the result, bitwise that of closest_point.
+  /// of one point this is the result, bitwise identical to that of closest_point.
   Nearest first() const noexcept {
     const Vec3& point = points_.front();
     const ClosestPoint closest = closest_point(triangle_, point);
@@ -105,8 +105,8 @@ bool holds_origin(const Simplex& s) noexcept {
   return true;
 }
 
-/// Returns the nearest point after a vertex has joined. Only the sides with the new vertex can be
-/// nearer.
+/// Returns the nearest point after a vertex has joined a simplex. Only sides with the new vertex
+/// can be nearer.
 Nearest joined(const Simplex& old, const Vertex& added) noexcept {
   const auto& v = old.vertices;
   if (old.size == 1) return Difference::of(v[0], added, added);
@@ -119,8 +119,8 @@ Nearest joined(const Simplex& old, const Vertex& added) noexcept {
   return best;
 }
 
-/// Returns the triangle's nearest point: the corners have the same convex weights as the simplex's
-/// vertices.
+/// Returns the nearest point of the triangle. Its corners have the same convex weights as the
+/// vertices of the simplex.
 Vec3 on_triangle(const Nearest& nearest) noexcept {
   const auto& v = nearest.simplex.vertices;
   if (nearest.simplex.size == 1) return *v[0].corner;
@@ -138,7 +138,8 @@ Vec3 on_triangle(const Nearest& nearest) noexcept {
   return *v[0].corner + of_a * (*v[1].corner - *v[0].corner) + of_b * (*v[2].corner - *v[0].corner);
 }
 
-/// Returns the normal from the simplex: close to the origin, the nearest point is mostly rounding.
+/// Returns the normal from the simplex, because near the origin the nearest point is mostly
+/// rounding.
 Vec3 sharpened(const Nearest& nearest) noexcept {
   const auto& v = nearest.simplex.vertices;
   if (nearest.simplex.size == 3) {
@@ -159,9 +160,9 @@ NearestPoints nearest_points(std::span<const Vec3> points, const Triangle& trian
   const Difference difference(points, triangle);
   Nearest nearest = difference.first();
   bool overlap = !(nearest.distance > 0.0);
-  // Some ten rounds are usual. A point that is off sideways by the root of a rounding hardly
-  // changes the distance, but does change the plane that proves it. So a few rounds may come no
-  // nearer.
+  // About ten rounds are usual. An error of the point along the surface, by the root of a rounding,
+  // hardly changes the distance. But it changes the plane that proves the distance, so a few rounds
+  // without progress are allowed.
   constexpr int most_rounds = 256;
   constexpr double rounding = 1e-15;
   int rounds_to_settle = 8;

@@ -34,7 +34,7 @@ struct Expansion {
   std::array<double, N> terms;
   int size = 0;
 
-  /// Adds one double: Shewchuk's GROW-EXPANSION, leaving out zeros.
+  /// Adds one double: Shewchuk's GROW-EXPANSION without zero terms.
   void add(double value) noexcept {
     int kept = 0;
     for (int i = 0; i < size; ++i) {
@@ -55,7 +55,7 @@ struct Expansion {
     }
   }
 
-  /// The largest term outweighs all others together.
+  /// Returns the sign, which is that of the largest term: it exceeds the sum of all others.
   int sign() const noexcept {
     if (size == 0) return 0;
     return terms[size - 1] > 0.0 ? 1 : -1;
@@ -134,7 +134,7 @@ int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) no
     sum += one[i] * (left - right);
     magnitude += std::abs(one[i]) * (std::abs(left) + std::abs(right));
   }
-  // Seen from d the corners of a plane below it turn the other way: hence the minus.
+  // Seen from d, the corners of a plane below it turn the other way, hence the minus.
   if (std::abs(sum) > side_bound * magnitude) return sign_of(-sum);
   if (magnitude == 0.0) return 0;
   return exact_side(a, b, c, d);

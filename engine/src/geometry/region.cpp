@@ -17,7 +17,7 @@ Vec3 required_direction(const Vec3& given) {
   return n;
 }
 
-/// Returns a width or a radius. Throws Error, naming it, unless it is a length above 0.
+/// Returns a width or a radius. Throws Error, with the name, unless the value is a length above 0.
 double length(std::string_view name, double value) {
   OptionText{name, {}, OptionKind::number, "length", positive_length}.accepted(value);
   return value;

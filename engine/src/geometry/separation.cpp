@@ -31,7 +31,7 @@ class BestDirection {
   BestDirection(const ConvexTool& tool, const Triangle& triangle) noexcept
       : points_(tool.points()), triangle_(triangle) {}
 
-  /// Tries n and -n. Any direction is sound: none parts two bodies by more than their distance.
+  /// Tries n and -n. Any direction is sound: the separation along it never exceeds the distance.
   void consider(const Vec3& n) noexcept {
     const Extent core(points_, n);
     const Extent other(triangle_, n);
@@ -56,8 +56,8 @@ class BestDirection {
   double separation_ = -std::numeric_limits<double>::infinity();
 };
 
-/// Tries all directions that can part two overlapping cores with the least motion: the face normals
-/// of their difference.
+/// Tries all directions along which the least motion may separate two overlapping cores: the face
+/// normals of their difference.
 void consider_all(const ConvexTool& tool, const Triangle& triangle, BestDirection& best) noexcept {
   const Vec3 n = unit_normal(triangle);
   if (!n.isZero(0.0)) best.consider(n);
@@ -98,7 +98,7 @@ Separation separation(const ConvexTool& tool, const Vec3& position,
   for (const Vec3& point : tool.points()) size = std::max(size, point.norm());
 
   const NearestPoints nearest = nearest_points(tool.points(), local);
-  // A plane proves the distance to some roundings; otherwise all directions are tried.
+  // A plane proves the distance up to some roundings. If the proof fails, all directions are tried.
   constexpr double roundings = 4e-15;
   if (!nearest.overlap && nearest.distance - nearest.proven <= roundings * size) {
     return {nearest.distance - tool.radius(), nearest.normal, position + nearest.on_triangle};
@@ -106,17 +106,17 @@ Separation separation(const ConvexTool& tool, const Vec3& position,
   BestDirection best(tool, local);
   consider_all(tool, local, best);
   if (!nearest.overlap) best.take(nearest.normal, nearest.proven);
-  // A point's distance is exact even if its normal is not.
+  // The distance of a point is exact even if its normal is not.
   const bool is_point = tool.points().size() == 1;
   if (is_point && !nearest.overlap && best.separation() > 0.0) {
     return {nearest.distance - tool.radius(), best.normal(), position + nearest.on_triangle};
   }
-  // For other cores with lengths of different orders, the search may have ended too far off. The
+  // For other cores with lengths of different orders, the search may have ended too far away. The
   // result is then the distance that the best plane proves, or the depth.
   const double apart = nearest.overlap ? std::min(best.separation(), 0.0) : best.separation();
 
-  // If the two are moved apart along the normal by more than the depth, the deepest points become
-  // the nearest ones.
+  // If both are moved apart along the normal by more than the depth, the deepest points become the
+  // nearest ones.
   const Vec3 way = (size - best.separation()) * best.normal();
   const NearestPoints parted = nearest_points(tool.points(), moved(local, -way));
   return {apart - tool.radius(), best.normal(), position + (parted.on_triangle + way)};

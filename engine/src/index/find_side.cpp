@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The side of a watertight mesh on which a point is.
+// Finds the side of a watertight mesh on which a point is.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@
 namespace keepout {
 namespace {
 
-/// Returns the angle that a triangle takes up around one of its points. [rad]
+/// Returns the angle of a triangle around one of its points. [rad]
 double angle_at(const Triangle& triangle, Feature feature) noexcept {
   if (is_face(feature)) return 2.0 * std::numbers::pi;
   if (is_edge(feature)) return std::numbers::pi;
@@ -26,19 +26,19 @@ double angle_at(const Triangle& triangle, Feature feature) noexcept {
   return std::atan2(one.cross(other).norm(), one.dot(other));
 }
 
-/// Returns true if a triangle is too thin for its normal to be reliable: it closes a seam, and
-/// rounding to single precision may have turned it.
+/// Returns true if a triangle is too thin for a reliable normal. Such a triangle closes a seam, and
+/// rounding to single precision may have turned it over.
 bool is_sliver(const Triangle& t) noexcept {
   const double longest2 = std::max(
       {(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
   return !((t[1] - t[0]).cross(t[2] - t[0]).norm() > 1e-5 * longest2);
 }
 
-/// Returns the fraction of the probe at which it meets a triangle; infinite if it does not. A probe
-/// through an edge meets both triangles there.
+/// Returns the fraction of the probe at which the probe meets a triangle; infinite if it does not.
+/// A probe through an edge meets both triangles there.
 double met_at(const Triangle& triangle, const Vec3& from, const Vec3& probe) noexcept {
   constexpr double never = std::numeric_limits<double>::infinity();
-  constexpr double rim = -1e-14;  // barycentric: no probe slips through between neighbors
+  constexpr double rim = -1e-14;  // barycentric, so that no probe passes between neighbors
   const Vec3 one = triangle[1] - triangle[0];
   const Vec3 other = triangle[2] - triangle[0];
   const Vec3 across = probe.cross(other);
@@ -53,19 +53,20 @@ double met_at(const Triangle& triangle, const Vec3& from, const Vec3& probe) noe
 }
 
 /// A probe: a segment from a point to a place close to the nearest point of the surface, inside the
-/// triangle there that faces the point the most. The side of the first triangle that the probe
-/// meets is the side of its start. So the side depends neither on a sum of normals nor on rounding
-/// that decides which of several triangles is the nearest.
+/// triangle there that faces the point the most. The first triangle that the probe meets decides
+/// the side of its start. So the side depends neither on a sum of normals nor on the rounding that
+/// decides which of several triangles is nearest.
 struct Probe {
   Vec3 start;
   Vec3 segment;    // from the start [length]
   Vec3 offset;     // from the start to the nearest point of the surface [length]
-  Vec3 normal;     // unit, of all triangles there, by their angles; zero if they cancel out
+  Vec3 normal;     // unit, the mean of all triangles there, weighted by their angles; zero if they
+                   // cancel out
   Triangle faced;  // the triangle that faces the start the most
 };
 
 /// Returns the probe of a point. `nearest`: the triangles that touch the ball of radius `as_near`
-/// around the point, which contains all that are as near as the nearest one; reorders them.
+/// around the point, which contains all nearest triangles. Reorders `nearest`.
 Probe aimed_probe(const Mesh& mesh, const Vec3& point, const ClosestPoint& closest, double as_near,
                   std::span<TriangleId> nearest) noexcept {
   Probe probe{point, Vec3::Zero(), closest.offset, Vec3::Zero(), {}};
@@ -91,7 +92,8 @@ Probe aimed_probe(const Mesh& mesh, const Vec3& point, const ClosestPoint& close
   const double length = probe.normal.norm();
   if (length > 0.0) probe.normal /= length;
 
-  // Nothing is nearer than the nearest point, so the probe meets the surface close to it.
+  // No point of the surface is nearer than the nearest point, so the probe meets the surface close
+  // to it.
   const Triangle& faced = probe.faced;
   const Vec3 middle = (faced[0] + faced[1] + faced[2]) / 3.0 - point;
   const Vec3 inwards = middle - probe.offset;
@@ -101,18 +103,18 @@ Probe aimed_probe(const Mesh& mesh, const Vec3& point, const ClosestPoint& close
 }
 
 /// Returns true if a probe starts on the forbidden side. `candidates`: the triangles that touch the
-/// ball around its start up to its end, in any order.
+/// ball around the probe's start with the probe's length, in any order.
 bool starts_inside(const Mesh& mesh, const Probe& probe,
                    std::span<const TriangleId> candidates) noexcept {
-  const bool are_slivers_asked = is_sliver(probe.faced);  // there is nothing else
+  const bool are_slivers_asked = is_sliver(probe.faced);  // the surface there has only slivers
   double first = std::numeric_limits<double>::infinity();
   for (const TriangleId t : candidates) {
     const Triangle triangle = mesh.triangle(t);
     if (!are_slivers_asked && is_sliver(triangle)) continue;
     first = std::min(first, met_at(triangle, probe.start, probe.segment));
   }
-  // Positive if the probe meets a back face first: the point sees the surface from behind. At an
-  // edge, the triangle counts that faces the point more.
+  // Positive if the probe meets a back face first, which means that the point is behind the
+  // surface. At an edge, the triangle that faces the point more decides.
   double from_behind = 0.0;
   for (const TriangleId t : candidates) {
     const Triangle triangle = mesh.triangle(t);
@@ -125,7 +127,7 @@ bool starts_inside(const Mesh& mesh, const Probe& probe,
   return from_behind > 0.0;
 }
 
-/// Classifies a point that is not far off: see find_side.
+/// Classifies a point that is not far away: see find_side.
 std::optional<SideOfSurface> find_side_by_probe(Neighborhood& neighborhood,
                                                 const Vec3& point) noexcept {
   const std::optional<Hit> hit = find_nearest(neighborhood, point);
@@ -149,8 +151,8 @@ std::optional<SideOfSurface> find_side_by_probe(Neighborhood& neighborhood,
 }  // namespace
 
 std::optional<SideOfSurface> find_side(Neighborhood& neighborhood, const Vec3& point) noexcept {
-  // Beyond the bounds all is one side. A point that is so far off that rounding makes all triangles
-  // equally near is replaced by a nearer one.
+  // Beyond the bounds all points are on one side. If a point is so far away that rounding makes all
+  // triangles equally near, a nearer point replaces it.
   const Box& bounds = neighborhood.mesh().bounds();
   const Vec3 beyond = Vec3::Constant(4.0 * bounds.size().norm());
   const Vec3 nearer = point.cwiseMax(bounds.low - beyond).cwiseMin(bounds.high + beyond);

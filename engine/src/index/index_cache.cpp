@@ -20,16 +20,16 @@
 namespace keepout {
 namespace {
 
-/// Counted up with every change of what is in the file, or of what it means.
+/// Increases with every change of the contents of the file, or of their meaning.
 constexpr std::uint32_t version = 2;
 
 constexpr std::string_view magic = "keepout wide_bvh";
 
-/// What a file begins with; the order of the triangles follows.
+/// The head of a file; the order of the triangles follows.
 struct Header {
   std::array<char, magic.size()> magic_bytes{};
   std::uint32_t file_version = version;
-  std::uint32_t byte_order = 0x01020304;  // read as another number where bytes are swapped
+  std::uint32_t byte_order = 0x01020304;  // reads as another number if the bytes are swapped
   Digest mesh;
   Digest order;
 
@@ -74,7 +74,7 @@ std::unique_ptr<WideBvh> load(std::shared_ptr<const Mesh> mesh, const Digest& di
   }
 }
 
-/// Why it could not be written; no error if it was.
+/// Writes the file. Returns the reason if that fails, else no error.
 std::error_code save(const WideBvh& index, const Digest& mesh, const std::filesystem::path& path) {
   const std::vector<TriangleId> order = index.order();
   const auto bytes = std::as_bytes(std::span(order));
@@ -113,7 +113,7 @@ std::unique_ptr<WideBvh> load_or_build(std::shared_ptr<const Mesh> mesh,
   std::filesystem::create_directories(folder, error);
   if (!error) error = save(*index, digest, file);
   if (error && warn) {
-    warn("the index is not kept for the next time: " + file.string() + " cannot be written (" +
+    warn("the index is not stored for the next start: " + file.string() + " cannot be written (" +
          error.message() + ")");
   }
   return index;

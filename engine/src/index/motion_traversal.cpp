@@ -10,8 +10,7 @@
 namespace keepout {
 namespace {
 
-/// Visits all hits in the region, whatever the motion: for indices without a traversal of their
-/// own.
+/// Visits all hits in the region, whatever the motion is: for an index without its own traversal.
 class TraversalOfHits final : public MotionTraversal {
  public:
   explicit TraversalOfHits(Neighborhood& neighborhood)

@@ -23,15 +23,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Triangles that edges hold together, and which of them are wound alike (union-find, with path
-/// halving, that carries the winding along).
+/// Sets of triangles that are connected by edges, and their relative winding. A union-find with
+/// path halving that also stores if a triangle is wound against its parent.
 class WoundSets {
  public:
   explicit WoundSets(std::size_t size) : up_(size), is_one_sided_(size, 0) {
     for (TriangleId t = 0; t < size; ++t) up_[t] = {t, false};
   }
 
-  /// A triangle of the set, the same for all of it, and whether `t` is wound against that one.
+  /// The first triangle, which represents the set, and whether a triangle is wound against it.
   struct Place {
     TriangleId first;
     bool is_opposite;
@@ -75,10 +75,10 @@ struct Part {
   bool is_one_sided = false;
   bool is_open = false;
   bool is_non_manifold = false;
-  double volume = 0.0;       // signed, as most triangles are wound [length^3]
+  double volume = 0.0;       // signed, by the winding of most triangles [length^3]
   double uncertainty = 0.0;  // of the volume [length^3]
   Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  bool is_turned = false;  // as a whole
+  bool is_turned = false;  // all of it
 
   bool is_closed() const noexcept { return !is_one_sided && !is_open && !is_non_manifold; }
   bool has_volume() const noexcept { return is_closed() && std::abs(volume) > uncertainty; }
@@ -88,7 +88,8 @@ struct Part {
 struct Parts {
   std::vector<Part> parts = {};
   std::vector<std::size_t> part_of = {};  // of each triangle
-  std::vector<bool> is_disagreeing = {};  // of each triangle: wound against most of its part
+  std::vector<bool> is_disagreeing = {};  // of each triangle: true if wound against most of its
+                                          // part
 };
 
 Parts parts_of(const Mesh& mesh) {
@@ -121,7 +122,7 @@ Parts parts_of(const Mesh& mesh) {
 }
 
 /// Finds the parts that end at edges. A part does not end at an edge of several triangles if its
-/// own cancel there, as those of two solids that touch along the edge do.
+/// own triangles cancel there, as those of two solids that touch along the edge do.
 void find_ends(const Mesh& mesh, Parts& all) {
   for_each_edge(mesh, [&](VertexId, std::span<const HalfEdge> sides) {
     if (sides.size() == 2) return;
@@ -158,17 +159,17 @@ void measure(const Mesh& mesh, const Parts& all, Part& part) {
       part.bounds.high = part.bounds.high.cwiseMax(corner);
     }
   }
-  // Coordinates far from the origin of the frame lose digits when they are subtracted.
+  // Coordinates far from the origin lose digits when they are subtracted.
   const double far =
       mesh.bounds().low.cwiseAbs().cwiseMax(mesh.bounds().high.cwiseAbs()).maxCoeff();
   const double size = part.bounds.size().norm();
   part.uncertainty = 1e-13 * (sum_of_sizes + size * size * far);
 }
 
-/// How a part is placed to a solid.
+/// The position of a part relative to a solid.
 enum class Relation { beside, within, crossing };
 
-/// A closed part as a solid that says whether another part is within it.
+/// A closed part as a solid, to decide if another part is within it.
 class Solid {
  public:
   Solid(const Mesh& mesh, const Parts& all, const Part& part) {
@@ -186,7 +187,7 @@ class Solid {
   Solid(const Solid&) = delete;
   Solid& operator=(const Solid&) = delete;
 
-  /// Returns where the vertices of a part are, except those on the surface of the solid.
+  /// Returns the position of a part, by its vertices that are not on the surface of the solid.
   Relation relation_of(const Mesh& mesh, const Part& part) {
     std::vector<VertexId> vertices;
     for (const TriangleId t : part.triangles) {
@@ -206,8 +207,8 @@ class Solid {
   }
 
  private:
-  /// Returns true if a point is in the solid; nothing if it is within the rounding of single
-  /// precision from the surface.
+  /// Returns true if a point is in the solid. Returns nothing if the point is within the rounding
+  /// of single precision from the surface.
   std::optional<bool> contains(const Vec3& point) {
     const Box& bounds = neighborhood_->mesh().bounds();
     const double far = bounds.low.cwiseAbs().cwiseMax(bounds.high.cwiseAbs()).maxCoeff();
@@ -228,7 +229,7 @@ bool overlap(const Box& one, const Box& other) noexcept {
          (other.low.array() <= one.high.array()).all();
 }
 
-/// Finds those boxes that overlap another one and were added: a balanced tree over all boxes.
+/// Finds the added boxes that overlap a given box, with a balanced tree over all boxes.
 class BoxTree {
  public:
   explicit BoxTree(std::vector<Box> boxes)
@@ -252,7 +253,7 @@ class BoxTree {
     }
   }
 
-  /// The numbers of the boxes, in ascending order.
+  /// Returns the numbers of the added boxes that overlap `box`, in ascending order.
   std::vector<std::size_t> overlapping(const Box& box) const {
     std::vector<std::size_t> found;
     if (!boxes_.empty()) collect(box, 1, 0, order_.size(), found);
@@ -263,8 +264,8 @@ class BoxTree {
  private:
   inline static const Box nothing{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
 
-  /// Puts the boxes below the middle of a range first, along the axis where they are farthest
-  /// apart.
+  /// Moves the boxes below the middle of a range to its front, along the axis of the largest
+  /// spread.
   void sort(std::size_t begin, std::size_t end) {
     if (end - begin < 2) return;
     Box centers = nothing;
@@ -298,11 +299,11 @@ class BoxTree {
   std::vector<Box> boxes_;
   std::vector<std::size_t> order_;     // of the boxes in the tree
   std::vector<std::size_t> place_of_;  // of each box in the order
-  std::vector<Box> nodes_;             // around what was added; the children of i are 2i and 2i + 1
+  std::vector<Box> nodes_;  // around the added boxes; the children of i are 2i and 2i + 1
 };
 
-/// Decides which of the parts that have a volume are turned, the largest first: only a larger part
-/// can be around another.
+/// Decides which of the parts that have a volume are turned, the largest first, because only a
+/// larger part can be around another.
 void turn_outward(const Mesh& mesh, Parts& all, Orientation& result) {
   std::vector<Part*> solid_parts;
   for (Part& part : all.parts) {
@@ -314,7 +315,7 @@ void turn_outward(const Mesh& mesh, Parts& all, Orientation& result) {
   std::vector<Box> boxes;
   for (const Part* const part : solid_parts) boxes.push_back(part->bounds);
   BoxTree outermost(std::move(boxes));
-  std::vector<std::unique_ptr<Solid>> solids(solid_parts.size());  // made when first asked
+  std::vector<std::unique_ptr<Solid>> solids(solid_parts.size());  // made at the first use
   for (std::size_t i = 0; i < solid_parts.size(); ++i) {
     Part& part = *solid_parts[i];
     const Part* around = nullptr;

@@ -23,7 +23,7 @@ namespace {
 
 std::size_t room_for(const Mesh* mesh, const SpatialIndex* index, std::size_t asked) {
   if (mesh == nullptr || index == nullptr) {
-    throw Error("a query needs a mesh and an index: one of them was not given");
+    throw Error("a query needs a mesh and an index, but one of them is null");
   }
   if (&index->mesh() != mesh) {
     throw Error("the index is of another mesh: build it on this one, or refit it to this one");
@@ -74,19 +74,20 @@ std::optional<Hit> nearest_of(const Mesh& mesh, const Ball& ball,
   return best;
 }
 
-/// Finds the nearest triangle by queries with a ball that grows until it touches the mesh, and
-/// shrinks if it touches more triangles than there is room for. Marks an overflow of the budget if
-/// no ball fits.
+/// Finds the nearest triangle by queries with a ball. The ball grows until it touches the mesh, and
+/// shrinks if it touches more triangles than the capacity. If no ball fits, marks an overflow of
+/// the budget.
 std::optional<Hit> find_nearest_by_queries(const Mesh& mesh, const SpatialIndex& index,
                                            const Vec3& point, double guess,
                                            TriangleBuffer& candidates, Budget& budget) noexcept {
   const Box& bounds = mesh.bounds();
   const double size = bounds.size().norm() + point.cwiseAbs().maxCoeff() + bounds.low.norm();
-  // No triangle is nearer than the bounds; the second term keeps the growth from starting at 0.
+  // No triangle is nearer than the bounds. The second term prevents a start at 0.
   double radius = std::max(distance_to(bounds, point) * (1.0 + 1e-12) + 1e-6 * size, guess);
-  double empty = 0.0;  // radius of a ball without triangles [length]
-  double crowded = std::numeric_limits<double>::infinity();  // ... of one with too many [length]
-  // Doubling ends within some tens of rounds, and so does halving, at neighboring numbers.
+  double empty = 0.0;  // largest radius of a ball without triangles [length]
+  double crowded = std::numeric_limits<double>::infinity();  // ... and least radius with too many
+                                                             // [length]
+  // Doubling ends within some tens of rounds. So does halving, at neighboring numbers.
   constexpr int most_rounds = 80;
   for (int round = 0; round < most_rounds && !budget.is_spent(); ++round) {
     candidates.clear();
@@ -114,7 +115,8 @@ std::optional<Hit> find_nearest(const Mesh& mesh, const SpatialIndex& index, con
   if (const TriangleId found = index.nearest(point, budget); found != no_triangle) {
     return Hit{found, closest_point(mesh.triangle(found), point)};
   }
-  // Without a search of its own; one that spent the budget leaves nothing for these queries.
+  // The index has no search of its own, or its search has spent the budget, which ends these
+  // queries.
   return find_nearest_by_queries(mesh, index, point, guess, candidates, budget);
 }
 

@@ -28,7 +28,7 @@ Sides sides_of(const Triangle& plane, const Triangle& points) noexcept {
 bool all_apart(const Sides& s) noexcept { return s[0] != 0 && s[0] == s[1] && s[1] == s[2]; }
 bool all_on(const Sides& s) noexcept { return s[0] == 0 && s[1] == 0 && s[2] == 0; }
 
-/// True if a side of the flat triangle keeps all the points strictly outside.
+/// Returns true if all the points are strictly outside one side of the flat triangle.
 template <std::size_t N>
 bool side_separates(const Triangle& triangle, const std::array<Vec3, N>& points,
                     int axis) noexcept {
@@ -43,8 +43,7 @@ bool side_separates(const Triangle& triangle, const std::array<Vec3, N>& points,
   return false;
 }
 
-// In a plane, two convex shapes that are apart are separated by a line along a side of the one or
-// of the other.
+// In a plane, two convex shapes that are apart are separated by a line along a side of one of them.
 
 bool overlap_in_plane(const Triangle& one, const Triangle& other) noexcept {
   const int axis = axis_of_sight(one);
@@ -59,12 +58,14 @@ bool overlap_in_plane(const Vec3& p, const Vec3& q, const Triangle& triangle) no
   return !all_apart(beside);
 }
 
-/// Does the segment touch the triangle? `side_p` and `side_q`: where its ends are by the plane.
+/// Returns true if the segment touches the triangle. `side_p`, `side_q`: the sides of its ends
+/// relative to the triangle's plane.
 bool touches(const Vec3& p, int side_p, const Vec3& q, int side_q,
              const Triangle& triangle) noexcept {
   if (side_p * side_q > 0) return false;
   if (side_p == 0 && side_q == 0) return overlap_in_plane(p, q, triangle);
-  // The line through p and q pierces the plane once, inside if it passes all sides alike.
+  // The line through p and q crosses the plane once: inside, if it passes all sides in the same
+  // direction.
   int seen = 0;
   for (int e = 0; e < 3; ++e) {
     const int way = side_of_plane(p, q, triangle[e], triangle[next(e)]);
@@ -82,7 +83,7 @@ bool any_edge_touches(const Triangle& edges, const Sides& sides,
   return false;
 }
 
-/// Which corners two triangles have in common.
+/// The corners that two triangles have in common.
 struct Shared {
   int count = 0;
   std::array<bool, 3> of_one{}, of_other{};
@@ -114,8 +115,8 @@ bool meet_apart(const Triangle& one, const Triangle& other) noexcept {
   return any_edge_touches(other, other_by_one, one) || any_edge_touches(one, one_by_other, other);
 }
 
-/// With one corner v in common: a second point in common leads, away from v, to where the ray
-/// leaves the first of the two triangles, which is through the side opposite v.
+/// For triangles with one common corner. From that corner, the ray to a second common point leaves
+/// the first triangle through the side opposite the corner.
 bool meet_beyond_corner(const Triangle& one, int corner_one, const Triangle& other,
                         int corner_other) noexcept {
   const auto opposite_touches = [](const Triangle& from, int corner, const Triangle& to) {
@@ -127,7 +128,8 @@ bool meet_beyond_corner(const Triangle& one, int corner_one, const Triangle& oth
   return opposite_touches(one, corner_one, other) || opposite_touches(other, corner_other, one);
 }
 
-/// With an edge in common: only flat and on the same side of it can they share more.
+/// For triangles with a common edge: they share more only if they are coplanar and on the same side
+/// of it.
 bool meet_beyond_edge(const Triangle& one, int apex_one, const Triangle& other,
                       int apex_other) noexcept {
   if (side_of_plane(one[0], one[1], one[2], other[apex_other]) != 0) return false;
@@ -137,7 +139,7 @@ bool meet_beyond_edge(const Triangle& one, int apex_one, const Triangle& other,
   return turn(a, b, one[apex_one], axis) == turn(a, b, other[apex_other], axis);
 }
 
-/// meet_improperly, for triangles that are known to have an area.
+/// Like meet_improperly(), for triangles that have an area.
 bool meet(const Mesh& mesh, TriangleId one, TriangleId other) noexcept {
   const Shared shared = shared_corners(mesh.corners(one), mesh.corners(other));
   const Triangle a = mesh.triangle(one);
@@ -154,12 +156,13 @@ bool meet(const Mesh& mesh, TriangleId one, TriangleId other) noexcept {
   }
 }
 
-/// The point between p and q at the given distances from them, or as many of any length.
+/// Returns the point between p and q whose distances from them have the ratio `from` to `to`; the
+/// middle if both are zero.
 Vec3 between(const Vec3& p, double from, const Vec3& q, double to) noexcept {
   return from + to > 0.0 ? Vec3(p + from / (from + to) * (q - p)) : Vec3(0.5 * (p + q));
 }
 
-/// Adds the points in which edges of the one triangle pierce the other to `sum`. Returns how many.
+/// Adds to `sum` the points in which edges of one triangle pierce the other. Returns their number.
 int add_piercings(const Triangle& edges, const Triangle& triangle, Vec3& sum) noexcept {
   const Vec3 normal = unit_normal(triangle);
   const Sides sides = sides_of(triangle, edges);
@@ -178,7 +181,7 @@ int add_piercings(const Triangle& edges, const Triangle& triangle, Vec3& sum) no
   return count;
 }
 
-/// Adds the corners that lie on the other triangle to `sum`. Returns how many.
+/// Adds to `sum` the corners that are on the other triangle. Returns their number.
 int add_corners_on(const Triangle& corners, const Triangle& triangle, Vec3& sum) noexcept {
   const Sides sides = sides_of(triangle, corners);
   int count = 0;
@@ -190,7 +193,7 @@ int add_corners_on(const Triangle& corners, const Triangle& triangle, Vec3& sum)
   return count;
 }
 
-/// Adds the points in which edges of two triangles in one plane cross to `sum`. Returns how many.
+/// Adds to `sum` the points in which edges of two coplanar triangles cross. Returns their number.
 int add_crossings(const Triangle& one, const Triangle& other, Vec3& sum) noexcept {
   if (!all_on(sides_of(one, other))) return 0;
   const int axis = axis_of_sight(one);
@@ -220,9 +223,10 @@ bool overlap(const Box& one, const Box& other) noexcept {
          (other.low.array() <= one.high.array()).all();
 }
 
-/// Returns a point of both of two triangles that meet: the middle of the points where edges of the
-/// one pierce the other; if none does, as in one plane, of corners that lie on the other triangle
-/// and of crossings of edges. What two triangles share is convex, so the middle is in it.
+/// Returns a point that two triangles have in common: the middle of the points where edges of one
+/// pierce the other. Without such points, as in one plane, it is the middle of corners on the other
+/// triangle and of crossings of edges. The common part of two triangles is convex, so the middle is
+/// in it.
 Vec3 meeting_point(const Triangle& one, const Triangle& other) noexcept {
   Vec3 sum = Vec3::Zero();
   int count = add_piercings(one, other, sum) + add_piercings(other, one, sum);
@@ -230,10 +234,15 @@ Vec3 meeting_point(const Triangle& one, const Triangle& other) noexcept {
     count = add_corners_on(one, other, sum) + add_corners_on(other, one, sum) +
             add_crossings(one, other, sum);
   }
-  return sum / std::max(1, count);
+  const Box a = box_of(one);
+  const Box b = box_of(other);
+  // Rounding may lead astray, or leave no point, where they are nearly in one plane or lengths are
+  // near the end of a double's range.
+  const Vec3 middle = sum / std::max(1, count);
+  return middle.cwiseMax(a.low.cwiseMax(b.low)).cwiseMin(a.high.cwiseMin(b.high));
 }
 
-/// A ball that holds the triangle, with room for the rounding of its own making.
+/// Returns a ball that contains the triangle, enlarged by the rounding of this computation.
 Ball ball_around(const Triangle& t, const Box& box) noexcept {
   const Vec3 center = box.center();
   double radius = 0.0;

@@ -9,12 +9,12 @@
 namespace keepout {
 
 SpatialIndex::SpatialIndex(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
-  if (mesh_ == nullptr) throw Error("an index needs a mesh: none was given");
+  if (mesh_ == nullptr) throw Error("an index needs a mesh, but it is null");
 }
 
 void SpatialIndex::collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept {
-  // Pieces twice as long as the capsule is thick: shorter ones ask for more, longer ones find more
-  // that is beside it. Then the round ends, beyond the outermost pieces.
+  // Pieces twice as long as the capsule is thick: shorter pieces need more queries, longer ones
+  // find more triangles beside the capsule. The round ends follow.
   constexpr int most_pieces = 64;
   const Vec3 along = capsule.to - capsule.from;
   const double length = along.norm();
@@ -34,7 +34,7 @@ void SpatialIndex::collect_near(const Capsule& capsule, TriangleBuffer& candidat
     candidates.shrink(
         static_cast<std::size_t>(std::unique(first, candidates.end()) - candidates.begin()));
   }
-  // There may have been room for each once, but not for what is near two pieces.
+  // An overflow may come from duplicates near two pieces. One query without duplicates may fit.
   if (candidates.overflowed()) {
     candidates.shrink(before);
     const double all = 0.5 * length + capsule.radius;

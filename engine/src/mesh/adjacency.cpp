@@ -25,16 +25,16 @@ std::size_t next_place(std::size_t& count) noexcept {
   return std::atomic_ref(count).fetch_add(1, std::memory_order_relaxed);
 }
 
-// Bends below this are rounding, not shape. [rad]
+// Smaller bends are rounding, not shape. [rad]
 constexpr double flat = 1e-12;
 
 constexpr int next(int corner) noexcept { return (corner + 1) % 3; }
 
-/// As `bend`, of triangles whose unit normals are known.
+/// Like bend(), for triangles with known unit normals.
 EdgeKind bend(const Triangle& one, const Vec3& normal_one, int edge, const Triangle& other,
               const Vec3& normal_other, int other_edge) noexcept {
-  // The sine of the turn from the one normal to the other about the edge has the sign of -N_a . v,
-  // and is the same whichever of the two comes first.
+  // The sine of the turn from one normal to the other about the edge has the sign of -N_a . v. It
+  // does not depend on the order of the triangles.
   const Vec3 along = one[next(edge)] - one[edge];
   const double length = along.norm();
   if (!(length > 0.0) || other[other_edge] == other[next(other_edge)]) return EdgeKind::coplanar;
@@ -55,14 +55,14 @@ std::vector<Vec3> normals_of(const Mesh& mesh) {
 }  // namespace
 
 HalfEdges::HalfEdges(const Mesh& mesh) : begin_(mesh.vertex_count() + 2, 0) {
-  // A counting sort by lower vertex, then a small sort for each: faster than one sort of all. The
-  // threads file in any order, which the small sorts undo.
+  // A counting sort by lower vertex, then a small sort for each, is faster than one sort of all.
+  // The threads file in any order, which the small sorts undo.
   share_sides(mesh, [&](TriangleId, std::uint8_t, VertexId a, VertexId b) {
     next_place(begin_[std::min(a, b) + std::size_t{2}]);
   });
   for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
   sides_ = vector_in_huge_pages<HalfEdge>(begin_.back());
-  // begin_[v + 1], as yet where v's sides begin, moves on to where they end.
+  // begin_[v + 1] is still the beginning of v's sides. The filing moves it to their end.
   share_sides(mesh, [&](TriangleId t, std::uint8_t e, VertexId a, VertexId b) {
     sides_[next_place(begin_[std::min(a, b) + std::size_t{1}])] = {std::max(a, b), t, e, a < b};
   });

@@ -16,7 +16,7 @@ struct NumberType {
   bool is_signed;
 };
 
-/// Returns the number whose bytes begin there. `swapped`: in the byte order of another machine.
+/// Returns the number at `bytes`. `swapped`: in the byte order of another machine.
 template <class T>
 T number_at(const char* bytes, bool swapped) noexcept {
   char ordered[sizeof(T)];
@@ -25,7 +25,7 @@ T number_at(const char* bytes, bool swapped) noexcept {
   return std::bit_cast<T>(ordered);
 }
 
-/// Like number_at(), for an integer. One of 64 bits without a sign that is too large for the result
+/// Like number_at(), for an integer. An unsigned one of 64 bits that is too large for the result
 /// becomes negative.
 inline std::int64_t whole_at(const char* bytes, const NumberType& type, bool swapped) noexcept {
   switch (type.size) {

@@ -48,7 +48,7 @@ std::optional<Surface> read_binary_stl(const MeshSource& source, unsigned thread
     return std::nullopt;
   }
   if (count == 0) source.fail("has no triangles; check the export");
-  // Three vertices for each triangle must be countable.
+  // Three vertices for each triangle must have numbers.
   if (count > no_triangle / 3) source.fail("has too many triangles to read; split or decimate it");
   const auto make_reader = [&] {
     return [&source, records = std::vector<char>()](std::size_t first, std::span<Corners> triangles,
@@ -75,7 +75,7 @@ std::optional<Surface> read_binary_stl(const MeshSource& source, unsigned thread
 
 namespace {
 
-/// How errors name a file: not at all, if it has no name.
+/// Returns the beginning of an error about a file; empty if the file has no name.
 std::string prefix_of(const std::filesystem::path& path) {
   return path.empty() ? "" : path.string() + ": ";
 }
@@ -89,14 +89,14 @@ auto reader_of(const Surface& surface, std::string prefix) {
       if (v >= surface.vertices.size()) {
         throw Error(prefix + "triangle " + std::to_string(t) + " names vertex " +
                     std::to_string(v) + ", but there are only " +
-                    std::to_string(surface.vertices.size()) + ": give it all of them");
+                    std::to_string(surface.vertices.size()) + ": add the missing vertices");
       }
     }
     return {surface.vertices[c[0]], surface.vertices[c[1]], surface.vertices[c[2]]};
   };
 }
 
-/// Calls write(bytes, size) with one piece of the file after the other.
+/// Calls write(bytes, size) with one piece of the file after another.
 template <class Write>
 void print_binary_stl(const Write& write, const std::string& prefix, AnatomicalSpace space,
                       std::uint64_t triangles,

@@ -22,7 +22,8 @@ void skip_blanks(std::string_view& text) noexcept {
   text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
 }
 
-/// Takes a word off the text, with the blanks before and behind it; false when it is not there.
+/// Removes a word from the start of the text, with the blanks around it. Returns false if the text
+/// does not begin with the word.
 bool take(std::string_view& text, std::string_view word) noexcept {
   skip_blanks(text);
   if (!text.starts_with(word)) return false;
@@ -31,7 +32,7 @@ bool take(std::string_view& text, std::string_view word) noexcept {
   return true;
 }
 
-/// Calls read(rest) for what follows wherever a word begins so.
+/// Calls read(rest) with the text after each place where a word begins with `word`.
 template <class Read>
 void for_each_begin(std::string_view text, std::string_view word, const Read& read) {
   for (std::size_t at = 0; (at = text.find(word, at)) != std::string_view::npos;) {
@@ -41,7 +42,7 @@ void for_each_begin(std::string_view text, std::string_view word, const Read& re
   }
 }
 
-/// Three letters, one of each pair of directions: RAS, LPS, LAS, RPI, ...
+/// Returns true for three letters, one of each pair of directions: RAS, LPS, LAS, RPI, ...
 bool is_orientation(std::string_view word) noexcept {
   constexpr std::array<std::string_view, 3> pairs{"RL", "AP", "SI"};
   return word.size() == 3 && std::all_of(pairs.begin(), pairs.end(), [&](std::string_view pair) {
@@ -49,7 +50,7 @@ bool is_orientation(std::string_view word) noexcept {
          });
 }
 
-/// In the letters that NRRD abbreviates its names to: LEFT-POSTERIOR-SUPERIOR is LPS.
+/// Returns a space in the letters that NRRD uses: LPS for LEFT-POSTERIOR-SUPERIOR.
 std::string abbreviated(std::string_view value) {
   if (value.find('-') == std::string_view::npos) return std::string(value);
   std::string initials;

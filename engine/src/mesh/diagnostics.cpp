@@ -24,7 +24,7 @@ struct Faults {
   FaultList duplicate_triangles{3};
 };
 
-/// Corner i of triangle t, as one number.
+/// Returns the number of corner i of triangle t.
 constexpr std::size_t corner_number(TriangleId t, int i) noexcept {
   return 3 * std::size_t{t} + static_cast<std::size_t>(i);
 }
@@ -54,7 +54,7 @@ void count_triangles(const Mesh& mesh, MeshFindings& findings, Faults& faults) {
 
 void measure(const Mesh& mesh, MeshFindings& findings) {
   findings.bounds = mesh.bounds();
-  // Volumes relative to the middle of the mesh, so that a distant origin costs no accuracy.
+  // Volumes are relative to the middle of the mesh, so that a distant origin costs no accuracy.
   const Vec3 origin = mesh.bounds().center();
   for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
     const Triangle corners = mesh.triangle(t);
@@ -64,7 +64,7 @@ void measure(const Mesh& mesh, MeshFindings& findings) {
   }
 }
 
-/// Edges by kind; joins what each edge holds together.
+/// Counts edges by kind, and joins the triangles and corners that each edge connects.
 void count_edges(const Mesh& mesh, MeshFindings& findings, Faults& faults, DisjointSets& fans,
                  DisjointSets& patches) {
   for_each_edge(mesh, [&](VertexId lower, std::span<const HalfEdge> sides) {
@@ -89,7 +89,7 @@ void count_edges(const Mesh& mesh, MeshFindings& findings, Faults& faults, Disjo
   findings.inconsistent_edges = faults.inconsistent_edges.size();
 }
 
-/// Vertices, components, and the numbers that follow from them.
+/// Counts vertices and components, and computes the numbers that follow from them.
 void count_parts(const Mesh& mesh, MeshFindings& findings, Faults& faults, DisjointSets& fans,
                  DisjointSets& patches) {
   DisjointSets islands(mesh.vertex_count());

@@ -8,7 +8,7 @@
 
 namespace keepout {
 
-/// Sets of numbers that grow together (union-find, with path halving).
+/// Disjoint sets of numbers that can be joined (union-find, with path halving).
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t size) : parent_(size) {

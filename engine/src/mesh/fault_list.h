@@ -13,21 +13,21 @@ namespace keepout {
 /// All faults of one kind, each by its vertices.
 class FaultList {
  public:
-  /// `corners`: how many vertices each fault has.
+  /// `corners`: the number of vertices of each fault.
   explicit FaultList(std::size_t corners) : corners_(corners) {}
 
-  /// Precondition: as many vertices as the constructor was given.
+  /// Adds a fault. Precondition: it has as many vertices as the constructor was given.
   void add(std::initializer_list<VertexId> vertices) {
     vertices_.insert(vertices_.end(), vertices);
   }
 
   std::size_t size() const noexcept { return vertices_.size() / corners_; }
 
-  /// Returns how many groups the faults form, and where at most `most` of them are.
+  /// Returns the number of groups of the faults, and the places of at most `most` faults.
   FaultPlaces places(const Mesh& mesh, std::size_t most) const;
 
  private:
-  /// Returns the number of the first fault of each one's group.
+  /// Returns for each fault the number of the first fault in its group.
   std::vector<std::size_t> groups() const;
 
   std::size_t corners_;

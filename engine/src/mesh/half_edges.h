@@ -11,7 +11,7 @@
 
 namespace keepout {
 
-/// One side of one triangle, filed under the lower of its two vertices.
+/// One side of a triangle, filed under the lower of its two vertices.
 struct HalfEdge {
   VertexId high;
   TriangleId triangle;
@@ -19,8 +19,8 @@ struct HalfEdge {
   bool upwards;  // runs from the lower vertex to the higher
 };
 
-/// A triangle that names a vertex twice is a segment: it has no sides, and the triangles beside it
-/// are neighbors of each other.
+/// Returns true if a triangle names a vertex twice. It is then a segment without sides, and the
+/// triangles beside it are neighbors of each other.
 inline bool repeats_a_vertex(const Corners& c) noexcept {
   return c[0] == c[1] || c[1] == c[2] || c[2] == c[0];
 }
@@ -40,13 +40,13 @@ void for_each_side(const Mesh& mesh, std::size_t begin, std::size_t end, const V
 /// The sides of all triangles of a mesh, in the order of low vertex, high vertex, triangle.
 class HalfEdges {
  public:
-  /// Built on as many threads as there are processors (in adjacency.cpp).
+  /// Builds on one thread for each processor (in adjacency.cpp).
   explicit HalfEdges(const Mesh& mesh);
 
   std::size_t vertex_count() const noexcept { return begin_.size() - 1; }
 
-  /// Calls visit(low, half_edges) for each edge whose lower vertex is one of first to last - 1,
-  /// with all the sides that lie on it, in order.
+  /// Calls visit(low, half_edges) for each edge with a lower vertex in first .. last - 1, with all
+  /// sides on the edge, in order.
   template <class Visit>
   void for_each_edge(std::size_t first, std::size_t last, Visit&& visit) const {
     for (std::size_t low = first; low < last; ++low) {
@@ -65,7 +65,7 @@ class HalfEdges {
   std::vector<HalfEdge> sides_;
 };
 
-/// Calls visit(low, half_edges) for each edge of the mesh, one after the other.
+/// Calls visit(low, half_edges) for each edge of the mesh, one after another.
 template <class Visit>
 void for_each_edge(const Mesh& mesh, Visit&& visit) {
   const HalfEdges sides(mesh);

@@ -28,7 +28,7 @@ void refuse_compressed(const MeshSource& source, std::string_view beginning) {
   }
 }
 
-/// The extension that the content calls for, where it is beyond doubt.
+/// Returns the extension that the content requires; empty if it is not certain.
 std::string_view extension_by_content(std::string_view beginning) {
   if (beginning.starts_with("ply\n") || beginning.starts_with("ply\r")) return ".ply";
   if (beginning.starts_with("OFF\n") || beginning.starts_with("OFF\r")) return ".off";
@@ -43,13 +43,13 @@ std::string_view extension_by_content(std::string_view beginning) {
   return {};
 }
 
-/// STL that is neither text nor of the length that its header declares.
+/// Rejects an STL file that is neither text nor of the length that its header declares.
 [[noreturn]] void refuse_stl(const MeshSource& source, std::string_view beginning) {
   if (beginning.size() < stl_preamble_size) source.fail("is too short to be an STL file");
   std::uint32_t count;
   std::memcpy(&count, beginning.data() + stl_header_size, sizeof count);
   const std::uint64_t needed = stl_preamble_size + stl_record_size * std::uint64_t{count};
-  source.fail("is no text, and as binary STL declares " + std::to_string(count) +
+  source.fail("is not text, and as binary STL declares " + std::to_string(count) +
               " triangles, which take " + std::to_string(needed) + " bytes, but it has " +
               std::to_string(source.size()) +
               (source.size() < needed ? ": it was cut short, or is damaged; copy or export it again"
@@ -63,7 +63,7 @@ bool looks_like_text_stl(std::string_view beginning) {
 
 struct Format {
   std::string_view extension;
-  MeshFile (*read)(const MeshSource&);  // all that is not binary STL
+  MeshFile (*read)(const MeshSource&);  // for all formats except binary STL
 };
 
 constexpr std::array<Format, 6> formats{{{".stl", read_text_stl},
@@ -73,7 +73,7 @@ constexpr std::array<Format, 6> formats{{{".stl", read_text_stl},
                                          {".vtk", read_vtk},
                                          {".vtp", read_vtp}}};
 
-/// A file's surface, welded. `vertices_in_file`: as many as there were before.
+/// Returns a file's surface, welded. `vertices_in_file`: the number before welding.
 MeshFile read_welded(const MeshSource& source, const std::string& extension,
                      std::size_t& vertices_in_file) {
   const std::string beginning = source.contents(512);
@@ -101,8 +101,8 @@ MeshFile read_welded(const MeshSource& source, const std::string& extension,
   return mesh;
 }
 
-/// Turns the surface into the space that is wanted, and notes what is known of it. Throws Error if
-/// that cannot be done without guessing.
+/// Transforms the surface to the requested space, and notes the known facts about it. Throws Error
+/// if that would need a guess.
 void settle_space(const MeshSource& source, const CoordinateNotes& notes,
                   const LoadOptions& options, Surface& surface, LoadedMesh& loaded) {
   constexpr AnatomicalSpace unstated = AnatomicalSpace::unstated;
@@ -135,10 +135,11 @@ void settle_space(const MeshSource& source, const CoordinateNotes& notes,
                 "; export it in one of them");
   }
   if (loaded.space == unstated) {
-    source.fail("does not state its space, so it cannot be told whether it is in " + wanted +
-                "; say what a file without SPACE=RAS or SPACE=LPS is in (LoadOptions::untagged, "
-                "--untagged). 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
-                "programs for DICOM images use LPS");
+    source.fail(
+        "does not state its space, so it cannot be told whether it is in " + wanted +
+        "; say what a file without SPACE=RAS or SPACE=LPS is in, for example --untagged LPS or "
+        "untagged=\"LPS\". 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
+        "programs for DICOM images use LPS");
   }
   if (loaded.space != options.space) {
     swap_ras_and_lps(surface);
@@ -154,7 +155,8 @@ std::string number_text(double value) {
   return {digits.data(), end.ptr};
 }
 
-/// The factor from lengths in the file to mm. Throws Error for a unit or a scale that is none.
+/// Returns the factor from lengths in the file to mm. Throws Error for an unknown unit or an
+/// invalid scale.
 double scale_of(const LoadOptions& options) {
   if (options.scale) {
     if (!options.unit.empty()) throw Error("unit and scale: give one of them, not both");
@@ -176,15 +178,15 @@ double scale_of(const LoadOptions& options) {
               options.unit + "'");
 }
 
-/// Scales the surface to mm. Two vertices may round to one, so that it is welded again.
+/// Scales the surface to mm. Rounding may make two vertices equal, so it is welded again.
 void scale_to_mm(const MeshSource& source, const LoadOptions& options, double scale,
                  Surface& surface, LoadedMesh& loaded) {
   if (scale == 1.0) return;
   for (Vec3& vertex : surface.vertices) {
     vertex *= scale;
-    if (!vertex.allFinite()) {
+    if (!(vertex.cwiseAbs().maxCoeff() <= largest_coordinate)) {
       source.fail("scaled by " + number_text(scale) +
-                  " it has a coordinate that is not finite; check the scale");
+                  " it has a coordinate beyond 1e30; check the unit or the scale that was given");
     }
   }
   surface = weld(std::move(surface));
@@ -193,7 +195,7 @@ void scale_to_mm(const MeshSource& source, const LoadOptions& options, double sc
                            (options.unit.empty() ? "" : ", from " + options.unit + " to mm"));
 }
 
-/// Reports a unit that the file states unless it is read in that one.
+/// Warns of a unit that the file states if it is not the one used.
 void warn_of_unit(const CoordinateNotes& notes, const LoadOptions& options, double scale,
                   std::vector<std::string>& warnings) {
   if (!notes.millimetres || *notes.millimetres == scale) return;
@@ -238,7 +240,7 @@ std::optional<AnatomicalSpace> space_named(std::string_view text) noexcept {
 }
 
 void swap_ras_and_lps(Surface& surface) noexcept {
-  // From 0, so that no 0 becomes -0.
+  // Subtracted from 0, so that no 0 becomes -0.
   for (Vec3& v : surface.vertices) v = Vec3(0.0 - v.x(), 0.0 - v.y(), v.z());
 }
 
@@ -251,7 +253,7 @@ MeshSource::MeshSource(const std::filesystem::path& path) : name_(path.string())
   if (!std::filesystem::exists(status)) fail("there is no such file; check the name");
   if (std::filesystem::is_directory(status)) fail("is a directory; name a mesh file in it");
   if (!std::filesystem::is_regular_file(status))
-    fail("is not a regular file; copy what it gives to one");
+    fail("is not a regular file; copy its contents to one");
   if (!file_.is_open()) fail("cannot be read; check its permissions");
   if (size() == 0) fail("is empty; copy or export it again");
 }

@@ -11,13 +11,11 @@
 
 #include "../parallel.h"
 #include "keepout/error.h"
+#include "mesh_file.h"
 #include "weld_blocks.h"
 
 namespace keepout {
 namespace {
-
-// Fourth powers of lengths must stay finite and in range; no anatomy comes near.
-constexpr double largest_coordinate = 1e30;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -49,10 +47,10 @@ std::uint64_t next_id() noexcept {
   return ++last;
 }
 
-/// What is measured of some triangles.
+/// Measurements of some triangles.
 struct Extent {
   Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
-  double longest2 = 0.0;  // the longest edge's square
+  double longest2 = 0.0;  // square of the longest edge
 };
 
 Extent extent_of(const Surface& surface, std::size_t begin, std::size_t end) {

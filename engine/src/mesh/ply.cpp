@@ -22,21 +22,21 @@
 namespace keepout {
 namespace {
 
-// The values behind the header of a PLY file, one after the other: as text and as bytes. Each
-// function throws Error for a file that is damaged, or that ends too early.
+// The values after the header of a PLY file, one after another, as text and as bytes. Each function
+// throws Error for a file that is damaged or truncated.
 
 std::string cut_short(const PlyElement& element) {
   return "the file ends before its last " + in_quotes(element.name) +
          ", so it was cut short; copy or export it again";
 }
 
-/// An item a line, whose values are its words.
+/// The body as text: each line is an item, and its words are the values.
 class PlyText {
  public:
-  /// `lines` are at the end of the header.
+  /// `lines` must be at the end of the header.
   explicit PlyText(TextLines& lines) : lines_(lines) {}
 
-  /// Comes to the next item of an element, and to its end.
+  /// Begins and ends the next item of an element.
   void begin_item(const PlyElement& element, std::uint64_t item) {
     element_ = &element;
     item_ = item;
@@ -53,28 +53,28 @@ class PlyText {
     }
   }
 
-  /// The next value: a coordinate, or a length or an index.
+  /// Returns the next value: a coordinate, or a length or an index.
   double take_real(const PlyScalar& type) {
     const bool is_single = !type.whole && type.size == sizeof(float);
     return is_single ? lines_.number<float>(take_word()) : lines_.coordinate(take_word());
   }
   std::uint64_t take_whole(const PlyScalar&) { return lines_.whole_number(take_word()); }
 
-  /// Nothing: take_real() has looked at each coordinate.
+  /// Does nothing, because take_real() has checked each coordinate.
   void check_vertex(const Vec3&, std::uint64_t) const {}
 
-  /// Passes over values. What they are is no concern of ours.
+  /// Skips `count` values. They must be numbers of any value.
   void skip(const PlyScalar&, std::uint64_t count) {
     for (std::uint64_t i = 0; i < count; ++i) lines_.number<double>(take_word());
   }
 
-  /// Whether anything follows.
+  /// Returns true if the file has more values.
   bool has_more() { return lines_.next(); }
   void warn_of_open_end(std::vector<std::string>& warnings) const {
     lines_.warn_of_open_end(last_number_lost, warnings);
   }
 
-  /// Whether the coordinates are to be rounded to floats.
+  /// Returns true if the coordinates must be rounded to floats.
   bool is_of_floats() const { return lines_.has_only_floats(); }
 
   [[noreturn]] void fail(const std::string& what) const { lines_.fail(what); }
@@ -94,10 +94,10 @@ class PlyText {
   std::size_t used_ = 0;
 };
 
-/// Bytes of either order. The functions are those of PlyText.
+/// The body as bytes of either order, with the functions of PlyText.
 class PlyBytes {
  public:
-  /// `source` must outlive this.
+  /// `source` must outlive this object.
   PlyBytes(const MeshSource& source, const PlyHeader& header)
       : source_(source),
         swapped_((header.encoding == PlyEncoding::big_endian) !=
@@ -122,7 +122,7 @@ class PlyBytes {
   bool has_more() const { return left() > 0; }
   void warn_of_open_end(std::vector<std::string>&) const {}
   bool is_of_floats() const { return false; }
-  /// Throws Error with the item that is being read before `what`.
+  /// Throws Error with the present item before `what`.
   [[noreturn]] void fail(const std::string& what) const {
     source_.fail(in_quotes(element_->name) + " " + std::to_string(item_) + ": " + what);
   }
@@ -133,9 +133,9 @@ class PlyBytes {
                  " has a coordinate that is not finite; repair the mesh and export it again");
   }
 
-  // For items that are all of one size, and are read at once.
+  // For items that have all the same size, and are read at once.
 
-  /// Bytes from so many behind the next one on.
+  /// Returns `size` bytes, starting `behind` bytes after the next one.
   std::vector<char> copy(std::uint64_t behind, std::size_t size) const {
     std::vector<char> bytes(size);
     source_.read(position_ + behind, bytes.data(), size);
@@ -152,7 +152,7 @@ class PlyBytes {
   }
 
  private:
-  /// The next bytes, up to eight.
+  /// Returns the next bytes, up to eight.
   const char* take(std::size_t size) {
     constexpr std::uint64_t at_once = std::uint64_t{1} << 20;
     if (size > left()) fail(cut_short(*element_));
@@ -175,7 +175,7 @@ class PlyBytes {
   std::vector<char> buffer_;
 };
 
-/// How many bytes an item takes; nothing if it has lists.
+/// Returns the size of an item; nothing if it has lists. [bytes]
 std::optional<std::size_t> fixed_size(std::span<const PlyProperty> properties) {
   std::size_t size = 0;
   for (const PlyProperty& p : properties) {
@@ -185,14 +185,14 @@ std::optional<std::size_t> fixed_size(std::span<const PlyProperty> properties) {
   return size;
 }
 
-/// Where a property is in an item without lists before it.
+/// Returns the offset of a property in an item without lists before it. [bytes]
 std::size_t offset_of(const PlyElement& element, const PlyProperty* property) {
   const auto before = static_cast<std::size_t>(property - element.properties.data());
   return fixed_size(std::span(element.properties).first(before)).value_or(0);
 }
 
-/// Takes the surface out of a body: PlyText, or PlyBytes, whose items are mostly of one size and
-/// are then read on all processors.
+/// Reads the surface from a body: PlyText, or PlyBytes. Most items of PlyBytes have one size, and
+/// are read on all processors.
 template <class Body>
 class SurfaceReader {
  public:
@@ -212,7 +212,7 @@ class SurfaceReader {
       }
     }
     if (body_.is_of_floats()) mesh_.round_to_floats();
-    polygons_.cut_into(mesh_, source);  // only now: the vertices may stand after the faces
+    polygons_.cut_into(mesh_, source);  // last, because vertices may come after faces
     if (body_.has_more()) {
       mesh_.warnings.push_back("there is more in the file than its header declares: left out");
     }
@@ -247,7 +247,8 @@ class SurfaceReader {
     polygons_.end_polygon();
   }
 
-  /// All items of an element, if they are of one size and all there; else nothing, and false.
+  /// Reads all items of an element if they have one size and are complete. Otherwise reads nothing
+  /// and returns false.
   bool read_at_once(const PlyElement& element) {
     if (&element == layout_.face && layout_.corners != nullptr) return read_triangles(element);
     const std::optional<std::size_t> size = fixed_size(element.properties);
@@ -279,7 +280,7 @@ class SurfaceReader {
     });
   }
 
-  /// If all faces are triangles and nothing is wrong with them.
+  /// Like read_at_once(), for faces that are all valid triangles.
   bool read_triangles(const PlyElement& element) {
     const PlyScalar& count_type = *layout_.corners->count_type;
     const PlyScalar& corner_type = *layout_.corners->type;

@@ -40,7 +40,7 @@ PlyEncoding parse_encoding(const TextLines& lines) {
 PlyElement parse_element(const TextLines& lines, std::uint64_t file_size) {
   const auto words = lines.words();
   const std::uint64_t count = lines.whole_number(words[2]);
-  // Every item takes a byte or a line end, so more than this cannot be there.
+  // Every item takes a byte or a line end, so the file cannot have more items.
   if (count > file_size) {
     lines.fail("declares " + std::string(words[2]) + " " + in_quotes(words[1]) +
                ", more than the file has room for; the file is damaged, or was cut short");
@@ -51,14 +51,14 @@ PlyElement parse_element(const TextLines& lines, std::uint64_t file_size) {
 PlyProperty parse_property(const TextLines& lines) {
   const auto words = lines.words();
   if (words.size() == 3) return {std::string(words[2]), scalar(lines, words[1])};
-  if (words.size() != 5 || words[1] != "list") lines.fail("this property is not understood");
+  if (words.size() != 5 || words[1] != "list") lines.fail("unknown form of a property");
   const PlyProperty list{std::string(words[4]), scalar(lines, words[3]), scalar(lines, words[2])};
   if (!list.count_type->whole) lines.fail("the length of a list must be a whole number");
   return list;
 }
 
-/// Nothing if the header goes on behind the text, which is the beginning of a file up to the end of
-/// a line.
+/// Parses a header. Returns nothing if the header continues after the text, which is the beginning
+/// of a file up to a line end.
 std::optional<PlyHeader> parse_header(TextLines& lines, std::uint64_t file_size) {
   PlyHeader header;
   bool has_format = false;
@@ -87,7 +87,8 @@ std::optional<PlyHeader> parse_header(TextLines& lines, std::uint64_t file_size)
   return std::nullopt;
 }
 
-/// Takes a property for what it is named. Of two, one would be lost, whichever is taken.
+/// Chooses a property for its role. Throws Error if there is a second one, because it would be
+/// lost.
 void choose(const PlyProperty*& chosen, const PlyProperty& property, std::string_view name,
             const MeshSource& source) {
   if (chosen != nullptr) {
@@ -99,12 +100,12 @@ void choose(const PlyProperty*& chosen, const PlyProperty& property, std::string
 }  // namespace
 
 PlyHeader read_ply_header(const MeshSource& source) {
-  // Headers are short, but for their comments.
+  // Headers are short, except for their comments.
   for (std::uint64_t size = 1 << 16; size <= longest_header; size *= 4) {
     std::string beginning = source.contents(size);
     const bool is_all = beginning.size() == source.size();
     if (!is_all) {
-      if (beginning.back() == '\r') beginning.pop_back();  // it may be half of a line end
+      if (beginning.back() == '\r') beginning.pop_back();  // it may be half of a CRLF
       beginning.resize(beginning.find_last_of("\r\n") + 1);
       if (beginning.empty()) continue;
     }

@@ -10,10 +10,11 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-/// Ears take a time that grows with the third power of the corners.
+/// The time of ear clipping grows with the third power of the number of corners.
 constexpr std::size_t most_ear_corners = 1000;
 
-/// The corners as seen against their mean normal (Newell's), so that they run counter-clockwise.
+/// Returns the corners projected along their mean normal (Newell's), so that they run
+/// counter-clockwise.
 std::vector<Vec2> projected(std::span<const VertexId> polygon, std::span<const Vec3> vertices) {
   const Vec3& origin = vertices[polygon[0]];
   Vec3 normal = Vec3::Zero();
@@ -36,13 +37,13 @@ std::vector<Vec2> projected(std::span<const VertexId> polygon, std::span<const V
   return points;
 }
 
-/// Twice the area of a triangle, above 0 if it runs counter-clockwise.
+/// Returns twice the area of a triangle, positive if it runs counter-clockwise.
 double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Turns left at every corner, and around once: it goes to and fro along each axis no more than
-/// once.
+/// Returns true if the polygon turns left at every corner, and once around: it changes direction
+/// along each axis at most twice.
 bool is_convex(const std::vector<Vec2>& points) {
   const std::size_t n = points.size();
   int turns[2] = {0, 0};
@@ -61,7 +62,7 @@ bool is_convex(const std::vector<Vec2>& points) {
   return turns[0] <= 2 && turns[1] <= 2;
 }
 
-/// Whether the corner at place i of those left is an ear: convex, and none of the others in it.
+/// Returns true if the corner at place i of `left` is an ear: convex, without other corners inside.
 bool is_ear(const std::vector<Vec2>& points, const std::vector<std::size_t>& left, std::size_t i) {
   const std::size_t n = left.size();
   const Vec2& a = points[left[(i + n - 1) % n]];
@@ -86,8 +87,8 @@ std::vector<Vec2> without_doubled(const std::vector<Vec2>& points) {
   return distinct;
 }
 
-/// The place of a corner that can be cut off: one that equals the next one, else an ear.
-/// left.size() if there is none.
+/// Returns the place of a corner that can be cut off: one that equals the next one, or else an ear.
+/// Returns left.size() if there is no such corner.
 std::size_t place_to_cut(const std::vector<Vec2>& points, const std::vector<std::size_t>& left) {
   const std::size_t n = left.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -98,7 +99,8 @@ std::size_t place_to_cut(const std::vector<Vec2>& points, const std::vector<std:
   return i;
 }
 
-/// False, and nothing is appended, if the polygon is not convex and has too many corners.
+/// Cuts a polygon. Returns false, and appends no triangle, if the polygon is not convex and has too
+/// many corners.
 bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertices,
                  std::vector<Corners>& triangles) {
   if (polygon.size() == 3) {
@@ -108,7 +110,7 @@ bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertic
   const std::vector<Vec2> points = projected(polygon, vertices);
   std::vector<std::size_t> left(polygon.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
-  // Both sides of a doubled corner have no area, so a reflex one would pass for convex.
+  // Both triangles at a repeated corner have no area, so a reflex corner would pass as convex.
   if (!is_convex(without_doubled(points))) {
     if (polygon.size() > most_ear_corners) return false;
     while (left.size() > 3) {
@@ -145,7 +147,7 @@ void Polygons::end_polygon() {
 void Polygons::cut_into(MeshFile& mesh, const MeshSource& source) const {
   std::vector<Corners>& triangles = mesh.surface.triangles;
   const std::size_t count = triangles.size() + corners_.size() - 2 * ends_.size();
-  // Three vertices for each triangle must be countable.
+  // Three vertices for each triangle must have numbers.
   if (count > no_triangle / 3 || mesh.surface.vertices.size() >= no_triangle) {
     source.fail("has too many triangles to read; split or decimate it");
   }

@@ -10,14 +10,14 @@
 
 namespace keepout {
 
-/// The faces of a file as it has them, until all its vertices are known and they can be cut into
-/// triangles.
+/// The faces of a file as they were read, until all vertices are known and the faces can be cut
+/// into triangles.
 class Polygons {
  public:
-  /// The next corner of a polygon.
+  /// Adds the next corner of a polygon.
   void add_corner(VertexId vertex) { corners_.push_back(vertex); }
-  /// The same as a file has it, one of `vertices`, which are numbered from `first` on in the mesh.
-  /// If it is none, `place` fails.
+  /// Adds a corner by its number in the file, below `vertices`. These vertices are numbered from
+  /// `first` on in the mesh. Fails with place.fail() for a number that is out of range.
   template <class Place>
   void add_corner(std::uint64_t vertex, std::uint64_t vertices, std::uint64_t first,
                   const Place& place) {
@@ -27,28 +27,29 @@ class Polygons {
     }
     add_corner(static_cast<VertexId>(first + vertex));
   }
-  /// Like above, where the first vertex of the mesh is number 0 of the file.
+  /// Like above, for a file whose vertex 0 is the first vertex of the mesh.
   template <class Place>
   void add_corner(std::uint64_t vertex, std::uint64_t vertices, const Place& place) {
     add_corner(vertex, vertices, 0, place);
   }
 
-  /// Ends a polygon. One of fewer than three corners is left out.
+  /// Ends a polygon. Drops a polygon with fewer than three corners.
   void end_polygon();
 
-  /// Cuts each polygon into two triangles less than it has corners, wound as it is, and appends
-  /// them to the surface: a fan where it is convex, else ears (Meisters 1975), as seen along its
-  /// mean normal. A corner that equals the next one gets a degenerate triangle. What crosses itself
-  /// or has no area is cut somehow. Warns of what was left out.
+  /// Cuts each polygon with n corners into n - 2 triangles of the same winding, and appends them to
+  /// the surface. Convex polygons are cut as fans, others by ear clipping (Meisters 1975), seen
+  /// along their mean normal. A corner that equals the next one gets a degenerate triangle.
+  /// Polygons that cross themselves or have no area are cut in an unspecified way. Warns of
+  /// polygons that were left out.
   ///
-  /// Throws Error if the surface then has no triangles, if it has too many to be numbered, and for
-  /// a polygon that is not convex and has more than 1000 corners, as ears take a time that grows
-  /// with the third power of the corners.
+  /// Throws Error if the surface then has no triangles, or too many. Throws Error for a polygon
+  /// that is not convex and has more than 1000 corners, because the time of ear clipping grows with
+  /// the third power of the corners.
   void cut_into(MeshFile& mesh, const MeshSource& source) const;
 
  private:
   std::vector<VertexId> corners_;  // one polygon after the other
-  std::vector<std::size_t> ends_;  // of each in them
+  std::vector<std::size_t> ends_;  // the end of each polygon in corners_
   std::size_t left_out_ = 0;
 };
 

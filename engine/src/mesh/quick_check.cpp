@@ -17,34 +17,36 @@
 namespace keepout {
 namespace {
 
-// Where all edges have two triangles, wound alike, each edge is run along once either way. So edges
-// are dealt out over cells, and each cell sums up a hash of its edges, with the sign of the
-// direction: but by chance the sum is 0 in a cell without a fault. Only the edges of the other
-// cells are then gathered and looked at. That reads the triangles twice, and no memory but the
-// cells'.
+// If all edges have two triangles of consistent winding, the sides run along each edge once in both
+// directions. So the edges are distributed over cells by a hash. Each cell sums up the hashes of
+// its edges, with the sign of the direction. The sum is 0 in a cell without a fault, and only by
+// chance in a cell with one. Only the edges of cells with another sum are gathered and examined.
+// That reads the triangles twice, and needs only the memory of the cells.
 
-/// The lower vertex, and in the lower half of the bits the higher one.
+/// An edge: the lower vertex in the upper 32 bits, and the higher vertex in the lower 32 bits.
 using Edge = std::uint64_t;
 
-/// All bits for a side that runs from the lower vertex to the higher, none for the other way.
+/// All bits set for a side from the lower vertex to the higher, and no bits for the other
+/// direction.
 using Upwards = std::uint64_t;
 
-/// Not linear: edges of a regular grid must not cancel out. (The finalizer of splitmix64.)
+/// Not linear, so that edges of a regular grid do not cancel out. (The finalizer of splitmix64.)
 constexpr std::uint64_t hash_of(Edge edge) noexcept {
   edge = (edge ^ (edge >> 30)) * 0xbf58476d1ce4e5b9u;
   edge = (edge ^ (edge >> 27)) * 0x94d049bb133111ebu;
   return edge ^ (edge >> 31);
 }
 
-/// Cells for a mesh: about twenty triangles each, and no more than a core's own cache holds.
+/// Returns the number of cells: about twenty triangles each, and at most what fits in a core's own
+/// cache.
 std::size_t cell_count(std::size_t triangles) noexcept {
   return std::bit_ceil(std::clamp<std::size_t>(triangles / 20, 64, 65536));
 }
 
-/// Calls visit(own, edge, upwards) for each side of the triangles, on as many threads, each of
-/// which has an `own` that begins as `empty`; and gather(own) for one of these after the other.
-/// Which way a side runs is as good as random, so no branch depends on it: they would take most of
-/// the time.
+/// Calls visit(own, edge, upwards) for each side of the triangles, on up to `threads` threads. Each
+/// thread has its own copy of `empty`, and finally calls gather(own), one after another. The
+/// direction of a side is as good as random, so no branch depends on it: mispredictions would take
+/// most of the time.
 template <class Own, class Visit, class Gather>
 void share_sides(const Mesh& mesh, unsigned threads, const Own& empty, const Visit& visit,
                  const Gather& gather) {
@@ -62,7 +64,7 @@ void share_sides(const Mesh& mesh, unsigned threads, const Own& empty, const Vis
   });
 }
 
-/// The sum of each cell.
+/// Returns the sum of each cell.
 std::vector<std::uint64_t> sums_of_cells(const Mesh& mesh, std::size_t cells, unsigned threads) {
   std::vector<std::uint64_t> sums(cells, 0);
   share_sides(
@@ -70,7 +72,7 @@ std::vector<std::uint64_t> sums_of_cells(const Mesh& mesh, std::size_t cells, un
       [cells](std::vector<std::uint64_t>& own, Edge edge, Upwards upwards) {
         const std::uint64_t hash = hash_of(edge);
         own[hash & (cells - 1)] +=
-            (hash ^ upwards) - upwards;  // the negative, where it is all bits
+            (hash ^ upwards) - upwards;  // -hash if all bits of `upwards` are set
       },
       [&](const std::vector<std::uint64_t>& own) {
         for (std::size_t i = 0; i < cells; ++i) sums[i] += own[i];
@@ -81,7 +83,7 @@ std::vector<std::uint64_t> sums_of_cells(const Mesh& mesh, std::size_t cells, un
 /// A side of a triangle: its edge, and whether it runs upwards.
 using Side = std::pair<Edge, Upwards>;
 
-/// The sides in the cells whose sum is not 0, in order.
+/// Returns the sides in the cells with a sum other than 0, in order.
 std::vector<Side> suspects(const Mesh& mesh, const std::vector<std::uint64_t>& sums,
                            unsigned threads) {
   std::vector<bool> is_suspect(sums.size());
@@ -97,17 +99,22 @@ std::vector<Side> suspects(const Mesh& mesh, const std::vector<std::uint64_t>& s
   return all;
 }
 
-/// A number as people write it, three digits: 0.24, 3600.
+/// Formats a number with three digits: 0.24, 3600.
 std::string short_number(double value) {
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), value < 1000.0 ? "%.3g" : "%.0f", value);
   return text.data();
 }
 
-/// What its size says of the unit; empty for one that organs have.
+/// What is odd about its size, which mostly tells of the unit; empty for one that organs have.
 std::string doubt_of_unit(const Mesh& mesh, double scale) {
   const double extent = mesh.bounds().size().maxCoeff();
   if (extent >= MeshFindings::meters_below && extent <= MeshFindings::micrometers_above) return {};
+  if (extent == 0.0) {
+    return "all vertices coincide" +
+           (scale == 1.0 ? std::string() : " after they were scaled by " + short_number(scale)) +
+           ", so there is no surface: export the mesh again";
+  }
   const std::string size = "the mesh is " + short_number(extent) + " mm across";
   if (scale != 1.0) {
     return size + " after it was scaled by " + short_number(scale) +
@@ -122,8 +129,8 @@ std::string doubt_of_unit(const Mesh& mesh, double scale) {
     text += short_number(extent * guess.millimetres) + " mm across";
     joint = ", and in ";
   }
-  return text + ": give the unit of the file, for example --unit " + example + " or unit=\"" +
-         example + "\", unless all your lengths are in its unit";
+  return text + ": scale it to mm, or give the unit of the file, for example --unit " + example +
+         " or unit=\"" + example + "\", unless all your lengths are in its unit";
 }
 
 /// Returns true if the triangles of a closed surface face inward: its signed volume is below 0.
@@ -170,7 +177,7 @@ std::span<const UnitGuess> length_units() noexcept {
 }
 
 std::vector<UnitGuess> other_units(double extent) {
-  // Sizes of organs and bones, and one from which on millimeters are not in doubt. [mm]
+  // Sizes of organs and bones, and the least size at which millimeters are certain. [mm]
   constexpr double smallest = 20.0, largest = 600.0, usual = 30.0;
   std::vector<UnitGuess> guesses;
   if (extent >= usual && extent <= MeshFindings::micrometers_above) return guesses;

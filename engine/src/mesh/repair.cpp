@@ -11,7 +11,8 @@
 namespace keepout {
 namespace {
 
-/// Begins at the lowest vertex: equal for triangles of the same vertices and winding.
+/// Rotates the corners so that the lowest vertex is first. The result is equal for triangles with
+/// the same vertices and winding.
 Corners rotated(Corners c) noexcept {
   std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
   return c;
@@ -22,7 +23,7 @@ Corners sorted(Corners c) noexcept {
   return c;
 }
 
-/// Removes the triangles of a mask.
+/// Removes the triangles that are marked in `is_faulty`.
 void remove(Surface& surface, const std::vector<bool>& is_faulty) {
   std::size_t kept = 0;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {

@@ -19,18 +19,19 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> wo
 
 Vec3 read_obj_vertex(TextLines& lines) {
   const Words words = lines.words();
-  // A weight; with more numbers, they are a colour.
+  // Five words have a weight. Six or more have a color.
   if (words.size() == 5 && lines.number<double>(words[4]) != 1.0) {
     lines.fail("weighted vertices are not read; export a plain mesh");
   }
-  // Else a lost line end would take the next vertex with it, and shift the numbers of all others.
+  // All words must be numbers. A lost line end would otherwise hide the next vertex and shift the
+  // numbers of the others.
   for (const std::string_view word : words.subspan(std::min<std::size_t>(words.size(), 4))) {
     lines.number<double>(word);
   }
   return lines.vertex(1);
 }
 
-/// Statements that say nothing of where the surface is.
+/// Returns true for statements that do not change the surface.
 bool is_harmless(std::string_view statement) noexcept {
   return is_one_of(statement,
                    {"vn", "vt", "usemtl", "s", "g", "o", "mtllib", "vp", "mg", "bevel", "lod",
@@ -45,7 +46,7 @@ void warn_of_unknown(std::uint64_t count, const std::string& first,
                      ": if the file is damaged, part of the mesh is missing");
 }
 
-/// The vertex that a corner such as 7, -1, 7/2, 7//3 or 7/2/3 names, counted from 0.
+/// Returns the vertex of a corner such as 7, -1, 7/2, 7//3 or 7/2/3, counted from 0.
 VertexId vertex_of(const TextLines& lines, std::string_view corner, std::uint64_t vertices) {
   std::string_view index = corner.substr(0, corner.find('/'));
   const bool from_the_end = index.starts_with('-');
@@ -60,7 +61,7 @@ VertexId vertex_of(const TextLines& lines, std::string_view corner, std::uint64_
 
 // OFF
 
-/// Takes the keyword, which may be missing, and leaves the words after it on its line.
+/// Returns the words after the keyword on its line. The keyword may be missing.
 Words after_keyword(const TextLines& lines) {
   const Words words = lines.words();
   std::string_view keyword = words[0];
@@ -101,12 +102,12 @@ bool is_keyword(std::string_view word, std::string_view lower) noexcept {
   });
 }
 
-/// The words of the text one after the other, for line ends mean nothing between facets.
+/// The words of the text one after another. Line ends have no meaning within a solid.
 class StlWords {
  public:
   explicit StlWords(TextLines& lines) : lines_(lines) {}
 
-  /// The next word, which stays the next; empty at the end of the text.
+  /// Returns the next word without taking it; empty at the end of the text.
   std::string_view peek() {
     if (used_ == lines_.words().size()) {
       used_ = 0;
@@ -131,7 +132,7 @@ class StlWords {
     return word;
   }
 
-  /// The rest of the line behind a keyword, which names the solid.
+  /// Returns the rest of the line after a keyword, which is the name of the solid.
   std::string name_after(std::string_view keyword) {
     const std::string_view word = expect(keyword);
     used_ = lines_.words().size();
@@ -146,7 +147,7 @@ class StlWords {
 void read_facet(StlWords& words, TextLines& lines, Surface& surface) {
   words.expect("facet");
   words.expect("normal");
-  // Normals are computed from the corners; files are full of wrong ones, and of nan.
+  // Normals are ignored, because files often have wrong ones, or NaN.
   for (int i = 0; i < 3; ++i) words.take();
   words.expect("outer");
   words.expect("loop");
@@ -246,7 +247,7 @@ MeshFile read_off(const MeshSource& source) {
     mesh.warnings.push_back("there is more in the file than its header declares, from line " +
                             std::to_string(lines.line()) + " on: left out");
   }
-  while (lines.next()) continue;  // for their comments
+  while (lines.next()) continue;  // reads their comments
   lines.warn_of_open_end(last_number_lost, mesh.warnings);
   mesh.comments = lines.take_comments();
   return mesh;

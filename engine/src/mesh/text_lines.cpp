@@ -13,7 +13,7 @@ namespace {
 constexpr bool is_line_end(char c) noexcept { return c == '\n' || c == '\r'; }
 constexpr bool is_space(char c) noexcept { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 
-/// Takes all of a word for a number; one that its type cannot hold is a result_out_of_range.
+/// Parses a whole word as a number. Returns result_out_of_range if the type cannot represent it.
 template <class Number>
 std::errc parse(std::string_view word, Number& value) {
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
@@ -21,7 +21,7 @@ std::errc parse(std::string_view word, Number& value) {
   return end == word.data() + word.size() ? error : std::errc::invalid_argument;
 }
 
-/// A unit of a numeral's last digit.
+/// Returns the value of a unit in the last place of a numeral.
 double last_place(std::string_view numeral) {
   double unit = 1.0;
   bool is_behind_point = false;
@@ -124,7 +124,7 @@ Real TextLines::number(std::string_view word) const {
   Real value = 0;
   std::errc error = parse(word, value);
   if (error == std::errc::result_out_of_range) {
-    long double wide = 0;  // tells what is next to 0 from what is next to infinity
+    long double wide = 0;  // distinguishes numbers near 0 from huge ones
     error = parse(word, wide);
     value = static_cast<Real>(wide);
   }
@@ -145,7 +145,7 @@ template double TextLines::number(std::string_view) const;
 double TextLines::coordinate(std::string_view word) {
   const double value = number<double>(word);
   const double off = std::abs(static_cast<double>(static_cast<float>(value)) - value);
-  constexpr double half = 0.5 * (1.0 + 1e-6);  // with what doubles are rounded by
+  constexpr double half = 0.5 * (1.0 + 1e-6);  // plus the rounding of doubles
   if (off > 0.0 && has_only_floats_ && !(off <= half * last_place(word))) has_only_floats_ = false;
   return value;
 }

@@ -14,12 +14,12 @@ namespace keepout {
 /// The cells of PolyData that have an area.
 enum class VtkCellKind { polygons, strips };
 
-/// Takes the faces out of the cells of PolyData.
+/// Extracts the faces from the cells of PolyData.
 class VtkCells {
  public:
-  /// `corners`: of all cells, one after the other; `ends`: of each cell in them. Each corner is one
-  /// of `vertices`, which are numbered from `first` on in the mesh. Fails by place.fail() if the
-  /// numbers do not fit together.
+  /// Adds cells. `corners`: of all cells, one after another. `ends`: the end of each cell in
+  /// `corners`. Each corner is one of `vertices`, which are numbered from `first` on in the mesh.
+  /// Fails with place.fail() if the numbers are inconsistent.
   template <class Place>
   void add(VtkCellKind kind, std::span<const std::uint64_t> ends,
            std::span<const std::uint64_t> corners, std::uint64_t first, std::uint64_t vertices,
@@ -42,10 +42,11 @@ class VtkCells {
     }
   }
 
-  /// Counts vertices and lines that are not read.
+  /// Counts vertices and lines, which are not read.
   void leave_out(std::uint64_t cells) noexcept { left_out_ += cells; }
 
-  /// Like Polygons::cut_into(), once all vertices are in the mesh. Warns of what was left out.
+  /// Like Polygons::cut_into(), once all vertices are in the mesh. Warns of cells that were left
+  /// out.
   void cut_into(MeshFile& mesh, const MeshSource& source) const {
     polygons_.cut_into(mesh, source);
     if (left_out_ > 0) {
@@ -65,7 +66,7 @@ class VtkCells {
       polygons_.end_polygon();
       return;
     }
-    // Every second triangle of a strip has its first two corners swapped, so that all are wound
+    // In every second triangle of a strip the first two corners are swapped, so that all are wound
     // alike.
     for (std::size_t i = 0; i + 2 < cell.size(); ++i) {
       add_corner(cell[i + i % 2]);

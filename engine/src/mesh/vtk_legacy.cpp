@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Source of the format: "VTK File Formats", Kitware; METADATA and the arrays of version 5 as VTK 9
-// writes them.
+// Source of the format: "VTK File Formats", Kitware. METADATA and the arrays of version 5 are as
+// VTK 9 writes them.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -19,8 +19,8 @@ namespace {
 
 using NamedType = std::pair<std::string_view, NumberType>;
 
-/// Types by name. VTK writes ids of this type as int, and long as its own machine has it, which is
-/// taken for one of 64 bits.
+/// Types by name. VTK writes ids of vtkIdType as int. The size of long depends on the machine that
+/// wrote it; 64 bits are assumed.
 constexpr std::array<NamedType, 14> types{{{"char", {1, true, true}},
                                            {"signed_char", {1, true, true}},
                                            {"unsigned_char", {1, true, false}},
@@ -36,14 +36,14 @@ constexpr std::array<NamedType, 14> types{{{"char", {1, true, true}},
                                            {"float", {4, false, true}},
                                            {"double", {8, false, true}}}};
 
-/// Words that begin a section, or an array of one.
+/// Words that begin a section, or an array in a section.
 constexpr std::array<std::string_view, 10> section_words{
     "points", "polygons",  "triangle_strips", "vertices", "lines",
     "field",  "cell_data", "point_data",      "offsets",  "connectivity"};
 
 constexpr const char* cut_short = ", so it was cut short; copy or export it again";
 
-/// Reads a legacy VTK file: lines with keywords, and numbers behind them, as text or as bytes in
+/// Reads a legacy VTK file: lines with keywords, each followed by numbers, as text or as bytes in
 /// big-endian order.
 class LegacyVtk {
  public:
@@ -69,7 +69,7 @@ class LegacyVtk {
       } else if (key == "vertices" || key == "lines") {
         pass_over_cells();
       } else if (key == "cell_data" || key == "point_data") {
-        break;  // the surface is above
+        break;  // the surface comes before
       } else {
         lines_.fail("a line that is not understood: " + in_quotes(section_) +
                     "; the file is damaged, or no legacy VTK file");
@@ -107,7 +107,7 @@ class LegacyVtk {
     }
   }
 
-  /// Moves on to the next line of a section, over METADATA; false at the end of the file.
+  /// Advances to the next line of a section, past METADATA. Returns false at the end of the file.
   bool next_section() {
     while (lines_.next()) {
       if (lower(lines_.words()[0]) != "metadata" || pass_over_metadata()) return true;
@@ -115,10 +115,10 @@ class LegacyVtk {
     return false;
   }
 
-  /// Moves over METADATA, which ends with a blank line. True if it ended without one: the current
-  /// line begins the next section.
+  /// Skips METADATA, which ends with a blank line. Returns true if it ended without one: then the
+  /// current line begins the next section.
   bool pass_over_metadata() {
-    std::uint64_t names = 0;  // that follow, one a line, which is blank if a component has none
+    std::uint64_t names = 0;  // names to follow, one a line, blank if a component has no name
     while (lines_.left() > 0) {
       lines_.next_line();
       const auto words = lines_.words();
@@ -137,7 +137,7 @@ class LegacyVtk {
     return false;
   }
 
-  /// The word of the section's line, which must have that many.
+  /// Returns a word of the section's line, which must have `count` words.
   std::string_view word(std::size_t i, std::size_t count) const {
     if (lines_.words().size() != count) {
       lines_.fail(in_quotes(section_) + " needs " + std::to_string(count - 1) +
@@ -155,15 +155,15 @@ class LegacyVtk {
   }
 
   void check_room(std::uint64_t count, const NumberType& type) const {
-    // In a text a number takes a digit, and something that parts it from the next.
+    // In text, a number takes a digit and a separator.
     const std::uint64_t most = is_binary_ ? lines_.left() / type.size : (lines_.left() + 1) / 2;
     if (count <= most) return;
     lines_.fail(in_quotes(section_) + " declares " + std::to_string(count) +
                 " numbers, more than the file has room for; the file is damaged, or was cut short");
   }
 
-  /// Calls take(bytes, word) for so many numbers of a section, with the bytes of each in a binary
-  /// file and its word in a text.
+  /// Calls take(bytes, word) for `count` numbers of a section. In a binary file `bytes` has the
+  /// number, and in a text `word` has it.
   template <class Take>
   void for_each_number(std::uint64_t count, const NumberType& type, const Take& take) {
     check_room(count, type);
@@ -220,7 +220,7 @@ class LegacyVtk {
     has_points_ = true;
     components_ = 3;
     const bool is_single = !type.whole && type.size == sizeof(float);
-    check_room(count, type);  // else 3 * count might be too large to be counted
+    check_room(count, type);  // so that 3 * count does not overflow
     std::vector<Vec3>& points = mesh_.surface.vertices;
     Eigen::Index axis = 0;
     for_each_number(3 * count, type, [&](const char* bytes, std::string_view word) {
@@ -237,7 +237,7 @@ class LegacyVtk {
     });
   }
 
-  /// Offsets and corners, from version 5 on.
+  /// Reads an array of offsets or corners, from version 5 on.
   std::vector<std::uint64_t> read_array(std::string_view name, std::uint64_t count) {
     if (!next_section() || lower(lines_.words()[0]) != name || lines_.words().size() != 2) {
       lines_.fail("expected " + in_quotes(name) +
@@ -252,14 +252,14 @@ class LegacyVtk {
     const std::uint64_t first = lines_.whole_number(word(1, 3));
     const std::uint64_t second = lines_.whole_number(word(2, 3));
     if (major_ >= 5) {
-      if (first == 0) return;  // then VTK writes no arrays
+      if (first == 0) return;  // VTK then writes no arrays
       std::vector<std::uint64_t> offsets = read_array("offsets", first);
       if (offsets[0] != 0) lines_.fail("the first offset is not 0; the file is damaged");
       offsets.erase(offsets.begin());
       add_cells(kind, offsets, read_array("connectivity", second));
       return;
     }
-    // The cells one after the other, each with the number of its corners before it.
+    // Each cell is the number of its corners, followed by the corners.
     const std::vector<std::uint64_t> numbers = wholes(second, {4, true, true});
     std::vector<std::uint64_t> ends;
     std::vector<std::uint64_t> corners;
@@ -286,7 +286,7 @@ class LegacyVtk {
     cells_.add(kind, ends, corners, 0, mesh_.surface.vertices.size(), lines_);
   }
 
-  /// Vertices and lines, which have no area.
+  /// Skips vertices and lines, which have no area.
   void pass_over_cells() {
     const std::uint64_t first = lines_.whole_number(word(1, 3));
     const std::uint64_t second = lines_.whole_number(word(2, 3));
@@ -300,7 +300,7 @@ class LegacyVtk {
     }
   }
 
-  /// Passes over the arrays of a field, but for the anatomical space.
+  /// Skips the arrays of a field, except the anatomical space.
   void read_field() {
     const std::uint64_t arrays = lines_.whole_number(word(2, 3));
     for (std::uint64_t i = 0; i < arrays; ++i) {
@@ -310,7 +310,7 @@ class LegacyVtk {
       const std::string name = lower(section_);
       const std::uint64_t components = lines_.whole_number(word(1, 4));
       const std::uint64_t tuples = lines_.whole_number(word(2, 4));
-      if (components > 0 && tuples > 8 * lines_.left() / components) {  // a byte may hold 8 bits
+      if (components > 0 && tuples > 8 * lines_.left() / components) {  // a byte may have 8 bits
         lines_.fail("the field " + in_quotes(section_) +
                     " is larger than the file; the file is damaged, or was cut short");
       }
@@ -319,7 +319,7 @@ class LegacyVtk {
     }
   }
 
-  /// Passes over the values of an array of a field, unless they name the anatomical space.
+  /// Skips the values of an array of a field, unless they name the anatomical space.
   void pass_over_values(std::uint64_t count, const std::string& type, bool is_space) {
     if (type == "string" || type == "utf8_string") {
       for (std::uint64_t i = 0; i < count; ++i) {
@@ -336,8 +336,8 @@ class LegacyVtk {
     }
   }
 
-  /// A string of a binary file. The two highest bits of its first byte say how many bytes its
-  /// length takes.
+  /// Returns a string of a binary file. The two highest bits of its first byte give the size of its
+  /// length.
   std::string_view take_string() {
     const auto take = [&](std::uint64_t count) {
       if (count > lines_.left())
@@ -359,9 +359,9 @@ class LegacyVtk {
   TextLines lines_;
   MeshFile mesh_;
   VtkCells cells_;
-  std::string section_;           // what is read, for messages
-  std::uint64_t components_ = 1;  // of a tuple of the array that was read last
-  int major_ = 0;                 // of the version
+  std::string section_;           // the present section, for messages
+  std::uint64_t components_ = 1;  // of the last array
+  int major_ = 0;                 // of the format
   bool is_binary_ = false;
   bool has_points_ = false;
 };

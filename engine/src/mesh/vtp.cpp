@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,7 +34,7 @@ constexpr std::array<NamedType, 10> types{{{"Int8", {1, true, true}},
 
 constexpr const char* cut_short = "; the file is damaged, or was cut short";
 
-/// The six bits that a character of base64 stands for; -1 for any other.
+/// Returns the six bits of a character of base64, or -1 for any other.
 int bits_of(char c) noexcept {
   if (c >= 'A' && c <= 'Z') return c - 'A';
   if (c >= 'a' && c <= 'z') return c - 'a' + 26;
@@ -41,8 +42,8 @@ int bits_of(char c) noexcept {
   return c == '+' ? 62 : c == '/' ? 63 : -1;
 }
 
-/// Part of a file, as it is or in base64, from which bytes are read one after the other. Padding
-/// may stand within base64, as VTK encodes counts and compressed data apart.
+/// A part of a file, raw or in base64, that is read byte by byte. Base64 may contain padding,
+/// because VTK encodes counts and compressed data separately.
 class ByteStream {
  public:
   ByteStream(const MeshSource& source, const std::string& array, std::uint64_t begin,
@@ -54,16 +55,16 @@ class ByteStream {
         end_(end),
         is_base64_(is_base64) {}
 
-  /// At most so many bytes follow.
+  /// Returns an upper bound of the bytes left.
   std::uint64_t left() const noexcept {
     const std::uint64_t left = end_ - position_ + (buffer_.size() - used_);
     return is_base64_ ? left / 4 * 3 + 3 : left;
   }
 
-  /// True if nothing but blanks follows.
+  /// Returns true if only blanks follow.
   bool is_at_end() { return is_base64_ ? decoded_ == 0 && !find_character() : position_ == end_; }
 
-  /// So many bytes of the file were used.
+  /// Returns the number of bytes of the file that were used.
   std::uint64_t taken() const noexcept { return position_ - begin_ - (buffer_.size() - used_); }
 
   void read(char* to, std::uint64_t size) {
@@ -79,7 +80,7 @@ class ByteStream {
     }
   }
 
-  /// A count before binary data.
+  /// Reads a count before binary data.
   std::uint64_t read_count(const VtpDocument& document) {
     std::array<char, 8> bytes;
     read(bytes.data(), document.count_size);
@@ -93,7 +94,7 @@ class ByteStream {
   }
 
  private:
-  /// Moves on to the next character that is no blank; false if there is none.
+  /// Advances to the next character that is not a blank. Returns false if there is no other.
   bool find_character() {
     constexpr std::uint64_t at_once = std::uint64_t{1} << 16;
     constexpr std::string_view blanks = " \n\r\t";
@@ -114,7 +115,7 @@ class ByteStream {
     return buffer_[used_++];
   }
 
-  /// Four characters stand for three bytes, or fewer if they end with '='.
+  /// Decodes four characters to three bytes, or fewer if they end with '='.
   void decode_group() {
     std::uint32_t bits = 0;
     std::size_t padding = 0;
@@ -129,7 +130,7 @@ class ByteStream {
       bits = bits << 6 | static_cast<std::uint32_t>(is_padding ? 0 : six);
     }
     decoded_ = 3 - padding;
-    // The group's bytes are its last ones, so that the next one is always decoded_ from the end.
+    // The bytes are at the end of group_, so the next one is always decoded_ from the end.
     for (std::size_t i = 0; i < decoded_; ++i) {
       group_[padding + i] = static_cast<char>(bits >> (16 - 8 * i) & 0xffU);
     }
@@ -144,7 +145,7 @@ class ByteStream {
   std::vector<char> buffer_;  // of base64
   std::size_t used_ = 0;      // of the buffer
   std::array<char, 3> group_{};
-  std::size_t decoded_ = 0;  // bytes of the group that were not read yet
+  std::size_t decoded_ = 0;  // bytes of the group that are not read yet
 };
 
 [[noreturn]] void refuse_surplus(const ByteStream& stream, std::uint64_t most) {
@@ -162,6 +163,29 @@ std::vector<char> read_plain(ByteStream& stream, const VtpDocument& document, st
   std::vector<char> bytes(static_cast<std::size_t>(size));
   stream.read(bytes.data(), bytes.size());
   return bytes;
+}
+
+/// Appends what a block unpacks to. Returns false unless these are `size` bytes. Takes memory as
+/// the data come: a false size alone takes none.
+bool unpack(std::vector<char>& block, std::uint64_t size, std::vector<char>& bytes) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
+  stream.next_in = reinterpret_cast<Bytef*>(block.data());
+  stream.avail_in = static_cast<uInt>(block.size());
+  int status = Z_OK;
+  std::uint64_t left = size;
+  while (status == Z_OK) {
+    std::array<char, std::size_t{1} << 14> part;
+    stream.next_out = reinterpret_cast<Bytef*>(part.data());
+    stream.avail_out = part.size();
+    status = inflate(&stream, Z_NO_FLUSH);
+    const std::size_t got = part.size() - stream.avail_out;
+    if (got > left) break;
+    left -= got;
+    bytes.insert(bytes.end(), part.begin(), part.begin() + static_cast<std::ptrdiff_t>(got));
+  }
+  inflateEnd(&stream);
+  return status == Z_STREAM_END && left == 0;
 }
 
 /// Reads blocks of data, each compressed by zlib. Unpacks none if all have more than `most` bytes:
@@ -192,18 +216,12 @@ std::vector<char> read_compressed(ByteStream& stream, const VtpDocument& documen
   }
   std::vector<char> block;
   for (std::size_t b = 0; b < packed.size(); ++b) {
-    const std::uint64_t unpacked = unpacked_size(b);
     if (packed[b] > stream.left()) {
       stream.fail("block " + std::to_string(b) + " has an impossible size" + cut_short);
     }
     block.resize(static_cast<std::size_t>(packed[b]));
     stream.read(block.data(), block.size());
-    const std::size_t before = bytes.size();
-    bytes.resize(before + static_cast<std::size_t>(unpacked));
-    uLongf got = unpacked;
-    const int status = uncompress(reinterpret_cast<Bytef*>(bytes.data() + before), &got,
-                                  reinterpret_cast<const Bytef*>(block.data()), block.size());
-    if (status != Z_OK || got != unpacked) {
+    if (!unpack(block, unpacked_size(b), bytes)) {
       stream.fail("block " + std::to_string(b) + " cannot be unpacked" + cut_short);
     }
   }
@@ -216,8 +234,8 @@ class VtpArrays {
   VtpArrays(const MeshSource& source, const VtpDocument& document)
       : source_(source), document_(document), unread_(source.size()) {}
 
-  /// The numbers of an array in which `count` belong. There may be others in a text, and fewer
-  /// elsewhere: the caller must check.
+  /// Returns the numbers of an array that should have `count`. Text may have more, and other
+  /// formats fewer: the caller must check.
   std::vector<double> reals(const VtpArray& array, std::uint64_t count) {
     const NumberType& type = type_of(array);
     std::vector<double> numbers;
@@ -240,7 +258,7 @@ class VtpArrays {
     return numbers;
   }
 
-  /// True if all real numbers so far are floats, or may have been printed from floats.
+  /// Returns true if all real numbers so far are floats, or may have been printed from floats.
   bool has_only_floats() const noexcept { return has_only_floats_; }
 
   /// Like reals().
@@ -265,7 +283,7 @@ class VtpArrays {
     return numbers;
   }
 
-  /// The strings of an array, each of which ends with a NUL. As text, each of their characters is a
+  /// Returns the strings of an array, each of which ends with a NUL. In text, each character is a
   /// number.
   std::vector<std::string> strings(const VtpArray& array) {
     std::string text;
@@ -289,7 +307,7 @@ class VtpArrays {
     return strings;
   }
 
-  /// True if the array has no numbers.
+  /// Returns true if the array has no numbers.
   bool is_empty(const VtpArray& array) const {
     if (array.format == VtpArray::Format::text) return !text_of(array).next();
     ByteStream stream = stream_of(array);
@@ -329,7 +347,7 @@ class VtpArrays {
     ByteStream stream = stream_of(array);
     std::vector<char> bytes = document_.is_compressed ? read_compressed(stream, document_, most)
                                                       : read_plain(stream, document_, most);
-    // Behind a count of 0, VTK writes sizes of blocks that are not there.
+    // After a count of 0, VTK writes the sizes of blocks that do not exist.
     if (array.format == VtpArray::Format::base64 && !bytes.empty() && !stream.is_at_end()) {
       fail(array, "has more base64 than the " + std::to_string(bytes.size()) +
                       " bytes that it declares; the file is damaged");
@@ -351,11 +369,12 @@ class VtpArrays {
 
   const MeshSource& source_;
   const VtpDocument& document_;
-  std::uint64_t unread_;  // bytes of the file: many arrays at one place would take any memory
+  std::uint64_t unread_;  // bytes of the file that no array has used; many arrays at one place
+                          // could take all memory
   bool has_only_floats_ = true;
 };
 
-/// Fails if an array holds anything although its Piece declares a `count` of 0, or none.
+/// Fails if an array has numbers although its Piece declares a `count` of 0 or no count.
 void check_is_empty(const std::optional<VtpArray>& array, const std::string& count,
                     const VtpArrays& arrays) {
   if (!array || arrays.is_empty(*array)) return;
@@ -420,7 +439,7 @@ MeshFile read_vtp(const MeshSource& source) {
     add_cells(VtkCellKind::strips, piece.strips, first, piece.points, arrays, source, cells);
     cells.leave_out(piece.left_out);
   }
-  // Pieces share the vertices of a seam, so all pieces are rounded, or none.
+  // Pieces share the vertices of a seam, so either all pieces are rounded, or none.
   if (arrays.has_only_floats()) mesh.round_to_floats();
   cells.cut_into(mesh, source);
   return mesh;

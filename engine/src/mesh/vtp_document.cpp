@@ -20,7 +20,7 @@ using namespace std::string_view_literals;
 
 constexpr const char* cut_short = "; the file is damaged, or was cut short";
 
-/// Listens to Expat while it reads the document.
+/// Receives the elements of the document from Expat.
 class VtpListener {
  public:
   VtpListener(const MeshSource& source, XML_Parser parser) : source_(source), parser_(parser) {
@@ -89,7 +89,7 @@ class VtpListener {
     return {};
   }
 
-  /// 0 where the attribute is missing.
+  /// Returns the value of an attribute, or 0 if it is missing.
   std::uint64_t count(Attributes attributes, std::string_view name) const {
     const std::string_view text = attribute(attributes, name);
     std::uint64_t value = 0;
@@ -105,7 +105,7 @@ class VtpListener {
   }
 
   void start_element(std::string_view name, Attributes attributes) {
-    end_array();  // an array may have elements behind its numbers
+    end_array();  // an array may have elements after its numbers
     if (parents_.empty()) {
       start_file(name, attributes);
     } else if (name == "Piece") {
@@ -153,7 +153,7 @@ class VtpListener {
     }
   }
 
-  /// Adds an array to the document; returns nullptr if it is not of interest.
+  /// Adds an array to the document. Returns nullptr if the array is not needed.
   VtpArray* add_array(std::string_view name, std::string_view type) {
     const std::string_view parent = parents_.back();
     if (parent == "FieldData") {
@@ -180,6 +180,10 @@ class VtpListener {
     const std::string_view type = attribute(attributes, "type");
     VtpArray* const added = add_array(name, type);
     if (added == nullptr) return;
+    const std::string_view components = attribute(attributes, "NumberOfComponents");
+    if (parents_.back() == "Points" && !components.empty() && components != "3") {
+      fail("points have 3 components, not " + in_quotes(components) + "; check the export");
+    }
     VtpArray& array = *added;
     array.name = parents_.back() + " " + std::string(name);
     array.type = type;
@@ -208,7 +212,8 @@ class VtpListener {
     open_ = nullptr;
   }
 
-  /// They begin behind the first underscore. Checks that nothing is missing at the end.
+  /// Finds the appended data, which begin after the first underscore. Checks that the end of the
+  /// file is there.
   void find_appended_data() {
     constexpr std::uint64_t blanks = 64;
     const std::uint64_t ending = std::min(blanks, source_.size());
@@ -230,8 +235,8 @@ class VtpListener {
   const MeshSource& source_;
   XML_Parser parser_;
   VtpDocument document_;
-  std::vector<std::string> parents_;  // of the next element
-  VtpArray* open_ = nullptr;          // whose numbers are being passed
+  std::vector<std::string> parents_;  // of the present element
+  VtpArray* open_ = nullptr;          // the array whose numbers are being read
   bool is_done_ = false;
   std::exception_ptr failure_;
 };

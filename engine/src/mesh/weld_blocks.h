@@ -17,18 +17,18 @@
 
 namespace keepout {
 
-/// A point as bits, which decide whether two are equal: -0 must have become 0.
+/// A point as bits, for an exact comparison: -0 must have become 0.
 template <class Scalar>
 using ExactPoint = std::array<Scalar, 3>;
 
-/// Multiplies two numbers and folds the product: each bit of it depends on many of both.
+/// Multiplies two numbers and folds the product, so that each bit depends on many bits of both.
 inline std::uint64_t folded_product(std::uint64_t a, std::uint64_t b) noexcept {
   __extension__ using Wide = unsigned __int128;
   const Wide product = Wide{a} * b;
   return static_cast<std::uint64_t>(product) ^ static_cast<std::uint64_t>(product >> 64);
 }
 
-// Any odd constants with bits all over will do.
+// Any odd constants with many bits set will do.
 constexpr std::uint64_t hash_key[3] = {0x9e3779b97f4a7c15u, 0xbf58476d1ce4e5b9u,
                                        0x94d049bb133111ebu};
 
@@ -46,14 +46,15 @@ inline std::uint64_t hash(const ExactPoint<double>& point) noexcept {
 
 /// Numbers points by their first appearance; equal points get equal numbers.
 ///
-/// An open table of (part of the hash, number); the points stand apart, so that a table of the same
-/// room is twice as dense in the caches, and in blocks, so that they need not move as it grows.
+/// An open hash table of (part of the hash, number). The points are stored separately, so that the
+/// table is twice as dense in the caches. They are in blocks, so that they need not move when the
+/// table grows.
 template <class Scalar>
 class PointNumbers {
  public:
   using Point = ExactPoint<Scalar>;
 
-  /// `expected`: how many different points there may be; more are no error.
+  /// `expected`: the likely number of different points; more are allowed.
   explicit PointNumbers(std::size_t expected)
       : slots_(vector_in_huge_pages<Slot>(std::bit_ceil(expected + expected / 3 + 16))) {}
 
@@ -62,13 +63,13 @@ class PointNumbers {
     return blocks_[number / block_size][number % block_size];
   }
 
-  /// The numbers of points, given with their hashes. Precondition: there remain less than
-  /// no_triangle different ones.
+  /// Returns the numbers of points with given hashes. Precondition: there are fewer than
+  /// no_triangle different points in all.
   void number(std::span<const Point> points, std::span<const std::uint64_t> hashes,
               std::span<VertexId> numbers) {
     make_room(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      // What will be looked at soon is fetched now: first the slot, then the point that it names.
+      // Prefetches first the slot, then the point that it names.
       if (i + 2 * ahead < points.size()) __builtin_prefetch(&slots_[home(hashes[i + 2 * ahead])]);
       if (i + ahead < points.size()) {
         const Slot& slot = slots_[home(hashes[i + ahead])];
@@ -78,7 +79,7 @@ class PointNumbers {
     }
   }
 
-  /// Gives up the table and keeps the points.
+  /// Frees the table and keeps the points.
   void close() noexcept { slots_ = {}; }
 
  private:
@@ -107,13 +108,13 @@ class PointNumbers {
     }
   }
 
-  /// For that many more points.
+  /// Makes capacity for `more` points.
   void make_room(std::size_t more) {
     while (blocks_.size() * block_size < size_ + more) {
       blocks_.push_back(std::make_unique_for_overwrite<Point[]>(block_size));
     }
     if (4 * (size_ + more) <= 3 * slots_.size()) return;
-    slots_ = {};  // what the points tell need not be kept
+    slots_ = {};  // the table can be rebuilt from the points
     slots_ = vector_in_huge_pages<Slot>(std::bit_ceil(2 * (size_ + more)));
     for (std::size_t p = 0; p < size_; ++p) {
       const std::uint64_t h = hash((*this)[p]);
@@ -128,7 +129,7 @@ class PointNumbers {
   std::size_t size_ = 0;
 };
 
-/// Triangles that are welded at a time. Their corners can be numbered in 16 bits.
+/// Triangles in a block. Their corners can be numbered in 16 bits.
 constexpr std::size_t weld_block = 16'384;
 
 /// The different points of a block, in the order of their first appearance.
@@ -169,12 +170,13 @@ class BlockPoints {
   std::vector<std::uint64_t> hashes_;
 };
 
-/// Welds triangles block by block: a thread finds the different points of its block, gives them
-/// their numbers when all blocks before have theirs, and then puts the numbers into the triangles.
-/// So vertices are numbered by their first use, whatever the number of threads.
+/// Welds triangles block by block. A thread finds the different points of its block. When all
+/// earlier blocks have their numbers, the points of this block get theirs. Then the thread writes
+/// the numbers to the triangles. So vertices are numbered by their first use, whatever the number
+/// of threads is.
 ///
-/// Each thread has a reader of its own: make_reader()(first, corners, number), called with the part
-/// of `triangles` that begins at `first`, is to put number(point) for each corner, in their order.
+/// Each thread has its own reader. make_reader()(first, corners, number) is called with the part of
+/// `triangles` that begins at `first`. It must write number(point) for each corner, in order.
 template <class Scalar, class MakeReader>
 Surface weld_blocks(std::vector<Corners> triangles, unsigned threads,
                     const MakeReader& make_reader) {

@@ -13,7 +13,7 @@ namespace keepout {
 
 /// A node of the branch and bound: planes, and the nearest motion that they allow.
 struct Branch {
-  /// Choices of more planes are left out.
+  /// Choices of more planes are dropped.
   static constexpr std::size_t most_planes = 24;
 
   double cost;  // distance from the target [length]
@@ -25,17 +25,17 @@ struct Branch {
   std::span<const HalfSpace> planes() const noexcept { return {plane.data(), count}; }
 };
 
-/// The nodes of a search, with memory that is made once. Nodes that do not fit are left out: that
-/// costs quality and not safety.
+/// The nodes of a search, in memory that is allocated once. Nodes that do not fit are dropped,
+/// which costs quality and not safety.
 class Branches {
  public:
-  /// Makes room for that many nodes in a search. Allocates.
+  /// Allocates memory for `capacity` nodes of a search.
   explicit Branches(std::size_t capacity) : branches_(capacity) {}
 
-  /// Forgets all nodes: a new search begins.
+  /// Removes all nodes, for a new search.
   void clear() noexcept { size_ = 0; }
 
-  /// Adds an open node, unless there is no room or it has more than Branch::most_planes.
+  /// Adds an open node, unless the memory is full or the node has more than Branch::most_planes.
   void push(double cost, const Vec3& motion, std::span<const HalfSpace> planes) noexcept {
     if (size_ == branches_.size() || planes.size() > Branch::most_planes) return;
     Branch& branch = branches_[size_++];
@@ -46,8 +46,8 @@ class Branches {
     branch.is_open = true;
   }
 
-  /// Closes the open node of least cost, of equals the first, and returns it. Null if there is
-  /// none. Valid until clear().
+  /// Closes the open node of least cost, the first of equals, and returns it; null if no node is
+  /// open. Valid until clear().
   const Branch* pop_nearest() noexcept {
     Branch* nearest = nullptr;
     for (Branch& branch : std::span(branches_).first(size_)) {

@@ -11,19 +11,19 @@ namespace keepout {
 namespace {
 
 // A sound rule needs few trials, and about a hundred at the tip of a cone. The limit bounds an
-// unsound one; the work budget, most_cutting_planes and Capacity::planes usually end a search
+// unsound rule. The work budget, most_cutting_planes and Capacity::planes usually end a search
 // first.
 constexpr int most_rounds = 256;
 
 constexpr int most_halvings = 8;
 
-/// The plane that bounds motions in one direction, just short of the longest.
+/// Returns the plane that bounds motions in the direction of `motion`, just short of `longest`.
 HalfSpace bound_of(const Vec3& motion, double longest) noexcept {
   return {-motion / motion.norm(), -longest * (1.0 - 1e-9), no_triangle};
 }
 
-/// Returns true if every part of a motion that satisfies the caller's rows satisfies them too: no
-/// row demands a motion.
+/// Returns true if every part of a motion that satisfies the caller's rows also satisfies them,
+/// because no row demands a motion.
 bool allow_parts(const std::optional<ExtraRows>& rows) noexcept {
   return !rows || std::all_of(rows->bounds(), rows->bounds() + rows->count(),
                               [](double bound) { return bound <= 0.0; });
@@ -59,21 +59,21 @@ Cycle::Cycle(ActivationRule& rule, Solver& solver, TipMemory& memory, Budget& bu
 
 Step Cycle::run() noexcept {
   Step step;
-  // Not one of the input checks: a tip inside is reported as such whatever the capacity.
+  // Not an input check, so that a tip inside is reported as inside whatever the capacity is.
   if (!memory_.has_room_for(request_)) {
     step.status = Status::over_capacity;
     return step;
   }
-  // Halving the target helps only if the region shrinks with it: the ball over the target does, the
-  // motion sphere does not.
+  // Halving the target helps only if it shrinks the region. It shrinks the ball over the target,
+  // but not the motion sphere.
   Opening opening = end_region_ == EndRegion::target_ball ? open_as_far_as_fits() : open();
   step.distance = opening.distance;
   const bool recovering = opening.status == Status::recovering;
   if (recovering) {
-    // The first opening finds the retreat; the second, by the same code, prepares the search with
-    // the retreat as target, and the retreat that it returns is not used. The planes of a retreat
-    // exclude standing still, so the motion may end outside the ball over the target; it need not
-    // be much longer than the target.
+    // The first opening finds the retreat. The second opening prepares the search with the retreat
+    // as target, and its own retreat is not used. The planes of a retreat exclude standing still,
+    // so the motion may end outside the ball over the target. It need not be much longer than the
+    // target.
     input_.target = opening.target;
     end_region_ = input_.searched_region = EndRegion::motion_sphere;
     input_.longest = std::min(input_.longest, 2.0 * input_.target.norm());
@@ -83,7 +83,7 @@ Step Cycle::run() noexcept {
   if (is_ok(opening.status)) {
     found = search_and_refine();
     add_time(&StageTimes::solve);
-    step.planes = memory_.solver_planes();  // of a failure: report() replaces them
+    step.planes = memory_.solver_planes();  // of a failure; report() replaces them on success
   }
   step.triangles = rule_.triangles();
   if (found.status == Status::infeasible || found.status == Status::unsolved) {
@@ -113,8 +113,8 @@ Step Cycle::run() noexcept {
   return step;
 }
 
-/// Opens the cycle, each time with half of the work budget that is left. Halves the target until
-/// its triangles fit the capacity and the budget.
+/// Opens the cycle, and halves the target until its triangles fit the capacity and the budget. Each
+/// attempt gets half of the work budget that is left.
 Opening Cycle::open_as_far_as_fits() noexcept {
   const auto open_with_half = [&] { return budget_.halved([&] { return open(); }); };
   Opening opening = open_with_half();
@@ -123,10 +123,10 @@ Opening Cycle::open_as_far_as_fits() noexcept {
   };
   while (is_too_much() && target_halvings_ < most_halvings) {
     halved_for_ = opening.status;
-    // StepOptions::query may have asked for more, which does not fit.
+    // StepOptions::query may have widened the region.
     input_.searched_region = end_region_;
     input_.target *= 0.5;
-    // Only in a recovery, where the longest motion is about twice the target (see run).
+    // The longest motion shrinks only in a recovery, where it is about twice the target (see run).
     if (end_region_ == EndRegion::motion_sphere) input_.longest *= 0.5;
     ++target_halvings_;
     opening = open_with_half();
@@ -134,8 +134,8 @@ Opening Cycle::open_as_far_as_fits() noexcept {
   return opening;
 }
 
-/// Has the rule gather the triangles that matter for the target, or begin a traversal to them, and
-/// open.
+/// Lets the rule gather the triangles that matter for the target, or begin a traversal to them.
+/// Then opens the cycle.
 Opening Cycle::open() noexcept {
   memory_.planes.clear();
   const bool fits = rule_.gather(input_);
@@ -146,7 +146,7 @@ Opening Cycle::open() noexcept {
   return opening;
 }
 
-/// Finds a motion that the rule accepts, and improves upon it.
+/// Finds a motion that the rule accepts, and improves it.
 Cycle::Outcome Cycle::search_and_refine() noexcept {
   Outcome best = search();
   if (best.status != Status::limited) return best;
@@ -156,7 +156,8 @@ Cycle::Outcome Cycle::search_and_refine() noexcept {
   return other.motion == best.motion ? best : refine(other);
 }
 
-/// Searches with half of the work budget. The rest is for a part of the last trial.
+/// Searches with half of the work budget. The rest is for cut(), which judges a part of the last
+/// trial.
 Cycle::Outcome Cycle::search() noexcept {
   limits_ = {};
   LastTrial last;
@@ -165,11 +166,11 @@ Cycle::Outcome Cycle::search() noexcept {
 }
 
 /// Solves again with the plane of each objection, until the rule accepts a trial or the solver
-/// fails. Returns nothing if a part of the last trial is to be judged instead.
+/// fails. Returns nothing if cut() must judge a part of the last trial.
 std::optional<Cycle::Outcome> Cycle::solve_and_judge(LastTrial& last) noexcept {
   for (int round = 0; round < most_rounds; ++round) {
     const Trial trial = solve();
-    last.solution = {};  // the solver has replaced it: with joints, no part of it can be made
+    last.solution = {};  // the solver has replaced it, and with joints a part of the trial needs it
     const bool has_earlier_part = last.free_fraction > 0.0 && !request_.jacobian;
     if (!trial.motion) {
       if (!has_earlier_part) return Outcome{trial.failure};
@@ -178,15 +179,15 @@ std::optional<Cycle::Outcome> Cycle::solve_and_judge(LastTrial& last) noexcept {
     }
     const Vec3& motion = *trial.motion;
     // Triangles beyond the motion sphere were not searched. (In the ball over the target no trial
-    // is longer: solve_relaxing() clips it.) The part of the trial before is given up, too,
-    // although cut() might accept it: that costs motion, not safety.
+    // is that long: solve_relaxing() clips it.) The part of the trial before is dropped, although
+    // cut() might accept it. That costs motion, not safety.
     if (motion.norm() > input_.longest) {
       memory_.planes.push(bound_of(motion, input_.longest));
       last.free_fraction = 0.0;
       continue;
     }
-    // A guide had no half-space left that excludes the trial. The rule has not judged the trial, so
-    // all of it may be free.
+    // The guides had no further half-space that excludes the trial. The rule has not judged the
+    // trial, so all of it may be free.
     if (!memory_.guides.allow(motion)) {
       last = {motion, 1.0, trial.solution};
       break;
@@ -205,7 +206,7 @@ std::optional<Cycle::Outcome> Cycle::solve_and_judge(LastTrial& last) noexcept {
 }
 
 /// Returns the part of the last trial up to the first contact and within the guides' regions, if
-/// the rule accepts it. If it objects, its plane is reported with the failure.
+/// the rule accepts that part. If the rule objects, its plane is reported with the failure.
 Cycle::Outcome Cycle::cut(const LastTrial& last) noexcept {
   const double allowed = memory_.guides.allowed_fraction(last.motion);
   const double fraction = std::min(last.free_fraction * (1.0 - 1e-9), allowed);
@@ -223,7 +224,7 @@ Cycle::Outcome Cycle::cut(const LastTrial& last) noexcept {
   return {Status::truncated, part};
 }
 
-/// Returns the kinds of the constraints for which no motion was found, and marks their guides as
+/// Returns the kinds of the constraints for which no motion was found. Marks their guides as
 /// limiting the step.
 Limits Cycle::note_unsatisfied() noexcept {
   Limits constraints;
@@ -238,9 +239,9 @@ Limits Cycle::note_unsatisfied() noexcept {
   return constraints;
 }
 
-/// Returns true if standing still satisfies the constraints without a solution: guides, and rows
-/// that demand no motion. Without guides only a retreat or rows demand motions that contradict each
-/// other, and the failure is reported instead.
+/// Returns true if the constraints without a solution allow standing still: guides, and rows that
+/// demand no motion. Without guides, only a retreat or rows can demand motions that contradict each
+/// other. That failure is reported instead.
 bool Cycle::may_stand_still() const noexcept {
   return !memory_.guides.planes().empty() && allow_parts(request_.rows);
 }

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Better motions than the first that is accepted: planes linearized again there, and branch and
-// bound.
+// Refinements: better motions than the first accepted one, by linearizing its planes again and by
+// branch and bound.
 #include "cycle.h"
 
 namespace keepout {
 
-/// Linearizes the planes of an accepted motion again, at that motion (the certified rule turns
-/// them: the rotation of the cuts of docs/certified-step-algorithm.md), while they allow a better
-/// one, at most options.refinements times. All planes go on allowing the accepted motion, so
-/// nothing is lost.
+/// Linearizes the planes of an accepted motion again at that motion, at most options.refinements
+/// times, as long as they allow a better motion. (The certified rule rotates the planes: Lemma 7 of
+/// docs/certified-step.md.) All planes still allow the accepted motion, so nothing is lost.
 Cycle::Outcome Cycle::refine(Outcome best) noexcept {
   for (int refinement = 0; refinement < options_.refinements; ++refinement) {
     memory_.set_aside();
@@ -29,13 +28,13 @@ Cycle::Outcome Cycle::refine(Outcome best) noexcept {
   return best;
 }
 
-/// Searches for a better motion than the best one known, by branch and bound. For each triangle
-/// there are alternative planes; a node is a choice of one plane for each triangle met so far, and
-/// no motion within its planes is better than the nearest one. The node of least cost goes first:
-/// once the rule accepts its motion, no other choice of the planes considered has a better one.
+/// Searches for a better motion than the best known one, by branch and bound. Each triangle has
+/// alternative planes. A node is a choice of one plane for each triangle met so far. The motion of
+/// a node is the best one within its planes. The node of least cost goes first: once the rule
+/// accepts its motion, no other choice of these planes has a better motion.
 ///
-/// At most options.nodes nodes. The rule judges every motion that is returned, so the limit costs
-/// quality and never safety.
+/// Tries at most options.nodes nodes. The rule judges every motion that is returned, so the limit
+/// costs quality and never safety.
 Cycle::Outcome Cycle::branch(const Outcome& best) noexcept {
   memory_.set_aside();
   memory_.branches.clear();
@@ -46,15 +45,15 @@ Cycle::Outcome Cycle::branch(const Outcome& best) noexcept {
     memory_.planes.assign(nearest->planes());
     const Verdict verdict = rule_.judge(input_, nearest->motion, memory_.planes).verdict;
     if (verdict == Verdict::accepted) {
-      // Solved once more: the solver's memory holds a later solution.
+      // Solved again, because the solver's memory holds a later solution.
       const Trial trial = solve();
       if (trial.motion != nearest->motion) break;
       memory_.store_result(request_, nearest->motion, 1.0, trial.solution, relaxation_, {});
       return {Status::limited, nearest->motion};
     }
     if (verdict == Verdict::blocked) continue;
-    // The plane that the rule has added is one choice; there may be alternatives. (The last plane
-    // may be that of a wall, in a recovery: then the choice is among planes of the wall.)
+    // The plane that the rule has added is one choice, and there may be alternatives. (In a
+    // recovery the last plane may belong to a wall. Then the choice is among planes of the wall.)
     const TriangleId in_the_way = memory_.planes[memory_.planes.size() - 1].source;
     push_branch(best);
     memory_.alternatives.clear();
@@ -77,8 +76,8 @@ void Cycle::push_branch(const Outcome& best) noexcept {
   memory_.branches.push((input_.target - *motion).norm(), *motion, memory_.planes.view());
 }
 
-/// Returns true if a motion is nearer to the target than the best one, by more than a millionth of
-/// the target.
+/// Returns true if a motion is nearer to the target than the best known one, by more than a
+/// millionth of the target's length.
 bool Cycle::is_worthwhile(const Vec3& motion, const Vec3& best) const noexcept {
   const Vec3& target = input_.target;
   return (target - motion).norm() < (target - best).norm() - 1e-6 * target.norm();

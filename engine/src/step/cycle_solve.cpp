@@ -12,9 +12,9 @@
 namespace keepout {
 namespace {
 
-/// Returns a solver's projection of the target, corrected to the accuracy of the planes: by
-/// alternating projections on the planes that are violated, as solvers differ in their last digits.
-/// For an exact solver each correction is at most a last digit.
+/// Returns a solver's projection of the target, corrected to the accuracy of the planes. Solvers
+/// differ in their last digits, so alternating projections on the violated planes follow. For an
+/// exact solver each correction is at most a last digit.
 Vec3 corrected(const Vec3& motion, const Vec3& target, std::span<const HalfSpace> planes) noexcept {
   constexpr int most_corrections = 32;
   Vec3 z = motion;
@@ -34,8 +34,8 @@ Vec3 corrected(const Vec3& motion, const Vec3& target, std::span<const HalfSpace
   return z;
 }
 
-/// Returns a motion clipped to the ball over the target, in which all projections of the target
-/// end: rule 4 of docs/certified-step.md.
+/// Returns a motion clipped to the ball over the target, which contains all projections of the
+/// target: rule 4 of docs/certified-step.md.
 Vec3 clipped_to_ball(Vec3 z, const Vec3& target) noexcept {
   const double along = target.dot(z);
   const double length2 = z.squaredNorm();
@@ -43,11 +43,11 @@ Vec3 clipped_to_ball(Vec3 z, const Vec3& target) noexcept {
   return z;
 }
 
-/// Returns the work units of a solve: each iteration visits all rows, and the first one factorizes
-/// the Jacobian, n^3 operations of which about 512 take as long as a unit. `solution.iterations`
-/// counts also for a solve that failed.
+/// Returns the work units of a solve. Each iteration visits all rows. The first one factorizes the
+/// Jacobian in n^3 operations, of which about 512 take as long as a unit. `solution.iterations` is
+/// also set if the solve failed.
 std::size_t work_of(const StepProblem& program, const Solution& solution) noexcept {
-  constexpr std::size_t numbers_in_a_unit = 48;  // as of sixteen planes
+  constexpr std::size_t numbers_in_a_unit = 48;  // sixteen planes of three numbers
   const auto numbers = static_cast<std::size_t>(program.rows.rows() * program.rows.cols());
   const auto variables = static_cast<std::size_t>(program.rows.cols());
   const auto iterations = static_cast<std::size_t>(std::max(solution.iterations, 0));
@@ -57,11 +57,11 @@ std::size_t work_of(const StepProblem& program, const Solution& solution) noexce
 
 }  // namespace
 
-/// Returns the nearest motion that planes and guides allow. If no half-space of a guide is left to
-/// add, the motion may leave the region of the guide.
+/// Returns the nearest motion that planes and guides allow. If a guide has no further half-space to
+/// add, the motion may leave its region.
 Cycle::Trial Cycle::solve() noexcept {
-  // Without planes the projection of the target is the target. (Of a solver that does not ignore
-  // idle planes it may differ in the last digits: RuleInput::is_projected.)
+  // Without planes the target is its own projection. (A solver that does not ignore idle planes may
+  // return other last digits: RuleInput::is_projected.)
   const bool is_bare = memory_.planes.empty() && !memory_.planes.overflowed();
   if (is_bare && input_.is_projected && memory_.guides.empty()) return {.motion = input_.target};
   Trial trial = solve_relaxing();
@@ -79,7 +79,7 @@ Cycle::Trial Cycle::solve_relaxing() noexcept {
   if (memory_.planes.overflowed()) return {.failure = Status::over_capacity};
   Trial trial = solve_once();
   // Planes that contradict each other, or nearly, may also end a solver at its iteration limit
-  // (unsolved), or at a point so far away that rounding hides the motion (ill_posed).
+  // (unsolved). Or the solution is so far away that rounding hides the motion (ill_posed).
   const auto contradict = [&] {
     return !trial.motion &&
            (trial.failure == Status::infeasible || trial.failure == Status::ill_posed ||
@@ -87,7 +87,7 @@ Cycle::Trial Cycle::solve_relaxing() noexcept {
   };
   while (contradict() && relax()) trial = solve_once();
   if (trial.motion && !trial.motion->allFinite()) return {.failure = Status::unsolved};
-  // Without a Jacobian only rows that almost contradict each other make a problem ill-posed.
+  // Without a Jacobian a problem is ill-posed only if rows almost contradict each other.
   if (trial.failure == Status::ill_posed && !request_.jacobian) trial.failure = Status::infeasible;
   if (!trial.motion || end_region_ == EndRegion::motion_sphere) return trial;
   const Vec3& target = input_.target;
@@ -95,7 +95,7 @@ Cycle::Trial Cycle::solve_relaxing() noexcept {
   return trial;
 }
 
-/// Relaxes constraints that pull back: guides first. Returns true if any plane changed.
+/// Relaxes constraints that pull back, guides first. Returns true if any plane changed.
 bool Cycle::relax() noexcept {
   if (memory_.guides.relax()) {
     relaxation_ = std::max(relaxation_, Relaxation::guides);
@@ -124,7 +124,8 @@ Cycle::Trial Cycle::solve_once() noexcept {
 
 std::optional<Vec3> tip_motion(const StepProblem& program, const Solution& solution,
                                double rounding) noexcept {
-  // The relative rounding error of the sum below: each product and each sum rounds by half of it.
+  // The relative rounding error of the sum below: each product and each sum rounds by half an
+  // epsilon.
   const double digits = std::numeric_limits<double>::epsilon() *
                         (1.0 + 0.5 * static_cast<double>(program.jacobian.cols()));
   if (moves_a_point(program)) {
@@ -134,7 +135,7 @@ std::optional<Vec3> tip_motion(const StepProblem& program, const Solution& solut
     return std::optional<Vec3>(std::in_place, Eigen::Map<const Vec3>(u));
   }
   Vec3 motion = Vec3::Zero();
-  double size = 0.0;  // of the sum: the motion if all joints moved the tip the same way
+  double size = 0.0;  // the length of the sum if all joints moved the tip the same way
   for (Eigen::Index c = 0; c < program.jacobian.cols(); ++c) {
     const double u = solution.u[static_cast<std::size_t>(c)];
     motion += program.jacobian.col(c) * u;

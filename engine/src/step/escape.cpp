@@ -8,14 +8,14 @@ namespace keepout {
 Vec3 escape_motion(Neighborhood& neighborhood, const Vec3& tip, const SideOfSurface& side,
                    double longest, double clear_by) noexcept {
   const double through = side.distance + clear_by;
-  // An escape that cannot get through in one cycle stops short of the surface.
+  // An escape that cannot get through the surface in one cycle stops short of it.
   if (through > longest) {
     const double rest = std::max(side.distance - clear_by, 0.5 * side.distance);
     return std::min(longest, rest) * side.outward;
   }
-  // Beyond the surface no farther than needed, as another wall may stand there.
+  // Goes no farther beyond the surface than needed, because another wall may stand there.
   Vec3 best = side.distance * side.outward;  // onto the surface, unless a better end is found
-  double best_distance = 0.0;                // of that end from the surface
+  double best_distance = 0.0;                // from that end to the surface
   const auto consider = [&](const Vec3& motion) {
     if (best_distance >= 0.5 * clear_by) return;  // good enough
     const auto there = find_side(neighborhood, tip + motion);
@@ -25,7 +25,7 @@ Vec3 escape_motion(Neighborhood& neighborhood, const Vec3& tip, const SideOfSurf
   };
   consider(through * side.outward);
   consider(through * side.normal);
-  // At a saddle both may end inside.
+  // At a saddle both ends may be inside.
   for (int i = 0; i < 27; ++i) {
     const Vec3 towards(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
     if (!towards.isZero()) consider(through * towards.normalized());
@@ -35,8 +35,8 @@ Vec3 escape_motion(Neighborhood& neighborhood, const Vec3& tip, const SideOfSurf
 
 namespace {
 
-/// Returns the distance from the surface at which an escape ends: far above touching_within, the
-/// distance at which the certified rule can no longer determine a side. [length]
+/// Returns the distance from the surface at which an escape ends. It is far above touching_within,
+/// the distance at which the certified rule can no longer determine a side. [length]
 double escape_clearance(const Mesh& mesh, const StepOptions& options) noexcept {
   const double size = mesh.bounds().size().norm() + options.radius + required_clearance(options);
   return std::max(1e-4 * options.recovery, 1e-8 * size);
@@ -47,7 +47,8 @@ double longest_escape(const StepOptions& options) noexcept {
   return std::min(options.recovery, options.radius);
 }
 
-/// Returns true if a straight escape may be made: joints and rows need not satisfy it.
+/// Returns true if a straight escape is possible. Joints and rows exclude it, as they need not
+/// allow a straight motion.
 bool may_escape(const Motion& request, const StepOptions& options, const Mesh& mesh) noexcept {
   return !request.jacobian && !request.rows &&
          longest_escape(options) >= escape_clearance(mesh, options);

@@ -19,12 +19,12 @@ constexpr double usual_angular_band = 0.0002;  // [rad]
 Vec3 unit(const Vec3& direction, const std::string& name) {
   const double length = direction.norm();
   if (!(length > shortest_length && length < longest_length)) {
-    throw Error("guide '" + name + "' has a direction that has no length, or is not finite");
+    throw Error("guide '" + name + "' has a direction of length zero, or one that is not finite");
   }
   return direction / length;
 }
 
-/// The chord of an angle on the unit sphere.
+/// Returns the chord of an angle on the unit sphere.
 double chord(double angle, const std::string& name) {
   if (!(angle > 0.0 && angle <= most_angle)) {
     throw Error("guide '" + name +
@@ -77,10 +77,11 @@ Guide Guide::remote_center(std::string name, const LinkPoint& from, const LinkPo
 std::vector<Guide> Guide::orientation(const std::string& name, int link, const Mat3& rotation,
                                       double angle) {
   if (!(((rotation.transpose() * rotation - Mat3::Identity()).cwiseAbs().maxCoeff()) < 1e-9)) {
-    throw Error("guide '" + name + "' is to keep an orientation that is no rotation");
+    throw Error("guide '" + name + "' has an orientation that is not a rotation matrix");
   }
-  // The squares of the chords of three axes add up to 8 sin^2(angle / 2) of the turn: so if none is
-  // more than a third of that, the turn is not more.
+  // The squares of the chords of three axes add up to 8 sin^2(angle / 2), where `angle` is the
+  // angle of the rotation. So if each squared chord is at most a third of that, the rotation is
+  // within `angle`.
   const double each = std::sqrt(8.0 / 3.0) * 0.5 * chord(angle, name);
   std::vector<Guide> guides;
   for (int axis = 0; axis < 3; ++axis) {
@@ -92,8 +93,7 @@ std::vector<Guide> Guide::orientation(const std::string& name, int link, const M
 
 Guide Guide::with_band(double band) const {
   if (!(band >= shortest_length && band <= longest_length)) {
-    throw Error("the band of guide '" + name_ + "' must be above zero, and a length; got " +
-                text_of(band));
+    throw Error("the band of guide '" + name_ + "' must be a length above 0, got " + text_of(band));
   }
   Guide guide = *this;
   guide.band_ = band;

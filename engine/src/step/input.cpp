@@ -9,7 +9,7 @@
 namespace keepout {
 namespace {
 
-// For numbers that are not lengths: their products with lengths must stay finite.
+// A limit for numbers that are not lengths: their products with lengths must stay finite.
 constexpr double largest_number = 1e30;
 
 template <class Numbers>
@@ -36,8 +36,8 @@ void require_in_range(const StepOptions& options) {
                 text_of(options.margin) + " beside " + text_of(options.tool_radius));
   }
   if (position_rounding(Vec3::Zero(), options) > 1e-3 * options.radius) {
-    throw Error("radius: expected more than 1e-9 of tool_radius and margin together, which are " +
-                text_of(clearance) + " and in whose rounding it is lost, got " +
+    throw Error("radius: expected more than 1e-9 of tool_radius plus margin, which is " +
+                text_of(clearance) + " (rounding hides a smaller radius), got " +
                 text_of(options.radius));
   }
 }
@@ -53,14 +53,14 @@ std::optional<Status> refusal(const Motion& request, const StepOptions& options)
   }
   const Eigen::Index variables = request.jacobian ? request.jacobian->joints() : 3;
   if (request.rows && !are_usable(*request.rows, variables)) return Status::invalid_input;
-  // Too far from the origin: a step would be lost in the digits of the tip.
+  // Too far from the origin, a step is lost in the rounding of the tip.
   if (position_rounding(request.tip, options) > 1e-3 * options.radius) return Status::invalid_input;
   if (!(request.desired.norm() <= longest_motion(options))) return Status::beyond_reach;
   return std::nullopt;
 }
 
 EndRegion end_region_of(const Motion& request, EndRegion rule_region) noexcept {
-  // With joints or rows of the caller's own the motion need not be a projection of the target.
+  // With joints or rows of the caller's own, the motion need not be a projection of the target.
   return request.jacobian || request.rows ? EndRegion::motion_sphere : rule_region;
 }
 

@@ -22,11 +22,12 @@ void require_mesh_in_range(const Mesh& mesh) {
   if (farthest > longest_length || (longest > 0.0 && longest < shortest_length)) {
     throw Error(
         "the mesh is too large, too small or too far from the origin: its coordinates must be "
-        "within 1e15, and its longest edge above 1e-15; bring it into a unit that suits it, as mm");
+        "within 1e15, and its longest edge above 1e-15; scale it to another unit, such as mm");
   }
 }
 
-/// Makes the neighborhood. As the first member made, it also checks that rule and solver are there.
+/// Makes the neighborhood. It is the first member made, so it also checks that rule and solver
+/// exist.
 std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                               std::shared_ptr<const SpatialIndex> index,
                                               const ActivationRule* rule, const Solver* solver,
@@ -39,12 +40,16 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
                                         budget);
 }
 
-/// Returns the capacity with room for the nodes of the options. Throws Error for options or a
+/// Returns the capacity, enlarged for the nodes of the options. Throws Error for options or a
 /// capacity out of range.
 Capacity checked(Capacity capacity, const StepOptions& options) {
   require_in_range(options);
   require_in_range(capacity_options, capacity);
   capacity.nodes = std::max(capacity.nodes, static_cast<std::size_t>(std::max(options.nodes, 0)));
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+  if (capacity.work_units == 0) capacity.work_units = capacity.looks;
+#pragma GCC diagnostic pop
   return capacity;
 }
 
@@ -74,8 +79,8 @@ MotionConstraint::MotionConstraint(std::shared_ptr<const Mesh> mesh,
       has_sides_(inside == Inside::escape && is_watertight(*mesh)) {
   if (inside == Inside::escape && rule_->guards_a_tool()) {
     throw Error(
-        "a tip that starts inside is led out without regard to the rest of a tool: with a rule "
-        "that guards a whole tool, ask for Inside::taken_as_is");
+        "a tip that starts inside escapes without regard to the rest of a tool: with a rule "
+        "that guards a whole tool, use Inside::taken_as_is");
   }
   prepare();
   reserve_solver(0);
@@ -134,10 +139,9 @@ void MotionConstraint::require_usable(const StepOptions& options) {
   require_in_range(options);
   if (static_cast<std::size_t>(options.nodes) > capacity_.nodes) {
     throw Error("nodes: expected at most " + std::to_string(capacity_.nodes) +
-                ", the capacity made for them (Capacity::nodes), got " +
-                std::to_string(options.nodes));
+                " (Capacity::nodes), got " + std::to_string(options.nodes));
   }
-  // At the tip nearest to the origin, where rounding is least.
+  // Rounding is least at the point of the mesh's box that is nearest to the origin.
   const Box& bounds = mesh().bounds();
   budget_->renew();
   const Vec3 tip = bounds.low.cwiseMax(Vec3::Zero()).cwiseMin(bounds.high);
@@ -163,7 +167,7 @@ Step MotionConstraint::step(const Motion& request, SideWatch& sides, StageTimes*
   if (!is_current()) return {.status = Status::mesh_changed};
   budget_->renew();
   Step step;
-  // A refused request does not change what is known of the tip.
+  // A refused request does not change what is known about the tip.
   if (const std::optional<Status> refused = refusal(request, options_)) {
     step.status = *refused;
   } else {
@@ -182,9 +186,9 @@ Step MotionConstraint::step(const Motion& request, SideWatch& sides, StageTimes*
   return step;
 }
 
-/// Returns the step of a valid request: an escape on the forbidden side, else a cycle. Only a cycle
-/// notes where the tip has moved. So a tip that escaped, or that could not be classified, is
-/// classified again in the next step.
+/// Returns the step of a valid request: an escape of a tip on the forbidden side, else a cycle.
+/// Only a cycle notes where the tip has moved. So a tip that escaped, or that could not be
+/// classified, is classified again in the next step.
 Step MotionConstraint::escape_or_cycle(const Motion& request, SideWatch& sides,
                                        StageTimes* times) noexcept {
   memory_->guides.open(request.tip, options_.recovery);
@@ -208,7 +212,7 @@ Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcep
   } else if (!rule_->guards_a_tool()) {
     budget_->renew();
     const double kept = required_clearance(options_);
-    // around() reports a ball that is not valid.
+    // FreePolytope::around() reports an invalid ball.
     const bool fits =
         neighborhood_->gather({tip, radius + kept}) || !(radius >= 0.0 && tip.allFinite());
     status = fits ? polytope_.around(tip, radius, kept, neighborhood_->hits(), *budget_,

@@ -25,8 +25,8 @@ TipGuides::TipGuides(std::vector<Guide> guides)
                            guide.first().position.isZero(0.0);
     if (is_of_tip) continue;
     throw Error("guide '" + guide.name() +
-                "' is of a link of an instrument, which a tip has not: use Guide::point(name, "
-                "region), or an InstrumentConstraint");
+                "' is for a link of an instrument, which a tip has not: give the tip a guide of a "
+                "point without a link, or guard the whole instrument");
   }
 }
 
@@ -36,7 +36,7 @@ void TipGuides::open(const Vec3& tip, double recovery) noexcept {
   planes_.clear();
   for (std::size_t g = 0; g < guides_.size(); ++g) {
     const double excess = guides_[g].region().excess(tip);
-    // Motions along the boundary end beside it by the rounding of their coordinates.
+    // The tip may leave the boundary by the rounding of its coordinates when it moves along it.
     const double rounding = 1e-15 * (tip.lpNorm<1>() + guides_[g].region().origin().lpNorm<1>());
     states_[g] = {.excess = excess};
     most_excess_[g] = std::max(guides_[g].band(), excess) + rounding;
@@ -45,7 +45,7 @@ void TipGuides::open(const Vec3& tip, double recovery) noexcept {
 }
 
 /// Adds the half-space that touches a region where the tip would be `at`. Returns false if there is
-/// none, in the middle of the region, or no room.
+/// no such half-space, as in the middle of the region, or no capacity for it.
 bool TipGuides::add(std::size_t g, const Vec3& at) noexcept {
   const Region& region = guides_[g].region();
   const Vec3 into = -region.outward(at);

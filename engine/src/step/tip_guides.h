@@ -10,12 +10,12 @@
 
 namespace keepout {
 
-/// The guides of a tip in a control cycle: a second source of half-spaces, beside the rule.
+/// The guides of a tip in a control cycle. They add half-spaces, besides the rule.
 ///
 /// A tip inside a region leaves it by no more than the guide's band; a tip outside moves no farther
-/// out. An excess is convex, so the end of a straight motion decides for the whole of it. A
-/// half-space that touches a region excludes only motions that leave the region, so half-spaces are
-/// only ever added in a cycle.
+/// out. The excess of a straight motion is convex, so its end decides for all of it. A half-space
+/// that touches a region excludes only motions that leave the region. So a cycle only adds
+/// half-spaces, and never drops them.
 class TipGuides {
  public:
   static constexpr std::size_t most_planes_of_a_guide = 8;
@@ -28,23 +28,23 @@ class TipGuides {
   std::span<const Guide> guides() const noexcept { return guides_; }
   bool empty() const noexcept { return guides_.empty(); }
 
-  /// Begins a cycle with the half-spaces of the regions that the tip is outside of. They pull it
-  /// back by up to `recovery`. [length]
+  /// Begins a cycle with the half-spaces of the regions that the tip is outside of. They pull the
+  /// tip back by up to `recovery`. [length]
   void open(const Vec3& tip, double recovery) noexcept;
 
-  /// Returns true if a guide is left by more than its band.
+  /// Returns true if the tip starts outside a region by more than the guide's band.
   bool is_recovering() const noexcept;
-  /// Returns true if a half-space asks for motion.
+  /// Returns true if a half-space demands motion.
   bool leads_back() const noexcept;
-  /// Stops leading back. Returns true if any half-space changed.
+  /// Stops pulling the tip back. Returns true if any half-space changed.
   bool relax() noexcept;
 
-  /// Returns true if a motion ends in no region with an excess above that guide's band, or above
-  /// the excess at the start if that is larger.
+  /// Returns true if a motion leaves no region by more than the guide's band, or by more than at
+  /// the start if that is larger.
   bool allow(const Vec3& motion) const noexcept { return empty() || all_allow(motion); }
   /// Returns a fraction of a motion that is allowed, by bisection to 1/1000; 1 if all of it is.
   double allowed_fraction(const Vec3& motion) const noexcept;
-  /// Adds a half-space for each region that a motion leaves. Returns false if there is none to add.
+  /// Adds a half-space for each region that a motion leaves. Returns false if it adds none.
   bool exclude(const Vec3& motion) noexcept;
   /// Notes that the guides which a motion leaves limit the step.
   void note_left_by(const Vec3& motion) noexcept;
@@ -58,7 +58,7 @@ class TipGuides {
 
   /// Returns the half-spaces of this cycle; their source is no_triangle.
   std::span<const HalfSpace> planes() const noexcept { return planes_.view(); }
-  /// Returns the state of each guide, for a step that this was relaxed for.
+  /// Returns the state of each guide, for a step with this relaxation.
   std::span<const GuideState> states(Relaxation relaxation) noexcept;
 
  private:
@@ -68,7 +68,7 @@ class TipGuides {
 
   std::vector<Guide> guides_;
   std::vector<GuideState> states_;
-  std::vector<double> most_excess_;  // that each allows in this cycle [length]
+  std::vector<double> most_excess_;  // of each guide in this cycle [length]
   HalfSpaceBuffer planes_;
   std::vector<std::size_t> guide_of_;  // of each half-space
   Vec3 tip_ = Vec3::Zero();

@@ -11,7 +11,7 @@ namespace {
 // The Jacobian of a tip without joints.
 constexpr std::array<double, 9> identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-// Planes that a triangle can have: of the contact, of the face, and around each edge.
+// The most planes of a triangle: of the contact, of the face, and around each edge.
 constexpr std::size_t most_alternatives = 5;
 
 std::size_t most_rows(const Capacity& capacity) {
@@ -69,7 +69,7 @@ StepProblem TipMemory::program_for(const Motion& request, const Vec3& target,
           .planes = half_spaces};
 }
 
-/// Writes the rows of planes, n^T J; without a Jacobian, the normals themselves.
+/// Writes the rows of planes: n^T J, or the normals themselves without a Jacobian.
 void TipMemory::write_rows_of(std::span<const HalfSpace> half_spaces, const double* jacobian,
                               Eigen::Index variables) noexcept {
   double* row = rows_.data();

@@ -15,32 +15,32 @@
 
 namespace keepout {
 
-/// Returns a vector with -0 turned into +0: the sign of a zero in the input must not show.
+/// Returns a vector with +0 in place of -0, so that the sign of a zero in the input does not show.
 inline Vec3 without_signed_zeros(const Vec3& v) noexcept {
   return {v[0] + 0.0, v[1] + 0.0, v[2] + 0.0};
 }
 
-/// The memory of the cycles of a tip: planes and guides, the quadratic program that they become,
-/// and the best result so far. `planes` are those of the present search; when a search has ended
-/// with a result, they are the planes of that result.
+/// The memory of the cycles of a tip: planes and guides, their quadratic program, and the best
+/// result so far. `planes` belong to the present search; after a search with a result, to that
+/// result.
 class TipMemory {
  public:
-  /// Allocates all memory. Rows of planes are written only if the solver does not read planes.
+  /// Allocates all memory. Planes are written as rows only if the solver does not read planes.
   TipMemory(const Capacity& capacity, const Solver& solver);
 
-  /// Returns true if there is room for the request's joints and rows.
+  /// Returns true if the request's joints and rows fit the capacity.
   bool has_room_for(const Motion& request) const noexcept;
 
-  /// Returns the quadratic program whose rows are the planes, those of guides, then the caller's
-  /// rows: on the tip's own increment without a Jacobian, on the joints' with one, n^T J. Reads
-  /// only Jacobian and rows of the request. `target`: the increment of the tip to come close to.
+  /// Returns the quadratic program. Its rows are the planes, those of guides, then the caller's
+  /// rows. They limit the tip's own increment, or the joints' (n^T J) with a Jacobian. Reads only
+  /// Jacobian and rows of the request. `target`: the increment that the tip tries to reach.
   /// [length] Valid until the next call. Precondition: has_room_for(request).
   StepProblem program_for(const Motion& request, const Vec3& target, double damping) noexcept;
 
-  /// Stores a motion as the result, which outlives the solver's next solution: with joints,
+  /// Stores a motion as the result, which outlives the solver's next solution. With joints, stores
   /// `fraction` of `solution`; otherwise `tip_motion` as it is. The active rows are those of the
-  /// solution. `relaxation`: what was relaxed for it. `limits`: what limits it apart from active
-  /// rows.
+  /// solution. `relaxation`: the constraints that were relaxed. `limits`: the limits apart from
+  /// active rows.
   void store_result(const Motion& request, const Vec3& tip_motion, double fraction,
                     const Solution& solution, Relaxation relaxation, Limits limits) noexcept;
 
@@ -54,8 +54,8 @@ class TipMemory {
   }
 
   TipGuides guides;                // of the tip
-  HalfSpaceBuffer planes;          // that the present trial has to satisfy
-  HalfSpaceBuffer earlier_planes;  // of the motion that is to be improved upon
+  HalfSpaceBuffer planes;          // of the present trial
+  HalfSpaceBuffer earlier_planes;  // of the motion that a search tries to improve
   HalfSpaceBuffer alternatives;    // to a plane of the branch and bound
   Branches branches;               // of the branch and bound
 
@@ -66,26 +66,26 @@ class TipMemory {
     planes.clear();
   }
 
-  /// Replaces planes and result by those that were set aside last: the search found nothing better.
+  /// Restores the planes and the result that were set aside last, after a search without success.
   void take_back() noexcept { swap_with_earlier(); }
 
   /// Returns the increment of the result.
   std::span<const double> increment() const noexcept { return result_.increment.view(); }
-  /// Returns the rows that limit it: planes, those of guides, then the caller's.
+  /// Returns the rows that limit the increment: planes, those of guides, then the caller's.
   std::span<const std::uint32_t> active() const noexcept { return result_.active.view(); }
-  /// Returns the planes and those of guides that it was found with. Precondition: `planes` are
-  /// those of the result.
+  /// Returns the planes and those of guides that the result was found with. Precondition: `planes`
+  /// are those of the result.
   std::span<const HalfSpace> result_planes() noexcept { return with_guides(result_.guide_planes); }
-  /// Returns what was relaxed for it.
+  /// Returns the constraints that were relaxed for the result.
   Relaxation relaxation() const noexcept { return result_.relaxation; }
-  /// Returns what limits it apart from active rows.
+  /// Returns the limits of the result apart from active rows.
   Limits limits() const noexcept { return result_.limits; }
 
  private:
   struct Result {
     Buffer<double> increment;      // (variables)
     Buffer<std::uint32_t> active;  // (planes + those of guides + extra rows)
-    std::size_t guide_planes = 0;  // how many there were
+    std::size_t guide_planes = 0;  // the number of half-spaces of guides
     Relaxation relaxation = Relaxation::none;
     Limits limits = {};
   };
@@ -98,7 +98,7 @@ class TipMemory {
   void write_rows_of(std::span<const HalfSpace> half_spaces, const double* jacobian,
                      Eigen::Index variables) noexcept;
 
-  Eigen::Index variables_;   // the most columns of a Jacobian; at least 3
+  Eigen::Index variables_;   // the most columns of a Jacobian, at least 3
   Eigen::Index extra_rows_;  // the most rows of the caller's own
   bool writes_planes_;
   std::vector<double>

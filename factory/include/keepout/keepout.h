@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Everything that most programs need: constraints for a tip and for a whole instrument.
+// Includes all that most programs need: constraints for a tip and for a whole instrument.
 #include "keepout/error.h"
 #include "keepout/factory/convex_tool_text.h"
 #include "keepout/factory/guide_text.h"

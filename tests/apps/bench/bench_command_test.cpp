@@ -127,6 +127,13 @@ TEST_F(BenchCommand, SaysWhatIsWrongWithTheArguments) {
   folder.expect_refused("bench --mesh cube.stl,other/cube.stl", "told apart");
 }
 
+TEST_F(BenchCommand, NamesTheMeshOfWhichNothingCanBeMeasured) {
+  write_binary_stl(folder.file("line.stl"),
+                   {{{0, 0, 0}, {9, 9, 9}, {20, 20, 20}}, {{0, 1, 2}, {2, 1, 0}}});
+  folder.expect_refused("bench --mesh line.stl", "line.stl: none of its triangles has an area");
+  folder.expect_refused("compare line.stl", "line.stl: none of its triangles has an area");
+}
+
 TEST_F(BenchCommand, RanksNoRowWhoseMotionsReachNoTriangle) {
   // Tips are 0.2 mm off the cube: a sphere of 0.1 mm reaches nothing.
   succeeded(folder.run(

@@ -31,6 +31,18 @@ TEST(Timing, IsByNearestRankAndLeavesOutWhatTooFewSamplesCannotTell) {
   }
 }
 
+TEST(Timing, OfVeryManyTimesIsThatOfAnEvenPartAndOfTheLongest) {
+  Times times;
+  EXPECT_EQ(times.timing().samples, 0u);
+  constexpr std::size_t count = 5'000'000;
+  for (std::size_t i = 0; i < count; ++i) times.add(i == 7 ? 1e9 : static_cast<double>(i % 1000));
+  const Timing timing = times.timing();
+  EXPECT_EQ(timing.samples, count);
+  EXPECT_EQ(timing.max, 1e9);
+  EXPECT_NEAR(timing.p50, 500.0, 8.0);  // one in eight is kept
+  EXPECT_NEAR(timing.p99.value_or(0.0), 990.0, 8.0);
+}
+
 TEST(Timing, OfSeveralPassesIsTheLeastOfEachPercentile) {
   const Timing one{.p50 = 1.0, .p99 = 5.0, .p999 = {}, .max = 9.0, .samples = 100};
   const Timing other{.p50 = 2.0, .p99 = 4.0, .p999 = {}, .max = 8.0, .samples = 100};

@@ -62,6 +62,27 @@ TEST_F(PlanCommandTest, TheSameSeedPlansTheSame) {
   EXPECT_NE(first, paths("--seed 6"));
 }
 
+TEST_F(PlanCommandTest, OfASmallMeshEachPathAlongTheGridIsSearchedOnlyWhereItLeads) {
+  // On a grid of 300 cells a side, of which the mesh takes 40, few pairs need such a detour.
+  write_binary_stl(folder_.file("small.stl"), make_cube(3.0));
+  const ProcessOutcome outcome =
+      succeeded(folder_.run("plan small.stl --problems 12 --seconds 1 --resolution 0.01 --quiet "
+                            "--json runs.json"));
+  EXPECT_CONTAINS(outcome.output, "certified");
+  EXPECT_CONTAINS(outcome.output, "under keepout's");
+  const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
+  ASSERT_EQ(record.at("runs").size(), 48u);
+  for (const Json& run : record.at("runs")) EXPECT_GE(run.at("detour"), 1.3);
+}
+
+TEST_F(PlanCommandTest, CountsAResolutionOnce) {
+  succeeded(folder_.run(
+      "plan cortex.stl --seconds 1 --resolution 0.01,0.01 --problems 1 --json runs.json"));
+  const Json record = Json::parse(std::ifstream(folder_.file("runs.json")));
+  EXPECT_EQ(record.at("checkers"), Json({"sampled 1 %", "widened 1 %", "certified", "sliding"}));
+  EXPECT_EQ(record.at("runs").size(), 4u);
+}
+
 TEST_F(PlanCommandTest, EveryPlannerRuns) {
   for (const char* planner : {"RRT", "PRM", "BITstar"}) {
     succeeded(folder_.run(quick + "--problems 1 --simplify --planner " + planner));
@@ -101,8 +122,16 @@ TEST_F(PlanCommandTest, NoPathOfAWholeInstrumentUnderCertifiedCheckingComesTooCl
 
 TEST_F(PlanCommandTest, SaysWhatIsWrong) {
   folder_.expect_refused("plan cortex.stl --planner XYZ", "RRTConnect");
-  folder_.expect_refused("plan cortex.stl --resolution nan", "share of the extent");
+  folder_.expect_refused("plan cortex.stl --resolution nan", "fraction of the extent");
   folder_.expect_refused("plan cortex.stl --seconds 0", "seconds above 0");
+  folder_.expect_refused("plan cortex.stl --range 1e-9",
+                         "--range: expected 0 or a number from 0.01 to 1e30, not '1e-9'");
+  write_binary_stl(folder_.file("line.stl"),
+                   {{{0, 0, 0}, {9, 9, 9}, {20, 20, 20}}, {{0, 1, 2}, {2, 1, 0}}});
+  for (const char* tool : {"", " --robot psm"}) {
+    folder_.expect_refused(std::string("plan line.stl") + tool,
+                           "line.stl: none of its triangles has an area");
+  }
   folder_.expect_refused("plan cortex.stl --tool-radius 80", "problems were found");
   folder_.expect_refused("plan cortex.stl --json cortex.stl", "same file");
   folder_.expect_refused("plan --inside", "MESH");

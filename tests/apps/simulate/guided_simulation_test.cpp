@@ -54,6 +54,26 @@ TEST(SimulateGuides, EveryRuleKeepsTheTipInAndTheHandAloneDoesNot) {
   }
 }
 
+TEST(SimulateGuides, AGuideThatNoStrokeWasInsideTestsNothing) {
+  const test::CommandFolder folder;
+  const std::string far = "ball:0,0,500:1", wide = "ball:0,0,0:500";
+  for (const std::string robot : {"", " --robot psm --speed 5"}) {
+    const auto in_form = [&](const std::string& region) {
+      return robot.empty() ? region : "point:6:0,0,0:" + region;
+    };
+    const std::string strokes = "cube --strokes 2 --cycles 100" + robot + " --guide ";
+    const test::ProcessOutcome outside = folder.run("simulate " + strokes + in_form(far));
+    EXPECT_EQ(outside.status, 1) << outside.output;
+    EXPECT_CONTAINS(outside.output, "tested nothing");
+    const auto headline = [&](const std::string& guides) {
+      return record_of(folder, strokes + guides)["headline"].get<std::string>();
+    };
+    EXPECT_CONTAINS(headline(in_form(wide) + " --guide " + in_form(far)),
+                    " Guide '" + in_form(far) + "' tested nothing: no stroke was ever inside it.");
+    EXPECT_LACKS(headline(in_form(wide)), "tested nothing");
+  }
+}
+
 TEST(SimulateGuides, ATipThatLeavesAGuideIsSeen) {
   const std::vector<Guide> guides{guide_of_text("slab:0,0,0:1,0,0:1"),
                                   guide_of_text("ball:0,0,0:9")};

@@ -51,7 +51,7 @@ Json record_of(const std::vector<FollowedStroke>& strokes, const char* mesh = "c
   options.rules = {"certified", "paper"};
   options.rules.resize(strokes.front().runs.size() - 1);
   const auto tool = make_guarded_tip(options);
-  tool->open(mesh);
+  tool->open(mesh, StopSignal());
   std::vector<RunTally> runs;
   for (const std::string& rule : tool->guards()) runs.push_back({.guard = rule});
   for (const FollowedStroke& followed : strokes) {

@@ -174,6 +174,35 @@ TEST(FindSelfIntersections, PlacesAreOnBothTriangles) {
   EXPECT_EQ(place_of(Mesh(on_base_edge({1, 1, 0}))).z(), 0.0);
 }
 
+TEST(FindSelfIntersections, PlacesAreWhereTheBoxesOfBothTrianglesAre) {
+  Random random(20261126);
+  std::size_t found = 0;
+  for (const double unit : {1.0, 1e30 / 8, 1e-100, 1e-105, 1e-110}) {
+    for (int trial = 0; trial < 4'000; ++trial) {
+      Surface surface{{}, {{0, 1, 2}, {3, 4, 5}}};
+      for (int v = 0; v < 6; ++v) {
+        const auto whole = [&] { return 3.0 + static_cast<double>(random.below(4)); };
+        surface.vertices.push_back(unit * Vec3(whole(), whole(), whole()));
+      }
+      const auto mesh = std::make_shared<const Mesh>(weld(surface));
+      for (const FaultPlace& place :
+           find_self_intersections(*mesh, BruteForce(mesh)).places.places) {
+        ++found;
+        for (const TriangleId t : {0u, 1u}) {
+          const Triangle triangle = mesh->triangle(t);
+          for (int axis = 0; axis < 3; ++axis) {
+            const auto [low, high] =
+                std::minmax({triangle[0][axis], triangle[1][axis], triangle[2][axis]});
+            EXPECT_GE(place.at[axis], low) << unit << ' ' << trial;
+            EXPECT_LE(place.at[axis], high) << unit << ' ' << trial;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 1'000u);
+}
+
 TEST(FindSelfIntersections, PlacesAreWhereTrianglesMeet) {
   const auto crossing = mesh_of(beside_base({1, 1, -1}, {1, 1, 1}, {1, 9, 0}));
   const SelfIntersections found = find_self_intersections(*crossing, PdTree(crossing));

@@ -56,8 +56,8 @@ TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
   ASSERT_EQ(metres.size(), 1u);
   EXPECT_CONTAINS(
       metres[0],
-      "the mesh is 0.1 mm across if its unit is mm; in m it would be 100 mm across: give "
-      "the unit of the file, for example --unit m or unit=\"m\"");
+      "the mesh is 0.1 mm across if its unit is mm; in m it would be 100 mm across: scale "
+      "it to mm, or give the unit of the file, for example --unit m or unit=\"m\"");
   const auto micrometres = quick_check(cube_times(1000.0));
   ASSERT_EQ(micrometres.size(), 1u);
   EXPECT_CONTAINS(micrometres[0], "the mesh is 100000 mm across");
@@ -66,6 +66,14 @@ TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
   const auto scaled = quick_check(cube_times(1000.0), 0, 1000.0);
   ASSERT_EQ(scaled.size(), 1u);
   EXPECT_CONTAINS(scaled[0], "100000 mm across after it was scaled by 1000");
+}
+
+TEST(QuickCheck, OfVerticesThatCoincideNoUnitIsAskedFor) {
+  const Mesh point(Surface{.vertices = {{1, 2, 3}}, .triangles = {{0, 0, 0}}});
+  const auto found = quick_check(point);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_CONTAINS(found[0], "all vertices coincide");
+  EXPECT_FALSE(examine(point).looks_like_meters());
 }
 
 TEST(QuickCheck, AnOpenAndAnInconsistentSurfaceAreSaidToBeSo) {

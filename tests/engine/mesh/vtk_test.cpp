@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Legacy VTK and VTP: what they may hold, and what is wrong with them.
+#include <sys/resource.h>
+
 #include "engine/mesh/mesh_files.h"
 
 namespace keepout {
@@ -272,6 +274,7 @@ TEST_F(LoadMesh, VtpThatIsMalformedIsAnErrorThatSaysWhere) {
                  {"NumberOfPoints=\"4", "NumberOfPoints=\"5", "three for each of 5 points"},
                  {"NumberOfPoints=\"4", "NumberOfPoints=\"-4", "must be a whole number"},
                  {"NumberOfPolys=\"4", "NumberOfPolys=\"5", "4 numbers for 5 cells"},
+                 {"NumberOfComponents=\"3", "NumberOfComponents=\"2", "line 5: points have 3"},
                  {"Float32", "Float16", "unknown type 'Float16'"},
                  {"type=\"Int64\"", "type=\"Float64\"", "must have integers"},
                  {"\"offsets\"", "\"onsets\"", "not both of their arrays"},
@@ -370,6 +373,31 @@ TEST_F(LoadMesh, AVtpArrayIsNotUnpackedIfItHoldsMoreThanItsPieceDeclares) {
   EXPECT_CONTAINS(complaint("mesh.vtp", replaced(as_vtp(surface, {}), "NumberOfPoints=\"1000",
                                                  "NumberOfPoints=\"1000000000000000")),
                   "NumberOfPoints is 1000000000000000, more than the file has room for");
+}
+
+/// Most memory that this process ever had. [bytes]
+std::size_t most_memory() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return std::size_t{1024} * static_cast<std::size_t>(usage.ru_maxrss);
+}
+
+TEST_F(LoadMesh, AFalseSizeOfAVtpBlockTakesNoMemory) {
+  constexpr std::uint64_t claimed = 90'000'000;
+  std::string vtp =
+      replaced(as_vtp(tetrahedron(), {.format = Mode::appended_raw, .is_compressed = true}),
+               "NumberOfPoints=\"4", "NumberOfPoints=\"" + std::to_string(claimed));
+  // The points are one block of a few bytes, which claims to be of 2 MB and to unpack to 1 GB.
+  const std::string offset = vtp.substr(vtp.find("offset=\"", vtp.find("\"Points\"")) + 8);
+  const std::size_t counts = vtp.find("  _") + 3 + std::stoull(offset);
+  std::string size, packed;
+  append_bytes(size, 12 * claimed, false);
+  append_bytes(packed, std::uint64_t{1} << 21, false);
+  vtp.replace(counts + 16, 8, size).replace(counts + 24, 8, packed);
+  vtp.insert(vtp.find("\n  </AppendedData>"), std::size_t{1} << 21, '\0');
+  const std::size_t before = most_memory();
+  EXPECT_CONTAINS(complaint("mesh.vtp", vtp), "block 0 cannot be unpacked");
+  EXPECT_LT(most_memory() - before, std::size_t{1} << 28);
 }
 
 TEST_F(LoadMesh, VtpArraysThatOverlapAreAnError) {

@@ -164,11 +164,11 @@ class RobotAttempt {
     const Twist desired = wanted(state.flange().position);
     const BenchClock::time_point start = BenchClock::now();
     const InstrumentStep step = subject_->step(positions_, desired);
-    attack_.step_us.push_back(microseconds_since(start));
+    attack_.step_times.add(microseconds_since(start));
     if (point_) {
       const BenchClock::time_point after = BenchClock::now();
       point_->step({.tip = state.flange().position, .desired = desired.linear});
-      attack_.point_us.push_back(microseconds_since(after));
+      attack_.point_times.add(microseconds_since(after));
     }
     RobotTask::Increment made = RobotTask::Increment::Zero(chain_.size());
     std::vector<double> next = positions_;
@@ -228,7 +228,7 @@ class RobotAttempt {
     ++tally_.samples;
     tally_.excess += found.saved;
     tally_.useful += found.saved > useful_above ? 1 : 0;
-    tally_.movable += found.fraction >= movable_above ? 1 : 0;
+    tally_.movable += found.share >= movable_above ? 1 : 0;
   }
 
   const Campaign& campaign_;
@@ -264,7 +264,11 @@ class RobotAttack final : public Attack {
 
   std::uint64_t begin() override {
     attempt_.reset();
-    if (arena_.load && !*loaded_) *loaded_ = std::make_shared<Scene>(arena_.load().front());
+    if (arena_.load && !*loaded_) {
+      std::vector<Scene> scenes = arena_.load();
+      if (scenes.empty()) return 0;
+      *loaded_ = std::make_shared<Scene>(std::move(scenes.front()));
+    }
     if (*loaded_) row.triangles = (*loaded_)->mesh()->triangle_count();
     const auto number = static_cast<std::uint64_t>(&scenario_ - scenarios().data());
     const int most_misses = is_drawn_ ? 20 : 1;  // the next draw may have a start

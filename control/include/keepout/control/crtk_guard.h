@@ -8,16 +8,17 @@
 
 namespace keepout {
 
-/// How a CrtkGuard behaves; what it takes lengths in is said at each.
+/// The options of a CrtkGuard. Lengths are in the unit of the mesh.
 struct CrtkOptions {
-  HapticOptions haptic = {};  // on the side of the robot, in the unit of the mesh
-  /// How far the robot goes for the way of the hand, as set in the teleoperation. The force on the
-  /// hand is that on the tool times this, so that what one side puts in is what the other gets out.
+  HapticOptions haptic = {};  // of the proxy, which the robot follows
+  /// The displacement of the robot divided by that of the hand, as set in the teleoperation. The
+  /// force on the hand is the force on the tool times this factor, so that both sides exchange the
+  /// same energy.
   double motion_scale = 1.0;                // > 0
-  Mat3 hand_from_robot = Mat3::Identity();  // turns a force into the frame of the hand's device
-  double longest_silence = 0.02;            // for which the last goal stands [s], >= 0
+  Mat3 hand_from_robot = Mat3::Identity();  // rotates a force into the frame of the hand's device
+  double longest_silence = 0.02;            // for which the last goal is used [s], >= 0
   double farthest_lag = 5.0;                // of the robot behind its setpoint [length], > 0
-  double farthest_start = 1000.0;  // from the box around the mesh, on engaging [length], > 0
+  double farthest_start = 1000.0;  // distance from the mesh's bounds on engaging [length], > 0
 };
 
 /// A force and a torque. [N], [N length]
@@ -26,60 +27,62 @@ struct Wrench {
   Vec3 torque = Vec3::Zero();  // [N length]
 };
 
-/// A motion constraint under the names of CRTK, the convention that the da Vinci Research Kit
-/// follows: stands between the teleoperation, which computes a goal for the robot, and the robot.
-/// docs/controllers.md says where to plug it in. Poses are in the robot's frame and unit.
+/// A motion constraint with the interface of CRTK, the convention of the da Vinci Research Kit. It
+/// goes between the teleoperation, which computes a goal for the robot, and the robot (see
+/// docs/controllers.md). Poses are in the robot's frame and unit.
 ///
 ///     guard.engage(robot.setpoint_cp());               // at the start, and after clutching
 ///     each cycle:
 ///       guard.measured_cp(robot.measured_cp());
-///       guard.servo_cp(goal);                          // or await_cp(), when none came
+///       guard.servo_cp(goal);                          // or await_cp() without a new goal
 ///       robot.servo_cp(*guard.setpoint_cp());
 ///       hand.servo_cf(guard.servo_cf());
 ///
-/// The tip is guarded: a point, or the ball of the motion constraint's tool radius. The orientation
-/// passes through as it is, so the shaft is free to sweep: give the ball the size of what turns.
+/// Only the tip is constrained: a point, or a ball of the motion constraint's tool radius. The
+/// orientation is passed on unchanged, so the shaft may rotate freely: the ball must contain all
+/// that rotates.
 ///
-/// Not thread-safe; nothing here allocates, locks or throws once it is built.
+/// Not thread-safe. After construction no function allocates, locks or throws.
 class CrtkGuard {
  public:
-  /// Throws Error for an option out of range.
+  /// Makes the guard. Throws Error for an option out of range.
   CrtkGuard(MotionConstraint guard, const Registration& registration, const CrtkOptions& options);
 
-  /// Begins at where the robot is: its setpoint, so that it does not jump. guarded, invalid_pose or
-  /// far_from_mesh; after those it is not engaged.
+  /// Engages at the robot's setpoint, so that the robot does not jump. Returns guarded, or, without
+  /// engaging, invalid_pose or far_from_mesh.
   CycleStatus engage(const Pose& setpoint) noexcept;
 
-  /// Lets go, as when the clutch is pressed: no setpoint, no force.
+  /// Releases, for example when the clutch is pressed: no setpoint, no force.
   void release() noexcept;
 
-  /// Lets go, and takes another registration, as when the camera has moved. Builds nothing.
+  /// Releases, and replaces the registration, for example after the camera has moved. Rebuilds
+  /// nothing.
   void set_registration(const Registration& registration) noexcept;
 
-  /// Where the robot is, for the next cycle to compare with where it was sent.
+  /// Sets the measured pose of the robot. The next cycle compares it with the setpoint.
   void measured_cp(const Pose& pose) noexcept { measured_ = pose; }
 
-  /// One cycle towards a goal.
+  /// Runs one cycle towards a goal.
   CycleStatus servo_cp(const Pose& goal) noexcept;
 
-  /// One cycle in which no goal came: the last one stands, but not for longer than longest_silence.
+  /// Runs one cycle without a new goal: uses the last goal for at most longest_silence.
   CycleStatus await_cp() noexcept;
 
-  /// What to send to the robot, whatever the status: after a failed cycle it is the last one, with
-  /// its orientation. Nothing unless engaged.
+  /// Returns the setpoint to send to the robot for any status: after a failed cycle, the last pose.
+  /// Empty unless engaged.
   const std::optional<Pose>& setpoint_cp() const noexcept { return setpoint_; }
 
-  /// What to send to the hand's device, in its frame; without torque.
+  /// Returns the wrench to send to the hand's device, in its frame; the torque is zero.
   const Wrench& servo_cf() const noexcept { return wrench_; }
 
-  /// The last cycle, in the frame of the mesh.
+  /// Returns the last cycle, in the frame of the mesh.
   const HapticCycle& cycle() const noexcept { return cycle_; }
-  /// One line on the last cycle, and what to do about it; a literal.
+  /// Returns one line on the last cycle and what to do about it; a literal.
   std::string_view reason() const noexcept { return cycle_.reason(); }
 
-  /// What went to and fro since it was engaged.
+  /// Returns the energies since the guard was engaged.
   const EnergyReport& energy() const noexcept { return proxy_.energy(); }
-  /// Between the robot's frame and that of the mesh.
+  /// Returns the registration between the robot's frame and that of the mesh.
   const Registration& registration() const noexcept { return registration_; }
 
  private:

@@ -10,85 +10,87 @@
 
 namespace keepout {
 
-/// A quaternion as messages have it. Named, for the order of its parts differs from one library to
-/// the next.
+/// A quaternion as in messages. Its parts have names, because their order differs between
+/// libraries.
 struct Quaternion {
-  double x = 0.0;  // along the first axis
-  double y = 0.0;  // along the second
-  double z = 0.0;  // along the third
+  double x = 0.0;  // along x
+  double y = 0.0;  // along y
+  double z = 0.0;  // along z
   double w = 1.0;  // the scalar part
 };
 
-/// How far a matrix may be from a rotation, in each element of R^T R: matrices are passed on with
-/// four digits, and a scale of 1.0001 is 0.02 mm in 200 mm.
+/// The largest error of a rotation matrix R, in each element of R^T R. Matrices are often given
+/// with four digits; a scale of 1.0001 is an error of 0.02 mm in 200 mm.
 inline constexpr double rotation_tolerance = 1e-4;
 
-/// Whether a matrix is a rotation, to within the tolerance: finite, orthonormal, no reflection.
+/// Returns true if a matrix is a rotation, to within the tolerance: finite, orthonormal, no
+/// reflection.
 bool is_rotation(const Mat3& matrix) noexcept;
 
-/// The rotation nearest to what is one to within the tolerance. Precondition: is_rotation(matrix).
+/// Returns the rotation nearest to a matrix. Precondition: is_rotation(matrix).
 Mat3 nearest_rotation(const Mat3& matrix) noexcept;
 
-/// Whether a pose may be acted upon: its position is finite and its rotation is one.
+/// Returns true if the position of a pose is finite and its matrix is a rotation.
 bool is_valid(const Pose& pose) noexcept;
 
-/// The rotation of a quaternion, which is normalized. Nothing when it is not finite, or when its
-/// length is off 1 by more than the tolerance: an empty message has zeros.
+/// Returns the rotation of a quaternion, after normalization. Empty if the quaternion is not
+/// finite, or its length differs from 1 by more than the tolerance, as in a message of zeros.
 std::optional<Mat3> to_rotation(const Quaternion& quaternion) noexcept;
 
-/// The quaternion of a rotation, w >= 0. Precondition: is_rotation(rotation).
+/// Returns the quaternion of a rotation, w >= 0. Precondition: is_rotation(rotation).
 Quaternion to_quaternion(const Mat3& rotation) noexcept;
 
-/// What lengths are measured in. There is no default: whoever forgets is told.
+/// A unit of length. There is no default: an unstated unit is an error.
 enum class LengthUnit : std::uint8_t { unstated, millimetre, metre };
 
-/// The unit of each side of a registration. CRTK and ROS speak meters; meshes are in millimeters.
+/// The units of a registration. CRTK and ROS use meters; meshes are usually in millimeters.
 struct RegistrationUnits {
   LengthUnit transform = LengthUnit::unstated;  // of the matrix's translation
   LengthUnit robot = LengthUnit::unstated;      // of the robot's poses
-  LengthUnit mesh = LengthUnit::unstated;       // of the mesh, and of all that keepout is given
+  LengthUnit mesh = LengthUnit::unstated;       // of the mesh, and of all lengths in keepout
 };
 
-/// Where the mesh is in the robot's frame, and what both measure lengths in. The robot's frame is
-/// the one that its poses are in: its base, or the camera (docs/controllers.md). The mesh stays
-/// where it is: poses are brought into its frame, and motions and forces back out.
+/// The transform between the robot's frame and the mesh's frame, with the units of both. The
+/// robot's frame is that of its poses: its base, or the camera (docs/controllers.md). The mesh does
+/// not move: poses are transformed into its frame, and motions and forces back.
 ///
-/// Forces are in newtons on both sides: they are turned, and nothing else.
+/// Forces are in newtons on both sides: they are only rotated.
 class Registration {
  public:
-  /// From the 4 x 4 matrix that takes points of the robot's frame to the frame of the mesh. Throws
-  /// Error for a matrix that is no rotation and translation, saying which of a reflection, a scale
-  /// or a shear it is; for a translation of more than 10 m; for a unit left unstated. What is a
-  /// rotation to within rotation_tolerance is taken for the nearest one.
+  /// Returns the registration of the 4 x 4 matrix that transforms points of the robot's frame into
+  /// the mesh's frame. The rotation is replaced by the nearest exact one. Throws Error unless the
+  /// matrix is a rotation (to within rotation_tolerance) and a translation. The message states if
+  /// it has a reflection, a scale or a shear. Also throws Error for a translation of more than 10 m
+  /// and for an unstated unit.
   static Registration mesh_from_robot(const Eigen::Matrix4d& matrix,
                                       const RegistrationUnits& units);
 
-  /// The same from its inverse: where the mesh's origin and axes are in the robot's frame.
+  /// Like mesh_from_robot, for the inverse matrix: the pose of the mesh in the robot's frame.
   static Registration robot_from_mesh(const Eigen::Matrix4d& matrix,
                                       const RegistrationUnits& units);
 
-  /// A point of the robot's frame, in the frame and the unit of the mesh; and back.
+  /// Returns a point of the robot's frame in the frame and the unit of the mesh.
   Vec3 point_to_mesh(const Vec3& point) const noexcept {
     return rotation_ * (scale_ * point) + translation_;
   }
-  /// The inverse of point_to_mesh.
+  /// Returns a point of the mesh's frame in the robot's frame and unit.
   Vec3 point_to_robot(const Vec3& point) const noexcept {
     return (rotation_.transpose() * (point - translation_)) / scale_;
   }
 
-  /// A displacement or a velocity; and back.
+  /// Returns a displacement or a velocity in the frame and the unit of the mesh.
   Vec3 vector_to_mesh(const Vec3& vector) const noexcept { return rotation_ * (scale_ * vector); }
-  /// The inverse of vector_to_mesh.
+  /// Returns a displacement or a velocity in the robot's frame and unit.
   Vec3 vector_to_robot(const Vec3& vector) const noexcept {
     return (rotation_.transpose() * vector) / scale_;
   }
 
-  /// A force, [N] on both sides; and back.
+  /// Returns a force in the frame of the mesh. [N]
   Vec3 force_to_mesh(const Vec3& force) const noexcept { return rotation_ * force; }
-  /// The inverse of force_to_mesh.
+  /// Returns a force in the robot's frame. [N]
   Vec3 force_to_robot(const Vec3& force) const noexcept { return rotation_.transpose() * force; }
 
-  /// How many of the mesh's units one of the robot's is: 1000 for meters and millimeters.
+  /// Returns the robot's unit divided by the mesh's unit: 1000 for meters and millimeters.
   double scale() const noexcept { return scale_; }
 
  private:

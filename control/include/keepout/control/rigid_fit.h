@@ -11,47 +11,47 @@
 
 namespace keepout {
 
-/// The rotation and translation that brings points measured by a robot onto those of a mesh, and
-/// how well they fit. All lengths are in the unit of the mesh.
+/// The rigid transform from points measured by a robot to points of a mesh, and the quality of the
+/// fit. All lengths are in the unit of the mesh.
 struct RigidFit {
-  Pose mesh_from_robot;           // takes a measured point to the mesh [length]
-  std::vector<double> residuals;  // of each pair, how far apart it is left [length]
+  Pose mesh_from_robot;           // transforms a measured point into the mesh's frame [length]
+  std::vector<double> residuals;  // the remaining distance of each pair [length]
   double fre = 0.0;               // fiducial registration error: sqrt(sum w r^2 / sum w) [length]
-  double scale = 1.0;             // how much wider the model's points are spread than the measured
-  std::string doubt;              // which mistake the residuals speak of; empty where of none
-  Vec3 center = Vec3::Zero();     // weighted mean of the model's points [length]
-  /// How much the points leave the rotation open: (sum w (|p|^2 I - p p^T))^-1 over the model's
-  /// points, from the center, with weights of mean 1. [1 / length^2]
+  double scale = 1.0;  // spread of the model's points divided by that of the measured points
+  std::string doubt;   // the mistake that the residuals suggest; empty if they suggest no mistake
+  Vec3 center = Vec3::Zero();  // weighted mean of the model's points [length]
+  /// The uncertainty of the rotation: (sum w (|p|^2 I - p p^T))^-1 over the model's points p
+  /// relative to the center, with weights of mean 1. [1 / length^2]
   Mat3 looseness = Mat3::Zero();
 
-  /// The pose as Registration::mesh_from_robot takes it, with a `transform` in the mesh's unit.
+  /// Returns the matrix for Registration::mesh_from_robot, with RegistrationUnits::transform in the
+  /// mesh's unit.
   Eigen::Matrix4d matrix() const noexcept;
 
-  /// The fiducial localisation error that the residuals let expect: how far off a pair is before
-  /// the fit, root mean square, of both its points together; that of a pair of mean weight.
+  /// Returns the fiducial localization error (FLE) estimated from the residuals: the root mean
+  /// square error of a pair of mean weight, of both points together.
   /// FLE^2 = FRE^2 N / (N - 2), to first order (Fitzpatrick, West, Maurer 1998). [length]
   double estimated_fle() const noexcept;
 
   /// Returns why a fiducial localization error contradicts the residuals; empty if it does not.
   /// It does if fewer than one in a thousand registrations with that error, alike in all
   /// directions, has so large an FRE: N FRE^2 / (FLE^2 / 3) is chi-squared with 3 N - 6 degrees of
-  /// freedom. fle: root mean square, as estimated_fle() [length].
+  /// freedom. fle: root mean square, above 0, as estimated_fle() [length]. Throws Error otherwise.
   std::string doubt_of(double fle) const;
 };
 
-/// The rigid fit, without a scale, of points measured in the robot's frame to the same ones in the
-/// mesh's: it minimizes sum w |R s + t - m|^2 (Horn 1987; by singular values, and never a
-/// reflection: Umeyama 1991).
+/// Returns the rigid transform, without a scale, from points s measured in the robot's frame to the
+/// same points m in the mesh's frame. It minimizes sum w |R s + t - m|^2 (Horn 1987), by singular
+/// values and without reflections (Umeyama 1991).
 ///
-/// Both in the mesh's unit: what is measured in meters has to be multiplied by 1000 for a mesh in
-/// millimeters. `weights`: one for each pair, or none for all alike; only their ratios count. They
-/// are best proportional to 1 / (localisation error)^2 of the pair, and target_error takes them
-/// for that.
+/// Both are in the mesh's unit: multiply points in meters by 1000 for a mesh in millimeters.
+/// `weights`: one for each pair, or empty for equal weights; only their ratios matter. They should
+/// be proportional to 1 / (localization error)^2 of the pair, as target_error assumes.
 ///
-/// Throws Error for fewer than 3 pairs, different counts, numbers that are not finite or beyond
-/// longest_length, weights not above 0, points that coincide, points on a line (narrower than a
-/// thousandth of its length), and pairs that are so mixed up that no rotation is best. Large
-/// residuals are no error: see RigidFit::doubt.
+/// Throws Error for fewer than 3 pairs, different counts, numbers that are not finite or above
+/// longest_length, and weights not above 0. Also throws Error for points that coincide or are on a
+/// line (narrower than a thousandth of its length), and for permuted pairs without a best rotation.
+/// Large residuals are not an error: see RigidFit::doubt.
 RigidFit fit_rigid(std::span<const Vec3> measured, std::span<const Vec3> model,
                    std::span<const double> weights = {});
 

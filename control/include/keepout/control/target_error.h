@@ -8,41 +8,45 @@
 
 namespace keepout {
 
-/// By how much a registration is expected to be off at a target: normal, with mean 0.
+/// The expected error of a registration at a target: normally distributed with mean 0.
 struct TargetError {
   Mat3 covariance = Mat3::Zero();  // of the displacement, in the mesh's axes [length^2]
 
-  /// The target registration error, TRE: how far off the target is, root mean square. [length]
+  /// Returns the target registration error (TRE): the root mean square displacement of the target.
+  /// [length]
   double rms() const noexcept;
-  /// The standard deviation in the direction in which it is largest. [length]
+  /// Returns the standard deviation in the direction where it is largest. [length]
   double worst_deviation() const noexcept;
 };
 
-/// The error of a fit at a target, a point in the frame of the mesh, to first order in the errors
-/// of the pairs: independent, alike in all directions, and of a pair with weight w and of mean
-/// weight v the variance FLE^2 / 3 v / w in each. With p the target from the fit's center,
+/// Returns the error of a fit at a target, a point in the frame of the mesh, to first order in the
+/// errors of the pairs. These are assumed independent and equal in all directions. For a pair of
+/// weight w and the mean weight v, the variance in each direction is FLE^2 / 3 v / w. With p the
+/// target relative to the fit's center,
 ///
 ///     covariance = FLE^2 / 3 (I / N + [p] looseness [p]^T),    [p] x = p cross x
 ///
-/// whose trace is FLE^2 / N (1 + 1/3 sum d_k^2 / f_k^2), with d_k of the target and
-/// f_k of the pairs, root mean square, from the k-th principal axis (Fitzpatrick, West, Maurer
-/// 1998). `fle`: the localisation error, root mean square [length]; without, what the residuals let
-/// expect. Throws Error for a target or an `fle` that is not finite, and for an `fle` not above 0.
+/// Its trace is FLE^2 / N (1 + 1/3 sum d_k^2 / f_k^2) (Fitzpatrick, West, Maurer 1998). There d_k
+/// is the distance of the target from the k-th principal axis, and f_k the root mean square
+/// distance of the pairs. `fle`: the localization error, root mean square [length]; by default
+/// estimated_fle(). Throws Error for a target or an `fle` that is not finite, and for an `fle` not
+/// above 0.
 TargetError target_error(const RigidFit& fit, const Vec3& target, std::optional<double> fle = {});
 
-/// What to add to a guard's margin, so that with the probability `confidence` the registration is
-/// off by no more: at the target, where it is one; where they are several, at all points of their
-/// convex hull at once, such as of the eight corners of a box that the tool works in. [length]
+/// Returns the length to add to a guard's margin [length]. The registration error exceeds it only
+/// with probability 1 - `confidence`. With one target, this holds at the target. With several
+/// targets, it holds at all points of their convex hull at once. Eight corners, for example, give
+/// the box of a work space.
 ///
-/// It is the worst_deviation, s, times a quantile of the error's length were it as large in all
-/// directions: chi of 3 degrees of freedom for one target, for no deviation is larger than s; chi
-/// of 6 for several, for all come of the same three turns and three shifts. Where the FLE is
-/// estimated, so is s, and the quantile is sqrt(k F(k, 3 N - 6)) in chi's place. The hull adds
-/// nothing to its corners, as s is a convex function of the place.
+/// The length is the worst_deviation s times a quantile of the error's length, if the deviation
+/// were s in all directions. For one target the quantile is that of chi with k = 3 degrees of
+/// freedom. For several it has k = 6, as all errors come from the same three rotations and three
+/// translations. If the FLE is estimated, so is s, and the quantile is sqrt(k F(k, 3 N - 6))
+/// instead. The corners of the hull are sufficient, as s is a convex function of the position.
 ///
-/// It does not cover what all pairs have in common, such as a tool measured too long, nor what
-/// moves later. Throws Error where target_error does, without a target, and for a confidence not
-/// above 0 or beyond 0.9999, where errors are no longer known to be normal.
+/// The length does not cover errors that all pairs share, such as a wrong tool length, or later
+/// motion. Throws Error like target_error, without a target, and for a confidence not above 0 or
+/// above 0.9999, where the errors may not be normal.
 double registration_margin(const RigidFit& fit, std::span<const Vec3> targets,
                            double confidence = 0.99, std::optional<double> fle = {});
 

@@ -18,29 +18,27 @@ using HalfSpaceBuffer = Buffer<HalfSpace>;
 
 /// The region of the tip's increments in which the solved motions of a cycle may end.
 enum class EndRegion : std::uint8_t {
-  target_ball,   // the ball whose diameter is the target: all projections of the target (Thales)
-  motion_sphere  // the ball about the tip of radius RuleInput::longest, wherever the motion need
-                 // not be a projection: joints, rows, a retreat, guides that lead back, rules that
-                 // return nothing else; or by StepOptions::query
+  target_ball,  // the ball whose diameter is the target: all projections of the target (Thales)
+  /// The ball around the tip of radius RuleInput::longest, for motions that need not be
+  /// projections. Used with joints, rows, a retreat, guides that pull points back, other rules, or
+  /// Query::sphere.
+  motion_sphere
 };
 
 /// The input of a rule in a cycle.
 struct RuleInput {
-  Vec3 tip;                   // [length]
-  Vec3 target;                // what the cycle pursues: the desired increment, a part of it, or the
-                              // retreat [length]
-  Vec3 accepted;              // a motion that planes must go on allowing; zero before there is one,
-                              // as planes allow zero motion anyway [length]
-  double radius;              // of the motion sphere [length]
-  double longest;             // no motion is longer: at most longest_motion(), and in a recovery
-                              // twice the retreat [length]
-  double clearance;           // required from the mesh: tool radius and margin [length], >= 0
-  double recovery;            // the longest retreat of a tip that is too close, in a cycle [length]
-  double rounding;            // bound of the tip's error after earlier steps [length]
-  EndRegion searched_region;  // the ends of motions whose triangles are searched: where the solved
-                              // motions may end, or more
-  bool is_projected = false;  // no joints, rows, damping or guides that lead back, and the solver
-                              // ignores idle planes: a rule may leave them out
+  Vec3 tip;          // [length]
+  Vec3 target;       // the desired increment, a part of it, or the retreat [length]
+  Vec3 accepted;     // motion that planes must still allow; zero before there is one [length]
+  double radius;     // of the motion sphere [length]
+  double longest;    // bound of all motions: longest_motion() or twice the retreat [length]
+  double clearance;  // required from the mesh: tool radius and margin [length], >= 0
+  double recovery;   // the longest retreat of a tip that is too close, in a cycle [length]
+  double rounding;   // bound of the tip's error after earlier steps [length]
+  EndRegion searched_region;  // contains the ends of all motions that may be solved
+  /// True if there are no joints, rows, damping or guides that pull points back, and the solver
+  /// ignores idle planes: the rule may leave such planes out.
+  bool is_projected = false;
 };
 
 /// Returns the smallest ball that contains searched_region, in the frame of the mesh.
@@ -52,7 +50,7 @@ struct Opening {
   /// `target` is its retreat. Any other status ends the step.
   Status status = Status::free;
   Vec3 target = Vec3::Zero();  // the retreat, when recovering [length]
-  /// From the tip to the nearest triangle, if the rule knows it at no cost. [length]
+  /// The distance from the tip to the nearest triangle, if the rule knows it at no cost. [length]
   std::optional<double> distance = std::nullopt;
 };
 
@@ -62,7 +60,7 @@ struct Judgement {
   enum class Verdict : std::uint8_t {
     accepted,
     objected,  // planes were added, of which at least one excludes the trial
-    blocked    // the trial is not accepted, and no plane would help
+    blocked    // the trial is not accepted, and no plane can help
   };
   Verdict verdict = Verdict::accepted;  // on the trial as a whole
   double free_fraction = 1.0;           // of the trial that is free, unless it is accepted
@@ -70,10 +68,11 @@ struct Judgement {
 
 /// Chooses the planes that limit a motion.
 ///
-/// An eager rule adds all of its planes in `open`. A lazy one is a separation oracle, as in a
-/// cutting-plane method: `judge` receives each trial motion, and adds a plane that the trial
-/// violates until it accepts one. The same loop of a cycle serves both (Cycle::solve_and_judge).
-/// State that a rule keeps between cycles never changes a result, unless the work budget ends.
+/// An eager rule adds all of its planes in `open`. A lazy rule is a separation oracle, as in a
+/// cutting-plane method. Its `judge` receives each trial motion, and either accepts the trial or
+/// adds a plane that the trial violates. The same loop of a cycle serves both
+/// (Cycle::solve_and_judge). State that a rule stores between cycles never changes a result, unless
+/// the work budget ends.
 class ActivationRule {
  public:
   virtual ~ActivationRule() = default;
@@ -91,8 +90,8 @@ class ActivationRule {
   /// the index's own traversal (SpatialIndex::traverse_along_motions). Precondition: prepare.
   virtual bool makes_queries() const noexcept { return true; }
 
-  /// Returns the region in which the cycle must keep the ends of motions if there are neither
-  /// joints nor rows of the caller's own, so that they are projections of the target.
+  /// Returns the region that must contain the ends of motions if there are neither joints nor rows.
+  /// All motions are then projections of the target.
   virtual EndRegion end_region() const noexcept { return EndRegion::motion_sphere; }
 
   /// Returns the ball that touches all triangles that matter: by default the ball of
@@ -103,8 +102,8 @@ class ActivationRule {
   /// them trial by trial. Returns false if they exceed the capacity or the work budget.
   [[nodiscard]] virtual bool gather(const RuleInput& input) noexcept;
 
-  /// Opens a cycle: finds if the tip is too close, and appends the planes that hold for every
-  /// trial. May judge the target already, which is the first trial. Precondition: gather.
+  /// Opens a cycle: determines if the tip is too close, and appends the planes that hold for every
+  /// trial. May already judge the target, which is the first trial. Precondition: gather.
   virtual Opening open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept = 0;
 
   /// Judges a trial motion: by default it is accepted if it satisfies the planes, which no solver
@@ -113,7 +112,7 @@ class ActivationRule {
   virtual Judgement judge(const RuleInput& input, const Vec3& trial,
                           HalfSpaceBuffer& planes) noexcept;
 
-  /// Relaxes planes that pull the tip back, when the planes contradict each other. Returns true if
+  /// Relaxes planes that pull the tip back, if the planes contradict each other. Returns true if
   /// any plane changed.
   virtual bool relax(HalfSpaceBuffer& /*planes*/) noexcept { return false; }
 
@@ -129,8 +128,8 @@ class ActivationRule {
   virtual void add_alternatives(TriangleId /*triangle*/,
                                 HalfSpaceBuffer& /*planes*/) const noexcept {}
 
-  /// Returns the number of triangles that the last result depends on: all hits, or the examinations
-  /// of triangles, which count a triangle again if the rule had to forget it.
+  /// Returns the number of triangles that the last result depends on. It is the number of hits, or
+  /// of examined triangles. A triangle counts again if the rule had to forget it.
   virtual std::size_t triangles() const noexcept { return hits().size(); }
 
  protected:

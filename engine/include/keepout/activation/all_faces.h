@@ -5,9 +5,9 @@
 
 namespace keepout {
 
-/// Every triangle in reach whose positive side the tip is on becomes a plane: the naive baseline of
-/// Li et al. 2020 (figure 2d), right in valleys and far too strict over ridges. Triangles without
-/// an area have no face and are passed over.
+/// Adds a plane for every triangle in the region if the tip is on its positive side. This is the
+/// naive baseline of Li et al. (2020), figure 2d: right in valleys, and far too strict over ridges.
+/// Ignores triangles without an area, which have no face.
 class AllFaces final : public ActivationRule {
  public:
   Opening open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept override;

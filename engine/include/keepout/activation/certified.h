@@ -17,21 +17,20 @@ namespace keepout {
 struct CertifiedTerms;
 
 /// The certified rule: it accepts a motion only if it proves that the whole motion stays clear of
-/// each triangle that the motion could come near. Needs no adjacency, winding or convexity: the tip
-/// stays clear of open, non-manifold and self-intersecting surfaces alike, on both sides.
+/// each triangle that the motion could come near. It needs no adjacency, winding or convexity. The
+/// tip stays clear of open, non-manifold and self-intersecting surfaces alike, on both sides.
 ///
-/// It starts without planes. To a trial that comes too close it adds the plane of the first
-/// contact, which has that triangle, grown by the required clearance, behind it; each triangle gets
-/// at most one plane in a search. Proof: docs/certified-step.md. Search and tolerances:
+/// It starts without planes. If a trial comes too close, the rule adds the plane of the first
+/// contact. That triangle, grown by the required clearance, lies behind the plane. Each triangle
+/// gets at most one plane in a search. Proof: docs/certified-step.md. Search and tolerances:
 /// docs/certified-step-algorithm.md.
 ///
-/// The triangles come from the index, by a traverse along each trial motion. The rule judges them
-/// here, in double, one triangle at a time: so the answers are bitwise identical on every index,
-/// whatever the index left out as surely clear.
+/// The index finds the triangles by a traversal along each trial motion. The rule judges each
+/// triangle in double precision. The answers are therefore bitwise identical on every index,
+/// whichever triangles the index skips as surely clear.
 ///
-/// Guarantee, for every motion dx that judge() accepts, under the assumptions of
-/// docs/certified-step.md: dist(x + s dx, mesh) >= min(clearance, dist(x, mesh)) - 3 tolerance for
-/// all s in [0, 1].
+/// Guarantee for every motion dx that judge() accepts (assumptions: docs/certified-step.md):
+/// dist(x + s dx, mesh) >= min(clearance, dist(x, mesh)) - 3 tolerance for all s in [0, 1].
 class CertifiedRule final : public ActivationRule {
  public:
   CertifiedRule();
@@ -53,19 +52,18 @@ class CertifiedRule final : public ActivationRule {
 
   /// Returns tau, the tolerance of distances at a tip: 2e-10 of longest edge, radius and clearance,
   /// plus 4e-16 of the 1-norm of the tip. It depends on the whole mesh and not on the triangles
-  /// found, so no index can change it.
-  /// Precondition: prepare. [length]
+  /// found, so it is the same on every index. Precondition: prepare. [length]
   double tolerance(const RuleInput& input) const noexcept;
 
  private:
-  /// The result of a traverse along a trial.
+  /// The result of a traversal along a trial.
   struct Passage {
-    /// The first contact that speaks against the trial.
+    /// The first contact that forbids the trial.
     Contact contact{MotionTraversal::never, {Vec3::Zero(), 0.0, no_triangle}};
-    std::uint32_t prepared =
-        MotionTraversal::no_note;  // its index in prepared_; no_note: no contact
-    bool is_too_close = false;     // a triangle is too close to the tip: contacts mean nothing
-    bool nothing_near = false;     // neither this trial nor one like it comes near anything
+    /// The index of its triangle in prepared_; no_note: no contact.
+    std::uint32_t prepared = MotionTraversal::no_note;
+    bool is_too_close = false;  // a triangle is too close to the tip: contacts mean nothing
+    bool nothing_near = false;  // neither this trial nor a similar one comes near a triangle
 
     bool has_contact() const noexcept { return prepared != MotionTraversal::no_note; }
   };
@@ -82,18 +80,18 @@ class CertifiedRule final : public ActivationRule {
 
   std::unique_ptr<MotionTraversal> traversal_;
 
-  // Of this cycle.
+  // State of this cycle.
   std::unique_ptr<CertifiedTerms> terms_;
-  /// The traverse along the target without planes, if open() made it: judge() uses it for the first
-  /// trial, which is the target.
+  /// The traversal along the target without planes, if open() made it. judge() uses it for the
+  /// first trial, which is the target.
   std::optional<Passage> at_target_;
-  /// The prepared triangles that were examined. The traversal's notes are indices in here, so the
-  /// traversal begins again whenever the prepared triangles are cleared. A triangle may be here
-  /// twice, if the traversal forgot its note.
+  /// The prepared triangles that were examined. The notes of the traversal are indices into this
+  /// buffer, so the traversal begins again whenever the buffer is cleared. The buffer holds a
+  /// triangle twice if the traversal forgot its note.
   Buffer<PreparedTriangle> prepared_;
   static constexpr std::size_t most_walls = 12;
-  Buffer<PreparedTriangle> walls_{most_walls};  // near a tip that is too close, one for each
-                                                // direction, until their planes are added
+  /// Near a tip that is too close: one for each direction, until their planes are added.
+  Buffer<PreparedTriangle> walls_{most_walls};
 };
 
 }  // namespace keepout

@@ -13,25 +13,25 @@
 namespace keepout {
 
 /// Keeps a convex tool out of a mesh. The tool moves with the tip, its origin, and does not turn.
-/// The rule accepts a motion only if planes prove that the whole tool keeps its distance. It does
-/// not use the winding: the tool stays on the side of each surface where it is.
+/// The rule accepts a motion only if planes prove that the whole tool stays clear. The rule does
+/// not use the winding: the tool stays on its side of each surface.
 ///
 /// Proof for a straight motion d: let n . p - n . v >= s for all points p of the tool and v of the
 /// triangle. At a fraction t of d their distance is at least s + t n . d. That is linear in t, so
 /// its least value is at an end: s, or s + n . d. The proof holds for any n, and the rule computes
-/// s from the tool and the triangle. A narrow phase therefore only proposes normals. The rule asks
-/// the exact kernel where a proposal proves too little, and at contacts.
+/// s from the tool and the triangle. A narrow phase therefore only proposes normals. The rule calls
+/// the exact kernel if a proposal proves too little, and at contacts.
 ///
-/// The rule starts without planes and answers a trial that comes too close with the plane of the
-/// first contact, which has the triangle behind it, grown by tool and margin. One plane for each
-/// triangle from the tool's start would be sound too, but a tool that slides over a flat mesh would
-/// stop at inner edges.
+/// The rule starts without planes. If a trial comes too close, it adds the plane of the first
+/// contact. The triangle, grown by tool and margin, lies behind that plane. Planes at the tool's
+/// start, one for each triangle, would also be sound. But a tool that slides over a flat mesh would
+/// then stop at inner edges.
 ///
 /// Guarantee: dist(tool + t d, mesh) >= min(margin, dist(tool, mesh)) - 3 tolerance, t in [0, 1]. A
 /// tool that is too close retreats. A tool that touches the surface does not move.
 class ConvexToolRule final : public ActivationRule {
  public:
-  /// Precondition: a narrow phase that is given is one of this tool; the exact one by default.
+  /// Makes the rule of a tool. `narrow_phase`: for this tool; null for the exact one.
   explicit ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> narrow_phase = nullptr);
 
   void prepare(Neighborhood& neighborhood) override;
@@ -43,25 +43,25 @@ class ConvexToolRule final : public ActivationRule {
                   HalfSpaceBuffer& planes) noexcept override;
   bool relax(HalfSpaceBuffer& planes) noexcept override;
 
-  /// Returns the resolution of distances: some 1e-12 of the lengths at hand, and the rounding of a
-  /// position. Precondition: prepare. [length]
+  /// Returns the resolution of distances: about 1e-12 of the lengths involved, plus the rounding of
+  /// a position. Precondition: prepare. [length]
   double tolerance(const RuleInput& input) const noexcept;
 
   /// Returns the tool.
   const ConvexTool& tool() const noexcept { return tool_; }
 
  private:
-  /// A plane between a triangle and the tool at some place.
+  /// A plane between a triangle and the tool at one position.
   struct Proof {
     Vec3 normal;      // unit
-    double distance;  // that it proves [length]
+    double distance;  // the distance that it proves [length]
   };
 
-  /// A triangle in reach, and the distances that the tool must keep from it. [length]
+  /// A triangle in the region, and the distances that the tool must maintain from it. [length]
   struct Near {
     TriangleId triangle;
     Proof at_start;
-    bool is_refined;           // at_start is the narrow phase's: other proofs may be much weaker
+    bool is_refined;  // at_start comes from the narrow phase; other proofs may be much weaker
     double plane_level = 0.0;  // distance at which planes are put
     double demand = 0.0;       // a trial that comes closer is rejected
     double floor = 0.0;        // the least distance of a trial that satisfies the triangle's plane
@@ -90,7 +90,7 @@ class ConvexToolRule final : public ActivationRule {
   ConvexTool tool_;
   std::unique_ptr<NarrowPhase> narrow_phase_;
   Buffer<Near> near_;         // sorted by triangle
-  Buffer<Suspect> suspects_;  // of one trial, the earliest first
+  Buffer<Suspect> suspects_;  // of one trial, sorted by `earliest`
 };
 
 }  // namespace keepout

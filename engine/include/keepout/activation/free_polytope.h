@@ -18,52 +18,55 @@ namespace keepout {
 
 struct TriangleFromTip;
 
-/// How many planes it takes to allow standing still and nothing else.
+/// The number of planes that allow only zero motion.
 inline constexpr std::size_t planes_to_hold_still = 6;
 
-/// Replaces planes by that many, one to each side along the axes.
+/// Replaces `planes` by planes_to_hold_still planes, one for each direction of each axis.
 void hold_still(HalfSpaceBuffer& planes) noexcept;
 
-/// The free space around the tip as one convex polytope, whatever the direction of the motion: for
-/// callers with a QP, an MPC or a sampler of their own.
+/// Computes the free space around the tip as one convex polytope, which does not depend on the
+/// direction of the motion. For callers with their own QP, MPC or sampler.
 ///
-/// Every increment d with |d| <= radius that satisfies all planes keeps
-///   distance(tip + d, mesh) >= min(clearance, distance(tip, mesh)) - rounding,
-/// and as planes and ball are convex and hold d = 0, so does every motion that stays within them,
-/// straight or curved. `rounding` is 1e-12 radius + 2e-14 size [length], where size is the largest
-/// distance from the tip to a corner of a hit; it does not grow with the distance from the origin.
-/// It needs no adjacency, no winding and no closed surface: both sides of a triangle are solid.
+/// Every increment d with |d| <= radius that satisfies all planes maintains
+/// distance(tip + d, mesh) >= min(clearance, distance(tip, mesh)) - rounding.
+/// The same holds along every motion, straight or curved, that stays within planes and ball.
+/// `rounding` is 1e-12 radius + 2e-14 size [length], where size is the largest distance from the
+/// tip to a corner of a hit. It does not grow with the distance from the origin. The polytope needs
+/// no adjacency, no winding and no closed surface: it stays on the tip's side of each triangle.
 ///
-/// Greedy separation in order of distance: a triangle becomes a plane unless what the ball can
-/// reach of it is behind an earlier one. Of its face plane, and of the plane across the way to its
-/// closest point, that one is taken which leaves more of what the earlier planes left, counted on
-/// fixed probe points in the ball. Planes stand off by a hundredth of the radius, or by a quarter
-/// of their room if that is less, so that nearly coplanar neighbors are behind them as well: that
-/// costs a hundredth of the volume and saves a quarter of the planes.
+/// Visits the triangles in order of distance. It adds a plane unless the part of the triangle
+/// within the ball is already behind an earlier plane. There are two candidates: the face plane,
+/// and the plane perpendicular to the segment to the closest point. It takes the plane that leaves
+/// more of the remaining space, counted on fixed probe points in the ball.
 ///
-/// Not thread-safe: one for each thread; the mesh is shared.
+/// Planes are put nearer to the tip than necessary: by a hundredth of the radius, or by a quarter
+/// of the distance available if that is less. Nearly coplanar neighbors are then behind the same
+/// plane. This costs a hundredth of the volume and saves a quarter of the planes.
+///
+/// Not thread-safe: make one for each thread. The mesh may be shared.
 class FreePolytope {
  public:
-  /// Makes all memory here, for up to `triangles` hits in a call. Throws Error without a mesh.
+  /// Allocates all memory, for up to `triangles` hits in a call. Throws Error without a mesh.
   FreePolytope(std::shared_ptr<const Mesh> mesh, std::size_t triangles);
 
   /// Replaces the contents of `planes` by the polytope around `tip`; all offsets are <= 0. Returns
-  /// free, or why the planes allow standing still only: touching, invalid_input, over_capacity or
-  /// out_of_budget.
+  /// free. If the planes allow only zero motion, returns the cause: touching, invalid_input,
+  /// over_capacity or out_of_budget.
   ///
   /// `radius`, `clearance` [length], >= 0. `hits`: all triangles within the ball of radius +
   /// clearance around the tip, in any order; closest points relative to the tip (refine). `planes`
-  /// needs room for at least six; with less, a failure leaves it overflowed. `budget`: work is
-  /// taken from it.
+  /// needs a capacity of at least planes_to_hold_still; with less, it overflows on failure. Spends
+  /// work units of `budget`.
   ///
-  /// The normals, the offsets and their order are the same, bit for bit but for the sign of a zero,
-  /// however the triangles are numbered, wound and rotated. Allocates nothing.
+  /// The normals, the offsets and their order do not depend on how the triangles are numbered and
+  /// wound, or which corner is first. They are bitwise identical, except for the sign of a zero.
+  /// Allocates nothing.
   [[nodiscard]] Status around(const Vec3& tip, double radius, double clearance,
                               std::span<const Hit> hits, Budget& budget,
                               HalfSpaceBuffer& planes) noexcept;
 
  private:
-  /// A hit, and what it is sorted by.
+  /// A hit and its sort key.
   struct Turn {
     double distance;  // [length]
     std::uint32_t hit;

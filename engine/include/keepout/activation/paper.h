@@ -12,27 +12,29 @@ namespace keepout {
 
 class PaperBlocks;
 
-/// Algorithm 1 of Li et al. 2020: three conditions on each triangle and its neighbors decide which
-/// planes are active. Kept for comparison: it is not always safe, nor tight (docs/activation.md).
+/// Algorithm 1 of Li et al. (2020): three conditions on each triangle and its neighbors decide
+/// which planes are active. For comparison only: the algorithm is not always safe, and not always
+/// tight (docs/activation.md).
 ///
-/// Where the paper is silent or contradicts itself, we decide:
-/// - Convexity is that of the anatomy: convex is a ridge. Coplanar edges count as convex.
-/// - CP_i == CP_a is exact: the kernel gives both triangles of an edge the same bits.
-/// - At a vertex, both edges of T_i that meet there are asked. Condition 2 goes first; Condition 3
-///   applies if either edge is concave.
-/// - The plane of Condition 2 is shared by all triangles with that closest point. One whose
-///   qualifying neighbor has a lower id leaves it to that neighbor.
-/// - With the tip on the surface, x - CP has no direction: the face plane {N_i, CP_i} is taken.
-/// - Boundary edges have no adjacent triangle, so neither condition can hold. Non-manifold edges,
-///   and edges whose two windings contradict each other, are treated likewise.
-/// - The sign of N_i^T (x - CP_i) is read to within rounding.
+/// Decisions where Li et al. are silent or contradict themselves:
+/// 1. Convexity refers to the anatomy: a convex edge is a ridge. Coplanar edges count as convex.
+/// 2. CP_i == CP_a is an exact comparison: the kernel computes bitwise identical points for both
+///    triangles of an edge.
+/// 3. At a vertex, both edges of T_i that meet there count. Condition 2 comes first; Condition 3
+///    applies if either edge is concave.
+/// 4. All triangles with that closest point share the plane of Condition 2. A triangle does not add
+///    it if a qualifying neighbor has a lower id.
+/// 5. If the tip is on the surface, x - CP has no direction: the face plane {N_i, CP_i} is used.
+/// 6. Boundary edges have no adjacent triangle, so neither condition can hold. The same applies to
+///    non-manifold edges, and to edges whose two windings contradict each other.
+/// 7. The sign of N_i^T (x - CP_i) is evaluated to within rounding.
 class PaperRule final : public ActivationRule {
  public:
   PaperRule();
   ~PaperRule() override;
 
-  /// Builds the adjacency of the mesh. Looks at the leaves by itself where the index has its
-  /// triangles in blocks.
+  /// Builds the adjacency of the mesh. If the index stores its triangles in blocks, the rule
+  /// examines the blocks itself instead of making queries.
   void prepare(Neighborhood& neighborhood) override;
   bool gather(const RuleInput& input) noexcept override;
   bool makes_queries() const noexcept override { return blocks_ == nullptr; }
@@ -41,7 +43,8 @@ class PaperRule final : public ActivationRule {
   Judgement judge(const RuleInput& input, const Vec3& trial,
                   HalfSpaceBuffer& planes) noexcept override;
 
-  /// The plane that one triangle calls for, if it does. Asks no hits. Precondition: prepare.
+  /// Returns the plane that the conditions require for one triangle; empty if they require no
+  /// plane. Does not read hits(). Precondition: prepare.
   std::optional<HalfSpace> plane_of(const RuleInput& input, const Hit& hit) const noexcept;
 
  private:
@@ -51,7 +54,7 @@ class PaperRule final : public ActivationRule {
   bool touches_a_valley(const Hit& hit) const noexcept;
 
   std::unique_ptr<const Adjacency> adjacency_;
-  std::unique_ptr<PaperBlocks> blocks_;  // where the index offers some
+  std::unique_ptr<PaperBlocks> blocks_;  // null if the index has no blocks
 };
 
 }  // namespace keepout

@@ -7,8 +7,8 @@
 
 namespace keepout {
 
-/// The most planes that a rule adds in one search of a cycle. A search needs few, and about a
-/// hundred under the tip of a cone of 400 faces; more than that is an endless loop.
+/// The most planes that a rule adds in one search of a cycle. A search usually needs few, and about
+/// a hundred under the tip of a cone of 400 faces. The limit ends an endless loop.
 inline constexpr std::size_t most_cutting_planes = 192;
 
 /// Returns the plane {n, p} of Li et al. (2020), eq. 2, with a clearance: it allows all motions
@@ -23,28 +23,28 @@ inline Vec3 away_from(const Hit& hit) noexcept {
   return -hit.closest.offset / hit.closest.distance;
 }
 
-/// Returns true if the tip is on the side of the hit's face to which `normal` points:
-/// N^T (x - CP) >= 0, to within rounding. A tool that slides along a face is above or below it by
-/// rounding; without a tolerance the face would be missed every other cycle.
+/// Returns true if the tip is on the side of the hit's face to which `normal` points: N^T (x - CP)
+/// >= 0, to within rounding. A tool that slides along a face is above or below it by rounding.
+/// Without a tolerance the rule would miss the face in every other cycle.
 bool on_positive_side(const RuleInput& input, const Hit& hit, const Vec3& normal) noexcept;
 
-/// Returns true if the tip is on the surface, to within the rounding of positions, where x - CP has
+/// Returns true if the tip is on the surface, to within the rounding of positions. There x - CP has
 /// no direction. (The certified rule has a larger threshold: touching_within.)
 bool touches(const RuleInput& input, const Hit& hit) noexcept;
 
 /// Returns the retreat of a tip that is too close: the target without its part towards the surface,
-/// plus `lift` along the unit vector `off`, away from the surface. At most as long as the radius of
-/// the motion sphere. [length]
+/// plus `lift` along `off`. `off`: the unit vector away from the surface. The retreat is at most as
+/// long as the radius of the motion sphere. [length]
 Vec3 retreat_target(const RuleInput& input, const Vec3& off, double lift) noexcept;
 
-/// Relaxes the planes that demand motion until they allow standing still. Returns true if any
+/// Relaxes the planes that demand motion until they allow zero motion. Returns true if any plane
 /// changed.
 bool let_stand_still(HalfSpaceBuffer& planes) noexcept;
 
 /// Returns true if a motion satisfies all planes, to within half of the rounding of a position.
 bool satisfies(const Vec3& motion, std::span<const HalfSpace> planes, double rounding) noexcept;
 
-/// Returns true if one of the planes is of a triangle.
+/// Returns true if one of the planes has the triangle as its source.
 bool has_plane(TriangleId triangle, std::span<const HalfSpace> planes) noexcept;
 
 }  // namespace keepout

@@ -13,19 +13,18 @@ inline double support(const Triangle& corners, const Vec3& n) noexcept {
   return std::max({n.dot(corners[0]), n.dot(corners[1]), n.dot(corners[2])});
 }
 
-/// A triangle prepared for proofs: relative to the tip, its corners in lexicographic order, so that
-/// nothing depends on how it is wound, rotated or numbered, nor on the distance of the origin.
+/// A triangle prepared for proofs: relative to the tip, with its corners in lexicographic order. So
+/// no result depends on its winding, its number, its first corner or the distance of the origin.
 ///
-/// Proofs rest on Lemma 2 of docs/certified-step.md: the distance of the point t z of a motion z to
-/// a triangle is convex in t, and each unit vector n bounds it from below by n . (t z) -
-/// support(n), with equality at the t where n points from the triangle's closest point to t z.
+/// Proofs rest on Lemma 2 of docs/certified-step.md. The distance from the point t z of a motion z
+/// to a triangle is convex in t. Each unit vector n bounds it from below by n . (t z) - support(n).
+/// The two are equal at the t where n points from the closest point of the triangle to t z.
 class PreparedTriangle {
  public:
   /// The prepared triangle's closest point to a point, as a proof of the distance.
   struct Nearest {
-    Vec3
-        normal;  // a unit vector from the closest point to the point; zero on the prepared triangle
-    double distance;  // of the point [length]
+    Vec3 normal;      // unit vector from the closest point; zero for a point on the triangle
+    double distance;  // from the closest point to the point [length]
     double support;   // of the prepared triangle along the normal [length]
     Feature feature;  // on which the closest point lies
   };
@@ -42,9 +41,9 @@ class PreparedTriangle {
   /// Returns the corners, in lexicographic order, relative to the tip. [length]
   const Triangle& corners() const noexcept { return corners_; }
 
-  /// Returns the closest point to a point: of all normals within rounding, the one that proves the
-  /// largest distance. (closest_point() finds the same point, but its offset need not prove the
-  /// distance: A9 of docs/certified-step.md.)
+  /// Returns the closest point to a point. Its normal proves the largest distance of all normals
+  /// that agree within rounding. The point is that of closest_point(), whose offset might not prove
+  /// the distance (A9 of docs/certified-step.md).
   Nearest nearest_to(const Vec3& point) const noexcept;
 
   /// Like nearest_to(point), but faster if the closest point lies on the `likely` feature.
@@ -54,7 +53,7 @@ class PreparedTriangle {
   const Nearest& at_tip() const noexcept { return at_tip_; }
   /// Returns the distance of the tip. [length]
   double distance() const noexcept { return at_tip_.distance; }
-  /// Returns the unit vector towards the tip; zero when the tip is on the prepared triangle.
+  /// Returns the unit vector towards the tip; zero if the tip is on the prepared triangle.
   const Vec3& towards_tip() const noexcept { return at_tip_.normal; }
 
   /// Returns an edge (0, 1, 2) as a vector from its first corner. [length]
@@ -63,24 +62,25 @@ class PreparedTriangle {
   /// Returns max n . p over the points p of the prepared triangle. [length]
   double support(const Vec3& n) const noexcept { return keepout::support(corners_, n); }
 
-  /// Returns true unless the prepared triangle is a needle, which counts as its edges.
+  /// Returns true unless the prepared triangle is a needle, which is treated as its edges.
   bool has_face() const noexcept { return determinant_ > 0.0; }
 
-  /// Returns the closest point of the plane of the face to a point, whether it is on the face or
-  /// not. Precondition: has_face().
+  /// Returns the closest point of the plane of the face to a point; it may be outside the face.
+  /// Precondition: has_face().
   Nearest on_face_plane(const Vec3& point) const noexcept;
 
-  /// Returns true if a point is right over the face, on either side; false for a needle.
+  /// Returns true if the projection of a point onto the plane of the face is inside the face; false
+  /// for a needle.
   bool has_above(const Vec3& point) const noexcept;
 
   /// Returns the prepared triangle's own unit normal, on the side to which `direction` does not
-  /// point; zero without an area.
+  /// point; zero if the triangle has no area.
   Vec3 normal_against(const Vec3& direction) const noexcept;
 
-  /// Returns the unit normal of the plane through the tip that has the prepared triangle on its far
-  /// side, at least `level` away, and one of its edges (0, 1, 2) exactly so: the alternative around
-  /// that edge. Zero if the edge's line comes closer than that, or if the prepared triangle is on
-  /// both sides of the plane.
+  /// Returns the unit normal of the plane through the tip with the prepared triangle on its far
+  /// side. The triangle is at least `level` from the plane, and the edge (0, 1, 2) exactly `level`:
+  /// the alternative around that edge. Returns zero if the line of the edge is closer than `level`,
+  /// or if no plane has the whole triangle on its far side.
   Vec3 normal_around(int edge, double level) const noexcept;
 
   /// Returns true if the prepared triangle comes before another by its corners; a total order

@@ -9,18 +9,18 @@
 
 namespace keepout {
 
-/// A rule by name.
+/// A rule, to be made by its name.
 struct ActivationEntry {
-  std::string_view name;         // to ask for it by
+  std::string_view name;         // for make_activation
   std::string_view description;  // one line, for lists
-  /// A new rule.
+  /// Makes a new rule.
   std::unique_ptr<ActivationRule> (*make)();
 };
 
-/// All rules, in the order in which they should be listed.
+/// Returns all rules, in the order of lists.
 Registry<ActivationEntry> activation_rules() noexcept;
 
-/// Throws Error, listing the known names, for an unknown one.
+/// Returns a new rule of that name. Throws Error, which lists the known names, for an unknown name.
 std::unique_ptr<ActivationRule> make_activation(std::string_view name);
 
 }  // namespace keepout

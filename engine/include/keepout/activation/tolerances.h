@@ -14,14 +14,18 @@ inline constexpr double touching_within = 4.0;      ///< the tip touches the sur
 inline constexpr double needed_clearance = 8.0;     ///< the least required clearance
 inline constexpr double region_beyond = 8.0;        ///< the searched region beyond the clearance
 inline constexpr double proof_slack = 1.0 / 64.0;   ///< of a proof of clearance
-inline constexpr double contact_slack = 1.0 / 8.0;  ///< of a contact: small beside demand_below
+inline constexpr double contact_slack = 1.0 / 8.0;  ///< of a contact: small compared with
+                                                    ///< demand_below
 
-// For the core of an instrument's body, beside lost_below.
-inline constexpr double plane_rounding = 2.0;   ///< loss of a proof by a plane
-inline constexpr double due_gain = 1.0 / 8.0;   ///< least gain where rounding has left too little
-inline constexpr double moved_beyond = 4.0;     ///< a larger loss is not rounding: it was moved
-inline constexpr double crossing_within = 3.0;  ///< it may have crossed the surface
-inline constexpr double core_touching_within = 7.0;  ///< its side is certain beyond six
-inline constexpr double needed_band = 4.0;           ///< the least band, and margin beyond the band
+// For the core of an instrument's body, in addition to lost_below.
+inline constexpr double plane_rounding = 2.0;  ///< loss of a proof by a plane
+inline constexpr double due_gain = 1.0 / 8.0;  ///< least gain of a clearance that rounding has
+                                               ///< reduced
+inline constexpr double moved_beyond = 4.0;  ///< a larger loss is not rounding: the core was moved
+inline constexpr double crossing_within = 3.0;  ///< the core may have crossed the surface
+inline constexpr double core_touching_within =
+    7.0;                                    ///< the core touches; its side is certain beyond
+                                            ///< 6
+inline constexpr double needed_band = 4.0;  ///< the least band, and margin beyond the band
 
 }  // namespace keepout

@@ -10,14 +10,14 @@ namespace keepout {
 /// The part of a triangle on which a point lies. Edge e runs from corner e to corner (e + 1) % 3.
 enum class Feature : std::uint8_t { face, edge_0, edge_1, edge_2, vertex_0, vertex_1, vertex_2 };
 
-/// Whether it is the inside of the triangle.
+/// Returns true if the feature is the inside of the triangle.
 constexpr bool is_face(Feature f) noexcept { return f == Feature::face; }
-/// Whether it is one of the three edges, without their ends.
+/// Returns true if the feature is one of the three edges, without its ends.
 constexpr bool is_edge(Feature f) noexcept { return f >= Feature::edge_0 && f <= Feature::edge_2; }
-/// Whether it is one of the three corners.
+/// Returns true if the feature is one of the three corners.
 constexpr bool is_vertex(Feature f) noexcept { return f >= Feature::vertex_0; }
 
-/// Number (0, 1, 2) of an edge or a vertex feature. Precondition: not the face.
+/// Returns the number (0, 1, 2) of an edge or a vertex feature. Precondition: not the face.
 constexpr int number_of(Feature f) noexcept {
   return static_cast<int>(f) - static_cast<int>(is_vertex(f) ? Feature::vertex_0 : Feature::edge_0);
 }
@@ -26,17 +26,17 @@ constexpr int number_of(Feature f) noexcept {
 struct ClosestPoint {
   Vec3 offset;      // from the query to the closest point [length]
   double distance;  // |offset| [length]
-  Feature feature;  // where on the triangle the closest point lies
+  Feature feature;  // on which the closest point lies
 };
 
-/// Returns the point of `triangle` nearest to `query`: the exact kernel of queries. It decides
-/// which triangles touch a ball and which is the nearest, so that accuracy does not depend on the
-/// index. (The certified rule judges trials by PreparedTriangle.)
+/// Returns the point of `triangle` nearest to `query`. This is the exact kernel: it decides which
+/// triangles touch a ball and which is the nearest, so results do not depend on the index. (The
+/// certified rule judges trials by PreparedTriangle.)
 ///
-/// The offset and the distance are the same, bit for bit, in whatever order the corners are given.
-/// All arithmetic is relative to the query, so the error (some 1e-15 of the largest distance from
-/// the query to a corner) does not grow with the distance from the origin. Needles and triangles
-/// without an area are handled as the segments or points that they are.
+/// The offset and the distance are bitwise identical for any order of the corners. The error is
+/// about 1e-15 of the largest distance from the query to a corner. It does not grow with the
+/// distance from the origin, as all arithmetic is relative to the query. A triangle without an area
+/// is treated as the segment or point that it is.
 ClosestPoint closest_point(const Triangle& triangle, const Vec3& query) noexcept;
 
 /// Like closest_point, for a triangle whose corners are in lexicographic order already.

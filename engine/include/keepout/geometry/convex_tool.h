@@ -9,44 +9,46 @@
 
 namespace keepout {
 
-/// A rigid convex tool: the convex hull of some points, its core, grown by a radius. One point is a
-/// sphere, two are a capsule, eight a box, any others a hull with edges as round as the radius.
+/// A rigid convex tool: the convex hull of points (its core), grown by a radius. One point makes a
+/// sphere, two make a capsule, eight can make a box. Other points make a hull with edges rounded by
+/// the radius.
 ///
-/// Its origin is the tip, its axes are the mesh's. A tool in another orientation is turned once,
-/// when it is made.
+/// The origin of the tool is the tip, and its axes are those of the mesh. For another orientation,
+/// make a rotated() tool.
 class ConvexTool {
  public:
   static constexpr std::size_t most_points = 64;  // of a core
 
-  /// Makes a ball around the origin. Like the others below it throws Error if a length is not
-  /// finite or above 1e30, a radius is below 0, two different points are nearer than 1e-30 to each
-  /// other, or there is no point or more than most_points. [length]
+  /// Returns a ball around the origin [length]. Like the functions below, throws Error for a length
+  /// that is not finite or above 1e30, or a radius below 0. Also throws Error for two different
+  /// points less than 1e-30 apart, and unless there are 1 to most_points points.
   static ConvexTool sphere(double radius);
-  /// Makes a cylinder with round ends: all within `radius` of a segment. [length]
+  /// Returns a cylinder with round ends: all points within `radius` of a segment. [length]
   static ConvexTool capsule(const Vec3& from, const Vec3& to, double radius);
-  /// Makes a box along the axes. [length]
+  /// Returns an axis-aligned box. [length]
   static ConvexTool box(const Box& box);
-  /// Makes all within `radius` of the convex hull of points, in any order. [length]
+  /// Returns all points within `radius` of the convex hull of `points`, which may be in any order.
+  /// [length]
   static ConvexTool hull(std::span<const Vec3> points, double radius = 0.0);
 
-  /// Returns the tool turned about its origin. Throws Error unless the matrix is a rotation.
+  /// Returns the tool rotated about its origin. Throws Error unless the matrix is a rotation.
   ConvexTool rotated(const Eigen::Matrix3d& rotation) const;
 
-  /// Returns the core's points, as they were given. [length]
+  /// Returns the points of the core, as given. [length]
   std::span<const Vec3> points() const noexcept { return points_; }
   double radius() const noexcept { return radius_; }  // [length]
 
-  /// Returns a ball that contains the whole tool, with its radius.
+  /// Returns a ball that contains the whole tool, including its radius.
   const Ball& bounding_ball() const noexcept { return bounding_ball_; }
 
-  /// Returns the point of the core farthest along n; of equally far points the first given.
+  /// Returns the point of the core farthest along n; among equally far points, the first one given.
   const Vec3& support(const Vec3& n) const noexcept;
 
-  /// Returns unit vectors, one of each opposite pair: at least the normals of the core's faces. The
-  /// least motion that separates the core from another convex body is along a face normal of
-  /// either, or a cross product of their edges.
+  /// Returns unit vectors that include the normals of the core's faces, one for each opposite pair.
+  /// The shortest motion that separates two convex bodies is along a face normal of either body, or
+  /// along the cross product of an edge of each.
   std::span<const Vec3> face_normals() const noexcept { return face_normals_; }
-  /// Like face_normals, for the directions of the core's edges.
+  /// Returns the directions of the core's edges, like face_normals.
   std::span<const Vec3> edge_directions() const noexcept { return edge_directions_; }
 
  private:

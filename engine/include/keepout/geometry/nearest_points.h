@@ -7,20 +7,22 @@
 
 namespace keepout {
 
-/// The nearest points of a triangle and the hull of some points, the core.
+/// The nearest points of a triangle and a core, which is the convex hull of points.
 struct NearestPoints {
-  Vec3 on_triangle;  // the triangle's nearest point [length]
+  Vec3 on_triangle;  // the nearest point of the triangle [length]
   Vec3 to_core;      // from on_triangle to the nearest point of the core [length]
   double distance;   // |to_core| [length]
-  bool overlap;      // the two overlap or touch: the other members mean nothing
-  Vec3 normal;       // unit: the direction found that proves the largest distance
-  double proven;     // by a plane with that normal; all but equal to the distance [length]
+  bool overlap;      // triangle and core overlap or touch; the other members are then meaningless
+  Vec3 normal;       // unit vector: the direction found that proves the largest distance
+  double proven;  // the distance that a plane with that normal proves; nearly `distance` [length]
 };
 
-/// Finds them by Gilbert, Johnson, Keerthi, "A fast procedure for computing the distance between
-/// complex objects in three-dimensional space", 1988. Each round comes strictly nearer, so the
-/// search ends. Rounding can end it early; `proven` is then less than `distance`. Precondition:
-/// there is a point.
+/// Returns the nearest points of a triangle and the core of `points`. Each iteration is strictly
+/// nearer, so the search ends. If rounding ends it early, `proven` is less than `distance`.
+/// Precondition: there is a point.
+///
+/// Source: Gilbert, Johnson, Keerthi, "A fast procedure for computing the distance between complex
+/// objects in three-dimensional space", 1988.
 NearestPoints nearest_points(std::span<const Vec3> points, const Triangle& triangle) noexcept;
 
 }  // namespace keepout

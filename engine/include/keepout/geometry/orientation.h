@@ -5,21 +5,22 @@
 
 namespace keepout {
 
-// Questions about where points lie, answered with the sign of the real number and not of its
-// rounding: -1, 0 or 1. A quick test in doubles decides nearly always; when its error bound does
-// not allow that, the sum is taken exactly (Shewchuk, "Adaptive precision floating-point arithmetic
-// and fast robust geometric predicates", 1997). Exact as long as no product of three coordinate
-// differences underflows or overflows: sizes from 1e-90 to 1e90 are safe.
+// Exact predicates: each returns the sign of the real number (-1, 0 or 1), not of its rounding. A
+// fast test in double precision nearly always decides. If its error bound is too large, the sum is
+// computed exactly (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
+// geometric predicates", 1997). The results are exact if no product of three coordinate differences
+// underflows or overflows, as for sizes from 1e-90 to 1e90.
 
-/// The side of the plane through a, b, c on which d lies: 1 on the side that sees a, b, c wound
-/// counter-clockwise, which is the side of the normal; 0 in the plane, or when there is no plane.
+/// Returns the side of the plane through a, b, c on which d lies. 1: the side of the normal, from
+/// which a, b, c are counter-clockwise. 0: in the plane, or a, b, c define no plane.
 int side_of_plane(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) noexcept;
 
-/// The turn a, b, c makes in the plane of two of the axes: 1 counter-clockwise, 0 straight.
-/// `axis` (0, 1, 2) is the one looked along.
+/// Returns the orientation of a, b, c in their projection along `axis` (0, 1, 2): 1
+/// counter-clockwise, -1 clockwise, 0 collinear.
 int turn(const Vec3& a, const Vec3& b, const Vec3& c, int axis) noexcept;
 
-/// An axis along which the triangle, seen so, has an area; or -1 when its corners are on one line.
+/// Returns an axis along which the projection of the triangle has an area; -1 if its corners are
+/// collinear.
 int axis_of_sight(const Triangle& triangle) noexcept;
 
 }  // namespace keepout

@@ -5,17 +5,17 @@
 
 namespace keepout {
 
-/// A rotation, as a matrix: no type of Eigen's whose alignment depends on compiler flags.
+/// A rotation matrix, of a type whose alignment does not depend on compiler flags.
 using Mat3 = Eigen::Matrix3d;
 
-/// Where a frame is, and how it is turned: in the frame and the unit of whoever says so.
+/// The position and the orientation of a frame in a parent frame.
 struct Pose {
-  Vec3 position = Vec3::Zero();      // of its origin, in the unit of that frame
-  Mat3 rotation = Mat3::Identity();  // from its axes to those of that frame
+  Vec3 position = Vec3::Zero();      // of the frame's origin, in the unit of the parent frame
+  Mat3 rotation = Mat3::Identity();  // from the frame's axes to those of the parent frame
 
-  /// Where a point of the frame is. [length]
+  /// Returns the position of a point of the frame in the parent frame. [length]
   Vec3 operator*(const Vec3& point) const noexcept { return position + rotation * point; }
-  /// A pose that is told in this frame, as seen from where this one is told.
+  /// Returns the pose in the parent frame of a pose that is given in this frame.
   Pose operator*(const Pose& inner) const noexcept {
     return {*this * inner.position, rotation * inner.rotation};
   }

@@ -11,73 +11,81 @@ namespace keepout {
 
 /// The signed distance of a tool and a triangle.
 struct Separation {
-  double distance;  // above 0: how far apart; below 0: the shortest motion that parts them [length]
-  Vec3 normal;      // unit, from the triangle to the tool; below 0 the direction that parts them
-  Vec3 on_triangle;  // the nearest point of the triangle, or the one that is deepest in the tool
+  /// Above 0: the distance. Below 0: minus the length of the shortest motion that separates them.
+  /// [length]
+  double distance;
+  /// The unit vector from the triangle to the tool; if they overlap, the direction that separates
+  /// them.
+  Vec3 normal;
+  /// The nearest point of the triangle, or its point deepest in the tool. [length]
+  Vec3 on_triangle;
 
-  /// The nearest point of the tool, or the one that is deepest beyond the triangle. [length]
+  /// Returns the nearest point of the tool, or its point deepest beyond the triangle. [length]
   Vec3 on_tool() const noexcept { return on_triangle + distance * normal; }
 };
 
-/// Returns the distance that a plane with the unit normal n proves, the triangle behind it: min
-/// over the tool of n . p - max over the triangle of n . v. For any n it is at most their distance;
-/// below 0, its negative is at least their depth. Exact to some roundings of the lengths between
-/// them.
+/// Returns the distance that a plane with the unit normal n proves: min n . p over the tool minus
+/// max n . v over the triangle. For any n it is at most the distance of tool and triangle; if below
+/// 0, its negative is at least their depth. Exact to a few roundings of the lengths between them.
 double separation_along(const Vec3& n, const ConvexTool& tool, const Vec3& position,
                         const Triangle& triangle) noexcept;
 
-/// Returns the signed distance between a triangle and the tool whose origin is at `position`: the
-/// exact kernel, the reference for every other narrow phase.
+/// Returns the signed distance between a triangle and the tool whose origin is at `position`. This
+/// is the exact kernel, the reference for every other narrow phase.
 ///
-/// Apart: the nearest point of the cores' difference (Gilbert, Johnson, Keerthi 1988, with
-/// closest_point for the simplices). A plane then proves its distance. Overlapping cores: the least
-/// depth along the face normals of both and the cross products of their edges. A triangle without
-/// an area is treated as a segment or a point. Of equally good normals it returns the first in a
-/// fixed order, which may depend on the winding.
+/// If the tool's core and the triangle are apart, the distance is computed by Gilbert, Johnson,
+/// Keerthi (1988), with closest_point for the simplices. A plane then proves it. If they overlap,
+/// the depth is the least along the face normals of both and the cross products of their edges. A
+/// triangle without an area is treated as a segment or a point. Among equally good normals it
+/// returns the first in a fixed order, which may depend on the winding.
 ///
-/// The distance is within some 1e-15 of the lengths at hand, and never more than a plane proves. If
-/// the lengths differ by many orders of magnitude it may be too small by some 1e-9 of the largest.
-/// The depth is as exact, but 1e-16 / a if edges are parallel to within an angle a, not 0. A
-/// sphere's distance is bitwise closest_point's to its center less the radius. Takes some µs apart,
-/// and some 100 µs in an overlap with a tool of 64 points. Allocates nothing. Preconditions:
-/// finite, no length above 1e30.
+/// The error of the distance is about 1e-15 of the lengths involved, and the distance is never more
+/// than a plane proves. If the lengths differ by many orders of magnitude, it may be too small by
+/// about 1e-9 of the largest. The error of the depth is the same, but 1e-16 / a of these lengths if
+/// edges are parallel to within an angle a other than 0. A sphere's distance is bitwise
+/// closest_point's to its center minus the radius. Takes a few µs if apart, and about 100 µs in an
+/// overlap with a tool of 64 points. Does not allocate. Preconditions: all numbers are finite, and
+/// no length is above 1e30.
 Separation separation(const ConvexTool& tool, const Vec3& position,
                       const Triangle& triangle) noexcept;
 
-/// A narrow phase's result for a pair.
+/// The result of a narrow phase for a tool and a triangle.
 struct NarrowPhaseAnswer {
-  Separation separation;     // meaningful only when answered
-  std::string_view failure;  // why there is no answer; empty when there is one
+  Separation separation;     // meaningful only if answered()
+  std::string_view failure;  // the cause if there is no answer; else empty
 
   /// Returns true if there is a separation.
   bool answered() const noexcept { return failure.empty(); }
 
-  /// Returns no answer. `why`: the reason, which must outlive the answer, as a literal does.
+  /// Returns a result without an answer. `why`: the cause, which must outlive the result, as a
+  /// literal does.
   static NarrowPhaseAnswer failed(std::string_view why) noexcept {
     return {{0.0, Vec3::Zero(), Vec3::Zero()}, why};
   }
 };
 
-/// Computes the separation of one tool from any triangle. Not thread-safe: one for each thread.
-/// Rules prove each answer, so a wrong one can cost motion but not safety.
+/// Computes the separation of one tool from any triangle. Not thread-safe: make one for each
+/// thread. Rules prove each answer, so a wrong answer can cost motion but not safety.
 class NarrowPhase {
  public:
   virtual ~NarrowPhase() = default;
 
-  /// With the tool's origin at `position`. Ends after a bounded time, whatever the input.
+  /// Returns the separation of a triangle and the tool with its origin at `position`. Ends after a
+  /// bounded time for any input.
   virtual NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept = 0;
 
-  /// Returns true if its answers are those of the exact kernel.
+  /// Returns true if the answers are those of the exact kernel.
   virtual bool is_exact() const noexcept { return false; }
 };
 
-/// Returns true if all numbers are within 1e30 of the origin. Libraries get no others.
+/// Returns true if all coordinates are within 1e30 of the origin. Libraries are called with no
+/// others.
 bool is_in_range(const Vec3& position, const Triangle& triangle) noexcept;
 
-/// The exact kernel: never fails, allocates nothing.
+/// The exact kernel as a narrow phase. It never fails and does not allocate.
 class ExactNarrowPhase final : public NarrowPhase {
  public:
-  /// Makes the kernel of one tool.
+  /// Makes the kernel for one tool.
   explicit ExactNarrowPhase(ConvexTool tool) : tool_(std::move(tool)) {}
 
   NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override;

@@ -8,10 +8,10 @@
 
 namespace keepout {
 
-/// Asks the exact kernel about every triangle: the oracle to which all other indices are held.
+/// Tests every triangle with the exact kernel: the oracle for all other indices.
 class BruteForce final : public SpatialIndex {
  public:
-  /// Nothing is built. O(1).
+  /// Stores the mesh; builds nothing. O(1).
   explicit BruteForce(std::shared_ptr<const Mesh> mesh);
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;

@@ -10,46 +10,46 @@
 
 namespace keepout {
 
-/// The work that a control cycle may do, counted in work units, so
-/// that it is the same on every processor. It also depends on what the caches of an index remember
-/// of earlier cycles (TraversalCache). A unit is about the time of an examination of sixteen boxes
-/// or triangles in single precision, of one triangle in double, or of sixteen planes; the constants
-/// work_of_* count what takes longer. (Not counted: the nodes that a traversal cache opens,
-/// TraversalCache::cover, at most 32 each time, at most twice when a traversal begins.)
+/// The work budget of a control cycle, in work units. Counts are the same on every processor, but
+/// depend on the caches that an index keeps between cycles (TraversalCache). A unit is about the
+/// time to examine sixteen boxes or triangles in single precision, one triangle in double
+/// precision, or sixteen planes. Longer work counts by the constants work_of_*. (Not counted: the
+/// nodes that TraversalCache::cover opens, at most 32 per call, with at most two calls when a
+/// traversal begins.)
 ///
-/// Each part spends its units, before or after the work, and stops once all are spent. Triangles
-/// that were not examined are then unknown, so no motion is accepted that could depend on them.
+/// Each part of a cycle spends units before or after its work, and stops once all are spent. No
+/// motion is accepted that could depend on triangles not examined.
 class Budget {
  public:
-  /// Effectively unlimited: for measurements, and without a control cycle.
+  /// Effectively unlimited: for measurements and offline use.
   static constexpr std::size_t unlimited = std::numeric_limits<std::ptrdiff_t>::max() / 4;
 
-  /// With so many work units in a cycle, at most `unlimited`.
+  /// Makes a budget of `work_units` for each cycle, at most `unlimited`.
   explicit Budget(std::size_t work_units = unlimited) noexcept
       : all_(static_cast<std::int64_t>(work_units < unlimited ? work_units : unlimited)),
         left_(all_) {}
 
-  /// A new cycle begins.
+  /// Begins a new cycle, with all units.
   void renew() noexcept {
     left_ = all_;
     overflowed_ = false;
   }
 
-  /// Takes so many work units away.
+  /// Spends work units.
   void spend(std::size_t work_units) noexcept { left_ -= static_cast<std::int64_t>(work_units); }
 
-  /// Spends all: nothing more may be examined.
+  /// Spends all units: no further examination is allowed.
   void spend_all() noexcept { left_ = 0; }
 
-  /// Notes that a store was too small for what was found.
+  /// Records that a buffer was too small.
   void mark_overflow() noexcept { overflowed_ = true; }
 
-  /// Returns why the work failed: over_capacity if a store was too small, else out_of_budget.
+  /// Returns why the work failed: over_capacity if a buffer was too small, else out_of_budget.
   Status failure() const noexcept {
     return overflowed_ ? Status::over_capacity : Status::out_of_budget;
   }
 
-  /// Returns true if nothing is left.
+  /// Returns true if no units are left.
   bool is_spent() const noexcept { return left_ <= 0; }
 
   /// Returns the work units spent in this cycle.
@@ -57,9 +57,8 @@ class Budget {
     return static_cast<std::size_t>(left_ > 0 ? all_ - left_ : all_);
   }
 
-  /// Runs `attempt` with half of the units that are left, and forgets an earlier overflow.
-  /// Afterwards the other half, and what the attempt has not spent, are left. Returns the result of
-  /// the attempt.
+  /// Runs `attempt` with half of the remaining units, and clears an earlier overflow. Units that
+  /// the attempt does not spend remain. Returns the result of the attempt.
   template <class Attempt>
   auto halved(const Attempt& attempt) noexcept(noexcept(attempt())) {
     const std::int64_t aside = left_ / 2;

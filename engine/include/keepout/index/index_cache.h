@@ -11,27 +11,27 @@
 
 namespace keepout {
 
-// What took long about a built index on the disk, for the next start: the order of its triangles. A
-// file is never trusted: its version, its length, a digest of its contents and one of the mesh it
-// was built for must agree, it must name each triangle once, and all else is made of the mesh anew
-// (see WideBvh). So neither damage nor malice can make an index lose a triangle.
+// An index cache stores the order of the triangles of a built index on disk, so that the next build
+// is fast. A file is never trusted. Its version, its length, a digest of its contents and a digest
+// of the mesh must agree, and it must name each triangle once. All else is computed from the mesh
+// (see WideBvh). So a damaged or forged file cannot make an index lose a triangle.
 
-/// The file in `folder` that an index of this mesh has. Its name holds a digest of the mesh, so
-/// that any number of meshes may share a folder.
+/// Returns the path of the cache file of a mesh. The name contains a digest of the mesh, so meshes
+/// may share a directory.
 std::filesystem::path index_cache_file(const Mesh& mesh, const std::filesystem::path& folder);
 
-/// The index in a file; null if there is no such file, or if it is of another version or mesh, or
-/// damaged in any way.
+/// Returns the index in a file; null if the file does not exist, is damaged, or is for another
+/// version or mesh.
 std::unique_ptr<WideBvh> load_index(std::shared_ptr<const Mesh> mesh,
                                     const std::filesystem::path& file);
 
-/// Writes an index, whole or not at all: it is renamed into place when complete, so any number of
-/// processes may write and read at the same time. False if it cannot be written.
+/// Writes an index completely or not at all, by renaming a temporary file. Several processes may
+/// read and write at the same time. Returns false if the file cannot be written.
 bool save_index(const WideBvh& index, const std::filesystem::path& file);
 
-/// The index of a mesh: from `folder`, or built and, if it can be, put there. The folder is made
-/// where it is missing. What goes wrong with files costs time and nothing else; when the index
-/// could not be put there, `warn` is told which file and why. Throws Error where building does.
+/// Returns the index of a mesh: loads it from `folder`, or builds it and saves it there. Creates a
+/// missing directory. File errors cost only time: if the index cannot be saved, calls `warn` with
+/// the file and the cause. Throws Error if building does.
 std::unique_ptr<WideBvh> load_or_build(std::shared_ptr<const Mesh> mesh,
                                        const std::filesystem::path& folder,
                                        const std::function<void(const std::string&)>& warn = {});

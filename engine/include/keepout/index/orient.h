@@ -7,29 +7,30 @@
 
 namespace keepout {
 
-/// What orient() did to a surface, and what it could not decide. A part is all triangles that are
-/// held together by edges of exactly two triangles.
+/// The result of orient(). A part is a maximal set of triangles that are connected by edges with
+/// exactly two triangles.
 struct Orientation {
   std::size_t turned = 0;       // triangles whose winding changed
-  std::size_t disagreeing = 0;  // triangles that were wound against most of their part
+  std::size_t disagreeing = 0;  // triangles whose winding differed from most of their part
   std::size_t parts = 0;        // the sum of the five kinds below
 
   std::size_t closed_parts = 0;        // wind around a volume
-  std::size_t open_parts = 0;          // end at edges of one triangle: no side is known to be free
-  std::size_t non_manifold_parts = 0;  // end at edges of three triangles or more: neither here
-  std::size_t flat_parts = 0;          // closed around no volume, such as a sheet of two layers
-  std::size_t one_sided_parts = 0;     // no winding agrees, as on a Möbius strip: left as they are
+  std::size_t open_parts = 0;          // have edges with one triangle: free side unknown
+  std::size_t non_manifold_parts = 0;  // have edges with three triangles or more: free side unknown
+  std::size_t flat_parts = 0;       // closed, but enclose no volume, such as two coincident layers
+  std::size_t one_sided_parts = 0;  // no winding agrees, as on a Möbius strip: unchanged
 
-  std::size_t inside_out_parts = 0;  // closed, not nested: turned as a whole
+  std::size_t inside_out_parts = 0;  // closed, not nested: all triangles turned
   std::size_t crossing_parts = 0;    // closed, partly within a larger closed part: not nested
-  std::size_t nested_parts = 0;      // closed, within another closed part: turned if that one was
+  std::size_t nested_parts = 0;      // closed, within another closed part: turned if that part was
 };
 
-/// Turns triangles so that the two triangles of each edge agree, and closed parts face outward by
-/// their signed volume. Most triangles of a part keep their winding, unless the part is closed and
-/// inside out. A closed part within another may bound a cavity or a solid: it keeps its winding
-/// relative to the outermost part around it. A part with vertices on both sides of another bounds
-/// no cavity, so it faces outward. Precondition: the surface is welded. Throws Error as Mesh does.
+/// Turns triangles so that the two triangles of each edge have consistent winding, and closed parts
+/// face outward by their signed volume. Most triangles of a part keep their winding, unless the
+/// part is closed and inside out. A closed part within another may bound a cavity or a solid: it
+/// keeps its winding relative to the outermost part around it. A part with vertices on both sides
+/// of another part bounds no cavity, so it faces outward. Precondition: the surface is welded.
+/// Throws Error like Mesh.
 Orientation orient(Surface& surface);
 
 }  // namespace keepout

@@ -10,21 +10,21 @@
 
 namespace keepout {
 
-/// The principal direction tree: a binary tree of oriented boxes, the frame of each being the
-/// principal axes of its triangles, split along the first of them. Its leaves are those of WideBvh,
-/// and tested as they are: `collect` answers with the triangles that touch the ball and no others.
+/// The principal direction tree: a binary tree of oriented boxes. The axes of a box are the
+/// principal axes of its triangles, which are split along the first axis. Leaves and their tests
+/// are those of WideBvh: `collect` returns exactly the triangles that touch the ball.
 ///
 /// Source: Williams, Taylor, Wolff, "Augmented k-d techniques for accelerated registration and
-/// distance measurement of surfaces", 1997. Split at the median of the triangle centroids instead
-/// of at their mean, so that the depth is bounded by the logarithm of the size, whatever the mesh,
-/// and all leaves but the last are full.
+/// distance measurement of surfaces", 1997. Unlike there, triangles are split at the median of
+/// their centroids instead of the mean. The depth is then logarithmic in the size of any mesh, and
+/// all leaves except the last are full.
 class PdTree final : public SpatialIndex {
  public:
-  /// That it can hold.
+  /// Capacity of the index.
   static constexpr std::size_t most_triangles = (std::size_t{1} << 31) - 1;
 
-  /// Builds with so many threads, 0 being all there are: the tree is the same. Throws Error for a
-  /// mesh of more than most_triangles.
+  /// Builds the tree on `threads` threads; 0: as many as there are processors. The tree does not
+  /// depend on the number. Throws Error for a mesh of more than most_triangles.
   explicit PdTree(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
 
   ~PdTree() override;
@@ -33,7 +33,8 @@ class PdTree final : public SpatialIndex {
     collect(ball, candidates, nullptr);
   }
 
-  /// The same, and adds to `counts` what it had to look at, unless it is null.
+  /// Like collect(ball, candidates), but also adds the work of the query to `counts` unless it is
+  /// null.
   void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts* counts) const noexcept;
 
   const TriangleBlocks* blocks() const noexcept override;
@@ -42,9 +43,9 @@ class PdTree final : public SpatialIndex {
   double rounding() const noexcept override;
   std::size_t memory() const noexcept override;
 
-  /// Nodes and leaves, which only the engine's own sources can look into.
+  /// The nodes and leaves, defined only in the sources of the engine.
   class Tree;
-  /// Lives as long as the index.
+  /// Returns the nodes and leaves, valid as long as the index lives.
   const Tree& tree() const noexcept { return *tree_; }
 
  private:

@@ -10,24 +10,24 @@
 
 namespace keepout {
 
-/// True if the triangles one and other of a welded mesh meet elsewhere than in the vertices and the
-/// edge that they share. Touching counts; so do coplanar triangles that overlap, and duplicates.
-/// Decided exactly, by signs of orientations: no tolerance. False if either has no area.
+/// Returns true if two triangles of a welded mesh meet outside the vertices and edges that they
+/// share. Contact counts, and so do overlapping coplanar triangles and duplicates. The decision is
+/// exact, by signs of orientations, without a tolerance. Returns false if either triangle has no
+/// area.
 bool meet_improperly(const Mesh& mesh, TriangleId one, TriangleId other) noexcept;
 
 /// The pairs of triangles of a mesh that meet_improperly.
 struct SelfIntersections {
   std::size_t pairs = 0;    // all of them
-  FaultPlaces places = {};  // of some; each has the corners of both triangles
+  FaultPlaces places = {};  // of a bounded number; each has the corners of both triangles
 };
 
-/// Finds the pairs of triangles that meet_improperly, and where at most `most_places` of them are.
-/// Triangles without an area are left out: they lie on their neighbors wherever they are, and
-/// examine() counts them apart.
+/// Finds the pairs of triangles that meet_improperly, and the places of at most `most_places` of
+/// them. Ignores triangles without an area: they always lie on their neighbors, and examine()
+/// counts them separately.
 ///
-/// `index` is one over `mesh`, asked for the surroundings of each triangle: a few microseconds
-/// each. Where triangles are long beside their neighbors it takes longer. Calls `examined`, if
-/// there is one, after each triangle.
+/// `index`: of `mesh`; queried around each triangle, for a few µs each, or longer if the triangle
+/// is long compared with its neighbors. `examined`: if not empty, called after each triangle.
 SelfIntersections find_self_intersections(const Mesh& mesh, const SpatialIndex& index,
                                           std::size_t most_places = 10,
                                           const std::function<void()>& examined = {});

@@ -19,84 +19,84 @@ class TriangleBlocks;
 /// Numbers of triangles, with a declared capacity.
 using TriangleBuffer = Buffer<TriangleId>;
 
-/// Finds the triangles near a place. An index proposes candidates; the engine's exact kernel
-/// decides (refine), so every index gives the same hits.
+/// Finds the triangles near a point. An index proposes candidates, and the exact kernel decides
+/// (refine), so every index gives the same hits.
 ///
-/// What is built on it holds on to it: it is neither copied nor assigned to.
+/// Objects that use an index refer to it, so it can be neither copied nor assigned to.
 class SpatialIndex {
  public:
   SpatialIndex(const SpatialIndex&) = delete;
   SpatialIndex& operator=(const SpatialIndex&) = delete;
   virtual ~SpatialIndex() = default;
 
-  /// What its triangles are of: what it was built on, or last refit to.
+  /// Returns the mesh that the index was built on, or last refit to.
   const Mesh& mesh() const noexcept { return *mesh_; }
-  /// The same, to hold on to.
+  /// Returns the mesh as a shared pointer.
   const std::shared_ptr<const Mesh>& shared_mesh() const noexcept { return mesh_; }
 
-  /// Appends, once each and in any order, every triangle that touches the ball. Extra triangles are
-  /// allowed, missing ones never, unless there is no room for them all: then it may stop.
-  /// Thread-safe.
+  /// Appends, once each and in any order, every triangle that touches the ball. May append others,
+  /// but must not miss any, unless the capacity is exceeded: then it may stop. Thread-safe.
   virtual void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept = 0;
 
-  /// The same for a capsule, by default by a row of balls along it.
+  /// Like collect, for a capsule: by default with several balls along it.
   virtual void collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept;
 
-  /// Whether the candidates are exactly the triangles that touch the ball by the engine's kernel,
-  /// none extra.
+  /// Returns true if the candidates are exactly the triangles that touch the ball by the exact
+  /// kernel.
   virtual bool is_exact() const noexcept { return false; }
 
-  /// The triangle nearest to a point by the engine's kernel, of equals the lowest number, whatever
-  /// the distance. no_triangle of an index that has no search of its own for it (see find_nearest),
-  /// and once the budget is spent. Thread-safe. Precondition: the point is finite.
+  /// Returns the triangle nearest to a point by the exact kernel, at any distance; ties go to the
+  /// lowest number. Returns no_triangle if the index has no such search (see find_nearest), or once
+  /// the budget is spent. Thread-safe. Precondition: the point is finite.
   virtual TriangleId nearest(const Vec3& /*point*/, Budget& /*budget*/) const noexcept {
     return no_triangle;
   }
 
-  /// Returns a traversal of its own along motions, which shows far fewer triangles than are near;
-  /// null if the index has none: see make_motion_traversal. Its work is taken from the budget.
-  /// Index and budget must outlive it, and the index must not be refit.
+  /// Returns the index's own traversal along motions, which shows far fewer triangles than a query;
+  /// null if the index has no such traversal: see make_motion_traversal. The traversal spends work
+  /// units of the budget. Index and budget must outlive it, and the index must not be refit.
   virtual std::unique_ptr<MotionTraversal> traverse_along_motions(Budget& /*budget*/) const {
     return nullptr;
   }
 
-  /// Returns true if traverse_along_motions() returns a traversal: override both.
+  /// Returns true if traverse_along_motions() returns a traversal. Override both.
   virtual bool traverses() const noexcept { return false; }
 
-  /// An index of a mesh whose triangles are the same, of as many vertices that are elsewhere, made
-  /// from this one in a fraction of the time of a build, while this one is asked; null of an index
-  /// that has no faster way than a build. Throws Error if the corners of a triangle differ.
+  /// Returns an index of a mesh with the same triangles and moved vertices, in a fraction of the
+  /// time of a build. Returns null if the index does not support this. This index may be in use
+  /// meanwhile. Throws Error if the corners of a triangle differ.
   virtual std::unique_ptr<SpatialIndex> refitted(std::shared_ptr<const Mesh> /*moved*/) const {
     return nullptr;
   }
 
-  /// Its triangles in blocks of our own format; null if the index has none. They live as long as
-  /// the index.
+  /// Returns the triangles in blocks of keepout's own format; null if the index has none. Valid as
+  /// long as the index lives.
   virtual const TriangleBlocks* blocks() const noexcept { return nullptr; }
 
-  /// How far its coordinates may be from the mesh's; 0 if it has the mesh's own. [length]
+  /// Returns the largest difference of the index's coordinates from the mesh's; 0 if it uses the
+  /// mesh's. [length]
   virtual double rounding() const noexcept { return 0.0; }
 
-  /// Memory that the index holds beside the mesh. [bytes]
+  /// Returns the memory of the index, without the mesh. [bytes]
   virtual std::size_t memory() const noexcept = 0;
 
  protected:
-  /// Of a mesh. Throws Error without one.
+  /// Stores the mesh. Throws Error if it is null.
   explicit SpatialIndex(std::shared_ptr<const Mesh> mesh);
 
-  /// It has become the index of another mesh.
+  /// Replaces the mesh, after a refit.
   void set_mesh(std::shared_ptr<const Mesh> moved) noexcept { mesh_ = std::move(moved); }
 
  private:
   std::shared_ptr<const Mesh> mesh_;
 };
 
-/// What a query of ours had to look at. Unlike its time it is the same on every run, so that a
-/// tree that got worse shows.
+/// The work of a query. Unlike its time it is the same on every run, so it shows if a tree became
+/// worse.
 struct QueryCounts {
-  std::size_t nodes = 0;      // looked at, each with all its boxes
+  std::size_t nodes = 0;      // examined nodes, each with all its boxes
   std::size_t blocks = 0;     // leaf blocks whose triangles were compared with the ball
-  std::size_t triangles = 0;  // of which floats were not sure: the exact kernel was asked
+  std::size_t triangles = 0;  // undecided in single precision: the exact kernel decided
 };
 
 }  // namespace keepout

@@ -11,34 +11,34 @@
 
 namespace keepout {
 
-/// Our fastest index: a tree of axis-aligned boxes, sixteen to a node and sixteen triangles to a
-/// leaf, both laid out for wide instructions. Floats decide where they are sure, within a band of
-/// their rounding the exact kernel does: `collect` answers with the triangles that touch the ball
-/// and no others.
+/// keepout's fastest index: a tree of axis-aligned boxes with sixteen boxes per node and sixteen
+/// triangles per leaf, in a layout for SIMD. Single precision decides first; if its rounding leaves
+/// a doubt, the exact kernel decides. So `collect` returns exactly the triangles that touch the
+/// ball.
 ///
-/// The order of a traversal, and of the triangles, is the tree's own; nothing may depend on it.
+/// No result may depend on the order of a traversal or of the returned triangles.
 class WideBvh final : public SpatialIndex {
  public:
-  /// That it can hold.
+  /// Capacity of the index.
   static constexpr std::size_t most_triangles = (std::size_t{1} << 31) - 1;
 
-  /// Of nodes, one below the other: as many as most_triangles need.
+  /// The most levels of nodes, for most_triangles.
   static constexpr std::size_t most_levels = 8;
 
-  /// Builds with so many threads, 0 being all there are: the tree is the same. Throws Error for a
-  /// mesh of more than most_triangles.
+  /// Builds the tree on `threads` threads; 0: as many as there are processors. The tree does not
+  /// depend on the number. Throws Error for a mesh of more than most_triangles.
   explicit WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
 
-  /// Makes it the index of a mesh whose triangles are the same, of as many vertices that are
-  /// elsewhere: in about a tenth of the time of a new one, and nearly as good while neighbors stay
-  /// neighbors. Not to be called while others ask. Every motion constraint on it stops its steps
-  /// from then on, until it is told to go on with the moved mesh: see MotionConstraint::follow.
-  /// Throws Error, and stays as it is, if the corners of a triangle differ, or without a mesh.
+  /// Refits the index to a mesh with the same triangles and moved vertices, in about a tenth of the
+  /// time of a build. The tree is nearly as good if neighbors stay neighbors. No other thread may
+  /// use the index meanwhile. Every motion constraint on the index then returns mesh_changed until
+  /// MotionConstraint::follow. Throws Error, and changes nothing, if the corners of a triangle
+  /// differ, or without a mesh.
   void refit(std::shared_ptr<const Mesh> moved, unsigned threads = 0);
 
-  /// From the order() of an earlier build: the same tree in about a tenth of the time. Whatever the
-  /// order, boxes are put around the mesh's triangles, so that none is lost. Throws Error unless it
-  /// names each triangle of the mesh once, and as the other constructor does.
+  /// Builds the tree from the order() of an earlier build, in about a tenth of the time. Boxes
+  /// enclose the mesh's triangles in any order, so no triangle is lost. Throws Error unless `order`
+  /// names each triangle of the mesh once, and like the constructor above.
   WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> order,
           unsigned threads = 0);
 
@@ -48,16 +48,17 @@ class WideBvh final : public SpatialIndex {
     collect(ball, candidates, nullptr);
   }
 
-  /// In one traversal: what has a box that comes near the segment.
+  /// Appends the triangles of all boxes near the segment, in one traversal.
   void collect_near(const Capsule& capsule, TriangleBuffer& candidates) const noexcept override;
 
-  /// The same, and adds to `counts` what it had to look at, unless it is null.
+  /// Like collect(ball, candidates), but also adds the work of the query to `counts` unless it is
+  /// null.
   void collect(const Ball& ball, TriangleBuffer& candidates, QueryCounts* counts) const noexcept;
 
-  /// By branch and bound: however far off the point is, few triangles are asked about.
+  /// Finds the nearest triangle by branch and bound: examines few triangles at any distance.
   TriangleId nearest(const Vec3& point, Budget& budget) const noexcept override;
 
-  /// Through the boxes along the motion, to the first triangle in its way.
+  /// Returns a traversal of the boxes along the motion, up to the first triangle in its way.
   std::unique_ptr<MotionTraversal> traverse_along_motions(Budget& budget) const override;
   bool traverses() const noexcept override { return true; }
 
@@ -68,13 +69,13 @@ class WideBvh final : public SpatialIndex {
   double rounding() const noexcept override;
   std::size_t memory() const noexcept override;
 
-  /// The triangles in the order of the leaves: what is left of a build when all that can be made of
-  /// the mesh anew is taken away. Allocates.
+  /// Returns the triangles in the order of the leaves; with the mesh, it defines the tree.
+  /// Allocates.
   std::vector<TriangleId> order() const;
 
-  /// Nodes and leaves, which only the engine's own sources can look into.
+  /// The nodes and leaves, defined only in the sources of the engine.
   class Tree;
-  /// Lives as long as the index.
+  /// Returns the nodes and leaves, valid as long as the index lives.
   const Tree& tree() const noexcept { return *tree_; }
 
  private:

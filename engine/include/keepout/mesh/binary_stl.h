@@ -11,15 +11,15 @@
 
 namespace keepout {
 
-/// Writes a binary STL file: whole or not at all, for it is renamed into place when complete.
-/// Coordinates are rounded to single precision, which is all that the format holds. Throws Error,
-/// also when a coordinate does not fit, when a triangle names a vertex that does not exist, and
-/// when something else than a file stands there, such as a pipe or a device. load_mesh() reads it
-/// back.
+/// Writes a binary STL file completely or not at all, by renaming a temporary file. Coordinates are
+/// rounded to single precision, as the format requires. Throws Error if the file cannot be written,
+/// or the path is a pipe or a device. Also throws Error if a coordinate does not fit, or a triangle
+/// names a vertex that does not exist. load_mesh() reads the file back.
 void write_binary_stl(const std::filesystem::path& path, const Surface& surface);
 
-/// The same, triangle by triangle, for surfaces that no memory holds: triangle(t) is called for 0
-/// to `triangles` - 1, in this order. What it throws is passed on, and nothing is left of the file.
+/// Like write_binary_stl(path, surface), for surfaces larger than the memory: calls triangle(t) for
+/// t from 0 to `triangles` - 1, in this order. If `triangle` throws, the exception is passed on and
+/// no file is left.
 void write_binary_stl(const std::filesystem::path& path, std::uint64_t triangles,
                       const std::function<Triangle(std::uint64_t)>& triangle);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Before version 0.3 the name of diagnostics.h.
+// Deprecated name of diagnostics.h, from before version 0.3.
 #include "keepout/mesh/diagnostics.h"

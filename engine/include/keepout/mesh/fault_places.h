@@ -8,21 +8,21 @@
 
 namespace keepout {
 
-/// Where one fault of a mesh is.
+/// The place of one fault of a mesh.
 struct FaultPlace {
-  /// The middle of its corners; of two triangles that meet, a point of both. [length]
+  /// The mean of the corners; for two triangles that intersect, a common point. [length]
   Vec3 at;
-  /// One vertex, the two ends of an edge, the three corners of a triangle, or those of the one
-  /// triangle and then of the other. [length]
+  /// One vertex, the two ends of an edge, the three corners of a triangle, or the six corners of
+  /// two triangles. [length]
   std::vector<Vec3> corners;
 };
 
-/// Where the faults of one kind are.
+/// The places of the faults of one kind.
 struct FaultPlaces {
-  /// Faults that share vertices are one group: the edges around a hole, the edges of a patch that
-  /// is wound the wrong way.
+  /// The number of groups. Faults that share vertices are one group, such as the edges around a
+  /// hole, or around a patch of wrong winding.
   std::size_t groups = 0;
-  /// A bounded number of places: one of each group first, then others.
+  /// A bounded number of places: first one of each group, then others.
   std::vector<FaultPlace> places = {};
 };
 

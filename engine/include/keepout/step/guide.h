@@ -11,9 +11,10 @@
 
 namespace keepout {
 
-/// A guidance constraint (guidance virtual fixture): keeps a tip, or a part of an instrument, in a
-/// convex region. Guides compose. Each holds on the whole executed motion and is never left by more
-/// than its band; the clearance from meshes has priority over all guides.
+/// A guidance constraint (guidance virtual fixture) that keeps a tip, or a part of an instrument,
+/// in a convex region. Several guides may act together. Each holds on the whole executed motion: no
+/// motion leaves its region by more than its band. The clearance from meshes has priority over all
+/// guides.
 ///
 /// If guides and clearance contradict each other, guides first stop pulling back points outside
 /// their regions, then recovery of clearance slows down: see Relaxation.
@@ -26,20 +27,20 @@ class Guide {
   enum class Kind : std::uint8_t { point, axis, shaft };
 
   /// Returns a guide for the tip of a MotionConstraint. `region`: in the world
-  /// (docs/conventions.md). Like all functions below it throws Error for a number that is not
-  /// finite or out of range.
+  /// (docs/conventions.md). Like all functions below, throws Error for a number that is not finite
+  /// or out of range.
   static Guide point(std::string name, const Region& region);
 
   /// Returns a guide for a point that a link of an instrument carries.
   static Guide point(std::string name, const LinkPoint& point, const Region& region);
 
-  /// Returns a guide that keeps an axis of a link, a direction in the link's frame, within `angle`
-  /// (up to 3) of a direction in the world. [rad]
+  /// Returns a guide that keeps an axis of a link within `angle` (up to 3) [rad] of a direction in
+  /// the world. `axis`: a direction in the link's frame.
   static Guide axis(std::string name, int link, const Vec3& axis, const Vec3& direction,
                     double angle);
 
-  /// Returns a guide for a remote center of motion (RCM): the straight shaft between two points,
-  /// which may be on different links, passes within `tolerance` of a place such as a trocar.
+  /// Returns a guide for a remote center of motion (RCM): the straight shaft between two points
+  /// passes within `tolerance` of a place such as a trocar. The points may be on different links.
   /// [length]
   static Guide remote_center(std::string name, const LinkPoint& from, const LinkPoint& to,
                              const Vec3& center, double tolerance);
@@ -58,7 +59,7 @@ class Guide {
   /// Returns true if the guide bounds a direction and not a place: its excess is then almost an
   /// angle. [rad]
   bool is_angular() const noexcept { return kind_ == Kind::axis; }
-  /// Returns by how much the region may be left, which curvature needs. [length, or rad]
+  /// Returns the curvature allowance: by how much a motion may leave the region. [length, or rad]
   double band() const noexcept { return band_; }
   /// Returns the same guide with another band. Throws Error unless it is above 0.
   Guide with_band(double band) const;
@@ -67,7 +68,7 @@ class Guide {
   const LinkPoint& first() const noexcept { return first_; }
   /// Returns the second point of a shaft; else the first.
   const LinkPoint& second() const noexcept { return second_; }
-  /// Returns the last link that matters to the guide.
+  /// Returns the last link that the guide depends on.
   int link() const noexcept;
 
  private:
@@ -82,23 +83,24 @@ class Guide {
   double band_;
 };
 
-/// The constraints that a cycle relaxed because not all could be met. A relaxed guide moves no
+/// The constraints that a cycle relaxed because not all are feasible. A relaxed guide moves no
 /// farther out than its band.
 enum class Relaxation : std::uint8_t {
-  none,     // only the task was compromised
-  guides,   // guides do not pull back points outside their regions (see GuideState::relaxed), or
-            // let points use all of the band of a guide
-  recovery  // besides, the tip or bodies recover clearance more slowly than options.recovery
+  none,  // only the task was compromised
+  /// Guides do not pull back points outside their regions (see GuideState::relaxed), or points may
+  /// use the whole band of a guide.
+  guides,
+  recovery  // in addition, the tip or bodies recover clearance more slowly than options.recovery
 };
 
-/// Returns the name as it stands in the enumeration, for files and logs.
+/// Returns the name of the enumerator, for files and logs.
 std::string_view name(Relaxation relaxation) noexcept;
 
 /// The state of a guide in a cycle.
 struct GuideState {
-  double excess = 0.0;   // how far out of its region at the start; below 0 inside [length or rad]
-  bool limits = false;   // it limits the motion
-  bool relaxed = false;  // it does not pull its point back, because that contradicts or costs more
+  double excess = 0.0;   // of the region at the start of the cycle; below 0 inside [length or rad]
+  bool limits = false;   // true if the guide limits the motion
+  bool relaxed = false;  // true if the guide does not pull its point back: infeasible or too costly
 };
 
 }  // namespace keepout

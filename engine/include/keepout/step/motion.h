@@ -14,18 +14,19 @@
 
 namespace keepout {
 
-/// A view of rows of the caller's own on the increment u, such as joint limits: A u >= b.
+/// A view of the caller's own rows: linear constraints A u >= b of the increment u, such as joint
+/// limits.
 class ExtraRows {
  public:
-  /// `matrix`: A (m, n), row by row. `bounds`: b (m). Both must outlive the step.
+  /// Makes a view. `matrix`: A (m, n), row by row. `bounds`: b (m). Both must outlive the step.
   ExtraRows(const double* matrix, const double* bounds, Eigen::Index count) noexcept
       : matrix_(matrix), bounds_(bounds), count_(count) {}
 
-  /// How many rows there are, m.
+  /// Returns the number of rows, m.
   Eigen::Index count() const noexcept { return count_; }
-  /// A (m, n), row by row.
+  /// Returns A (m, n), row by row.
   const double* matrix() const noexcept { return matrix_; }
-  /// b (m).
+  /// Returns b (m).
   const double* bounds() const noexcept { return bounds_; }
 
  private:
@@ -34,55 +35,57 @@ class ExtraRows {
   Eigen::Index count_;
 };
 
-/// Not a motion of the tip, which is a Vec3, but the request for one: the input of a control cycle.
+/// The request for a motion: the input of a control cycle. (The motion of the tip itself is a
+/// Vec3.)
 struct Motion {
   Vec3 tip = unset;      // commanded tip, in the frame of the mesh [length]
   Vec3 desired = unset;  // desired increment [length]
   /// The Jacobian of the joints that move the tip, a 3 x n matrix. With more than three joints, or
-  /// joints that move the tip in the same direction, it needs StepOptions::damping above 0. Without
-  /// a Jacobian the tip itself moves: u = dx.
+  /// joints that move the tip in the same direction, the step needs StepOptions::damping above 0.
+  /// Without a Jacobian the tip itself moves: u = dx.
   std::optional<TipJacobian> jacobian = std::nullopt;
-  /// Further constraints of the increment. Bounds above 0 demand motion.
+  /// Further linear constraints of the increment. A bound above 0 demands motion.
   std::optional<ExtraRows> rows = std::nullopt;
 
-  /// A request without a tip or an increment is refused: invalid_input.
+  /// The value of a member that is not set. A step with an unset member returns invalid_input.
   inline static const Vec3 unset = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
 };
 
 /// The result of one control cycle. Views stay valid until the next step of the same
 /// MotionConstraint, or until its options are set.
 struct Step {
-  Status status = Status::invalid_input;   // how it ended
+  Status status = Status::invalid_input;   // the outcome of the step
   Vec3 motion = Vec3::Zero();              // of the tip; zero unless ok() [length]
-  std::span<const double> increment = {};  // u: the tip's, or the joints' (n); empty unless ok()
-  /// All planes that the solver got: those of the mesh, then those of guides. The source is
-  /// no_triangle for a guide, and also for a plane among those of the mesh that bounds the motion
-  /// to the motion sphere.
-  /// A rule may leave out planes on which the answer cannot depend: see RuleInput::is_projected.
+  std::span<const double> increment = {};  // u: of the tip or the joints (n); empty unless ok()
+  /// All planes of the last solve: those of the mesh, then those of guides. The source is
+  /// no_triangle for planes of guides, and for planes that limit the motion to the motion sphere. A
+  /// rule may leave out planes that cannot change the result: see RuleInput::is_projected.
   std::span<const HalfSpace> planes = {};
-  /// The planes that limit the motion; empty unless ok(). From planes.size() on, extra rows.
+  /// The indices of the planes that limit the motion; those from planes.size() on are extra rows.
+  /// Empty unless ok().
   std::span<const std::uint32_t> active = {};
-  /// The causes why the motion is not the desired increment; without a motion, the constraints for
-  /// which none was found.
+  /// The limits that make the motion differ from the desired increment; without a motion, the
+  /// constraints for which no motion was found.
   Limits limits = {};
   std::span<const GuideState> guides = {};   // one for each guide, in the order of set_guides
-  Relaxation relaxation = Relaxation::none;  // what was relaxed
-  std::size_t triangles = 0;  // examinations that it rests on: see ActivationRule::triangles
-  /// From the tip at the start of the step to the nearest triangle, on either side. Known at no
-  /// cost under the certified rule, for a tip within the required clearance, and for an escape; for
-  /// every other tip it is searched if StepOptions::distances says so, with the work units that are
-  /// left. Empty if unknown, as it may be for out_of_budget, and for invalid_input and
-  /// mesh_changed. Bitwise identical on every index. [length]
+  Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
+  /// The triangles that the result depends on: see ActivationRule::triangles.
+  std::size_t triangles = 0;
+  /// The distance from the tip at the start of the step to the nearest triangle, on either side
+  /// [length]. The certified rule knows it for a tip within the required clearance, and for an
+  /// escape. For other tips it is searched only with Distances::always, with the remaining work
+  /// units. Empty if unknown: for invalid_input and mesh_changed, and possibly for out_of_budget.
+  /// Bitwise identical on every index.
   std::optional<double> distance = std::nullopt;
 
-  /// Whether there is a motion that may be carried out; it may be zero.
+  /// Returns true if there is a motion that may be executed; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
-  /// One line on what happened and what to do about it; a literal.
+  /// Returns one line on what happened and what to do about it; a literal.
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::tip); }
 };
 
-/// The time of each stage of a cycle. Stages that a step does not reach stay at zero: all of them
-/// in an escape. [ns]
+/// The time of each stage of a cycle. Stages that a step does not reach are zero; in an escape, all
+/// are zero. [ns]
 struct StageTimes {
   std::int64_t query = 0;  // the rule gathers triangles: a query, or the beginning of a traversal
   std::int64_t activation = 0;  // the rule opens the cycle; may traverse along the target

@@ -24,7 +24,7 @@ class TipMemory;
 /// The treatment of a tip that starts on the forbidden side. For the certified rule.
 enum class Inside : std::uint8_t {
   escape,      // escapes straight through the nearest point of the surface, before anything else
-  taken_as_is  // is not classified: the tip keeps its clearance on whichever side it is
+  taken_as_is  // is not classified: the tip maintains its clearance on the side where it is
 };
 
 /// The names of Inside.
@@ -33,54 +33,52 @@ inline constexpr std::array<std::string_view, 2> inside_names{"escape", "taken_a
 /// Planes around a tip.
 struct Polytope {
   Status status = Status::invalid_input;  // free if the planes are complete
-  std::span<const HalfSpace> planes;      // unless ok(), they allow standing still only
+  std::span<const HalfSpace> planes;      // unless ok(), they allow only zero motion
 
-  /// Whether the planes are complete.
+  /// Returns true if the planes are complete.
   bool ok() const noexcept { return is_ok(status); }
-  /// One line on what happened and what to do about it; a literal.
+  /// Returns one line on what happened and what to do about it; a literal.
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::polytope); }
 };
 
-/// Keeps a tool tip out of a mesh: puts an index, an activation rule (`rule` for short) and a
-/// solver together, with their memory. Every step of a tip runs through here. Examples call an
-/// object of this type `guard`.
+/// Keeps a tool tip out of a mesh: combines an index, an activation rule (`rule` for short) and a
+/// solver, with their memory. Examples call an object of this type `guard`.
 ///
 ///     target -> trial -> rule <-> index traversal -> accepted: step
 ///                 ^        |
 ///                 |        v
 ///                 +-- solver <- planes
 ///
-/// This is the loop by default, under the rule certified on a WideBvh. The first trial is the
-/// target itself, without planes. The index shows the rule the triangles in the way of each trial
-/// (MotionTraversal). The rule accepts the trial, or adds a plane, and the solver finds the next
-/// trial within the planes. Other indices and rules work on exact hits instead: the index proposes
-/// candidates, and the exact kernel keeps those in the region (Neighborhood).
+/// This is the default loop, with the certified rule on a WideBvh. The first trial is the target
+/// itself, without planes. The index shows the rule the triangles in the way of each trial
+/// (MotionTraversal). The rule accepts the trial or adds a plane, and the solver finds the next
+/// trial within the planes. Other indices and rules use exact hits instead: the index proposes
+/// candidates, and the exact kernel selects the hits in the region (Neighborhood).
 ///
-/// Not thread-safe: one for each control loop; mesh and index may be shared.
+/// Not thread-safe: make one for each control loop. Mesh and index may be shared.
 ///
-/// On a watertight mesh with Inside::escape, a tip that the last step did not move there is
-/// classified as inside or outside. From there on no certified step changes sides.
+/// On a watertight mesh with Inside::escape, a tip that is not where the last step moved it is
+/// classified as inside or outside. After that no certified step changes sides.
 class MotionConstraint {
  public:
-  /// The index must be built on `mesh`. It may be shared with other motion constraints,
-  /// of other threads too; rule and solver may not. Throws Error when a part is missing, when the
-  /// index is of another mesh, when the mesh, an option or a capacity is out of range, and when
-  /// tips are to be led out under a rule that guards a whole tool. Makes all memory here.
-  /// Unlike make_motion_constraint, whose default is Inside::escape, this does not classify tips
-  /// unless `inside` says so.
+  /// Combines the parts, and allocates all memory. The index must be built on `mesh`; other motion
+  /// constraints, also of other threads, may share it. Rule and solver must not be shared. Unlike
+  /// make_motion_constraint, this does not classify tips by default. Throws Error if a part is
+  /// missing, if the index is for another mesh, or if the mesh, an option or a capacity is out of
+  /// range. Also throws Error for Inside::escape with a rule that guards a whole tool.
   MotionConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                    std::unique_ptr<ActivationRule> rule, std::unique_ptr<Solver> solver,
                    const StepOptions& options, const Capacity& capacity = {},
                    Inside inside = Inside::taken_as_is);
-  /// Takes over all that another one has, which may then only be destroyed or assigned to.
+  /// Moves. The source may only be destroyed or assigned to.
   MotionConstraint(MotionConstraint&&) noexcept;
   /// Like the move constructor.
   MotionConstraint& operator=(MotionConstraint&&) noexcept;
   ~MotionConstraint();
 
   /// Runs one control cycle: returns the nearest motion that the rule and the guides allow. The
-  /// result's views stay valid until the next step. Allocates nothing, throws nothing. On failure
-  /// the motion is zero and the status gives the cause.
+  /// result's views stay valid until the next step. Does not allocate or throw. On failure the
+  /// motion is zero and the status gives the cause.
   Step step(const Motion& request) noexcept { return step(request, side_watch_, nullptr); }
 
   /// Like step(request), but also measures the time of each stage of the cycle. The opening of
@@ -90,74 +88,72 @@ class MotionConstraint {
     return step(request, side_watch_, &times);
   }
 
-  /// Like step(request), for one of several tips that are stepped in turn: each has a SideWatch of
-  /// its own, and gets the answers that a MotionConstraint of its own would give.
+  /// Like step(request), for one of several tips. Each tip has its own SideWatch, and gets the
+  /// results that its own MotionConstraint would return.
   Step step(const Motion& request, SideWatch& sides) noexcept {
     return step(request, sides, nullptr);
   }
 
-  /// The free space around a tip as one convex polytope, whatever the direction of the motion: for
-  /// a caller's own QP, MPC or sampler. Every motion that stays within all planes and within
-  /// `radius` keeps the margin; guarantee and failures: FreePolytope. The planes stay valid until
-  /// the next call; a failure allows standing still only. The tip is not classified: around a tip
-  /// inside it is the space inside. With a rule that guards a whole tool it is refused.
+  /// Returns the free space around a tip as one convex polytope, for a caller's own QP, MPC or
+  /// sampler. Every motion within all planes and within `radius` maintains the required clearance;
+  /// guarantee and failures: FreePolytope. The planes stay valid until the next call. After a
+  /// failure they allow only zero motion. The tip is not classified: around a tip that is inside,
+  /// the polytope is inside. Returns unsupported for a rule that guards a whole tool.
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
-  /// Continues with anatomy that has moved: with a mesh and an index of it, which may be the
-  /// present one, refit, or one that was prepared elsewhere in the meantime. Prepares the rule
-  /// again, and all tips are classified again. It is not detected that a surface has moved over a
-  /// tip that is not classified: beside an open mesh, or with Inside::taken_as_is. Once an index is
-  /// refit, every step is `mesh_changed` until this is called. Allocates, and is not for the
-  /// control path. Throws Error, and stays as it is, if the index is not of this mesh, or the mesh
-  /// out of range.
+  /// Follows anatomy that has moved: continues with a mesh and its index. The index may be the
+  /// present one after a refit, or one built elsewhere meanwhile. Prepares the rule again; all tips
+  /// are classified again. If tips are not classified (an open mesh, or Inside::taken_as_is), a
+  /// surface that moved over a tip is not detected. After a refit, step() returns mesh_changed
+  /// until this is called. Throws Error, and changes nothing, if the index is for another mesh or
+  /// the mesh is out of range. Allocates: not for the control path.
   void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index);
 
-  /// Returns true if the index is of the mesh that the tip is kept out of: false from a refit until
-  /// follow(), and after a follow() that threw an Error of the rule.
+  /// Returns true if the index matches the mesh. False from a refit until follow(), and after a
+  /// follow() in which the rule threw an Error.
   bool is_current() const noexcept { return is_prepared_ && neighborhood_->is_current(); }
 
-  /// Returns the work units that the last step or polytope spent: see Budget. The most that
-  /// it may spend: Capacity::work_units.
+  /// Returns the work units that the last step or polytope spent: see Budget. The limit is
+  /// Capacity::work_units.
   std::size_t work_units() const noexcept { return budget_->spent(); }
   /// Returns work_units().
   [[deprecated("use work_units()")]] std::size_t looks() const noexcept { return work_units(); }
 
-  /// Keeps the tip in these guides' regions as well from the next step on, instead of those that
-  /// there are: see Guide. Within the same cycle and work budget as the mesh. Throws Error, and
-  /// changes nothing, for more than Guide::most or a guide of a link. Allocates, and is not for the
-  /// control path.
+  /// Replaces the guides from the next step on: see Guide. They share the cycle's work budget with
+  /// the mesh. Throws Error, and changes nothing, for more guides than Guide::most or a guide of a
+  /// link. Allocates: not for the control path.
   void set_guides(std::vector<Guide> guides);
 
   /// Returns the guides.
   std::span<const Guide> guides() const noexcept;
 
-  /// Forgets where the last step ended, so that the next tip is classified again however near it
-  /// is, as at the start: for motions that have nothing to do with each other.
+  /// Forgets the last step, so that the next tip is classified again at any position. For motions
+  /// that do not continue each other.
   void forget() noexcept { side_watch_.forget(); }
 
-  /// Returns the mesh that the tip is kept out of.
+  /// Returns the mesh.
   const Mesh& mesh() const noexcept { return neighborhood_->mesh(); }
 
   /// Returns the index of the mesh.
   const SpatialIndex& index() const noexcept { return neighborhood_->index(); }
 
-  /// Returns the ball in which the rule searches for triangles at first. Precondition: the request
-  /// is valid.
+  /// Returns the ball in which the rule first searches for triangles. Precondition: the request is
+  /// valid.
   Ball region(const Motion& request) const noexcept;
 
-  /// Returns true if a step asks the index for all triangles in the region, and not by something
-  /// faster that the index offers for the rule.
+  /// Returns true if a step queries the index for all triangles in the region; false if it uses a
+  /// faster search of the index.
   bool makes_queries() const noexcept { return rule_->makes_queries(); }
 
-  /// Returns the options: radius, tool radius and margin, among others.
+  /// Returns the options.
   const StepOptions& options() const noexcept { return options_; }
 
-  /// Returns the capacity for the largest step.
+  /// Returns the capacity.
   const Capacity& capacity() const noexcept { return capacity_; }
 
-  /// Behaves so from the next step on. Where the last step led is remembered. Throws Error, and
-  /// changes nothing, for options that the constructor would refuse, or for more nodes than there
-  /// is room for.
+  /// Sets the options from the next step on. The side of the tip is remembered. Throws Error, and
+  /// changes nothing, for options that the constructor would refuse, or for more nodes than
+  /// Capacity::nodes.
   void set_options(const StepOptions& options);
 
  private:
@@ -180,7 +176,7 @@ class MotionConstraint {
   bool is_prepared_ = false;
   Inside inside_;
   bool has_sides_;        // the mesh is watertight, and tips inside escape
-  SideWatch side_watch_;  // of the tip that is stepped without one of its own
+  SideWatch side_watch_;  // of the tip that is stepped without a SideWatch of its own
 };
 
 }  // namespace keepout

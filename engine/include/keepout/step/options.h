@@ -25,8 +25,7 @@ inline constexpr std::array<std::string_view, 2> query_names{"motion", "sphere"}
 /// The tips whose distance a step reports: Step::distance.
 enum class Distances : std::uint8_t {
   where_known,  // those whose distance the rule finds in any case: costs nothing
-  always        // all: if it is unknown, the nearest triangle is searched after the step, with the
-                // work units that are left
+  always        // all: if unknown, searched after the step with the remaining work units
 };
 
 /// The names of Distances.
@@ -36,19 +35,19 @@ inline constexpr std::array<std::string_view, 2> distances_names{"where_known", 
 /// ranges.
 struct StepOptions {
   double radius = 5.0;       // of the motion sphere: the longest motion in a cycle [length]
-  double tool_radius = 0.0;  // of the ball around the tip that must not touch [length]
-  double margin =
-      0.2;  // required clearance beyond the tool radius: see required_clearance [length]
-  /// Weight of |u|^2 beside the task. With more than three joints, or joints that move the tip in
-  /// the same direction, there is no best increment without it, and the step is ill_posed: use
-  /// about 1e-6 of a column's squared length.
+  double tool_radius = 0.0;  // of the ball around the tip that must not touch the mesh [length]
+  /// Required clearance beyond the tool radius: see required_clearance. [length]
+  double margin = 0.2;
+  /// Weight of |u|^2 in the objective. It is needed with more than three joints, or with joints
+  /// that move the tip in the same direction: without it the step is ill_posed. Use about 1e-6 of a
+  /// column's squared length.
   double damping = 0.0;
-  /// Longest retreat per cycle of a tip that is too close or inside. Where it can, it retreats by
-  /// at least a tolerance of the rule, so that rounding does not accumulate. [length]
+  /// Longest retreat per cycle of a tip that is too close or inside. If possible, the tip retreats
+  /// by at least a tolerance of the rule, so that rounding does not accumulate. [length]
   double recovery = 0.05;
   double deepest = 10.0;  // a tip deeper inside does not escape; the step is `inside` [length]
-  int refinements = 3;    // how often planes are turned towards a better motion
-  int nodes = 0;          // of a branch and bound search; 0: none
+  int refinements = 3;    // the most re-linearizations of a cycle
+  int nodes = 0;          // of a branch and bound search; 0: no search
   Query query = Query::motion;                   // the region that is searched
   Distances distances = Distances::where_known;  // see Step::distance
 };
@@ -64,25 +63,25 @@ inline constexpr std::array step_options{
         "Clearance beyond the tool; the certified rule needs tool_radius + margin above 0."),
     option<&StepOptions::damping>(
         "damping", "", {0.0, 1e30},
-        "Weight of |u|^2 beside the task; a Jacobian with more than three "
-        "columns needs one, about 1e-6 of a squared column."),
+        "Weight of |u|^2 in the objective; a Jacobian with more than three columns needs it, about "
+        "1e-6 of a squared column."),
     option<&StepOptions::recovery>("recovery", "length", not_negative,
                                    "Longest retreat in a cycle of a tip too close or inside."),
     option<&StepOptions::deepest>("deepest", "length", zero_or_length,
-                                  "A tip that is deeper inside than this is not led out."),
+                                  "A tip deeper inside than this does not escape."),
     option<&StepOptions::refinements>("refinements", "", {0, 1000},
-                                      "How often the certified rule improves upon a motion.",
+                                      "Most re-linearizations of the planes for a better motion.",
                                       "refine"),
     option<&StepOptions::nodes>("nodes", "", {0, 1 << 16},
-                                "Nodes of a search for a better motion still; 0: none, 16 find "
-                                "nearly the best.",
+                                "Nodes of a branch-and-bound search for a better motion; 0: no "
+                                "search, 16 find nearly the best.",
                                 "branches"),
     option<&StepOptions::query, query_names>(
         "query",
-        "Region that the certified rule searches: as far as the motion can lead, or the "
-        "whole motion sphere."),
+        "Region that the certified rule searches: the possible ends of the motion, or the whole "
+        "motion sphere."),
     option<&StepOptions::distances, distances_names>(
-        "distances", "Tips whose distance a step reports: where it costs nothing, or always.")};
+        "distances", "Tips whose distance a step reports: those where it costs nothing, or all.")};
 
 /// Returns the table of the options of a struct.
 constexpr const auto& table_of(const StepOptions&) { return step_options; }
@@ -93,32 +92,30 @@ constexpr double required_clearance(const StepOptions& options) noexcept {
   return options.tool_radius + options.margin;
 }
 
-/// Returns the longest desired increment. It exceeds the radius by the rounding of a caller that
-/// clips its increments to the radius. [length]
+/// Returns the longest desired increment. It exceeds the radius slightly, for the rounding of a
+/// caller that limits its increments to the radius. [length]
 constexpr double longest_motion(const StepOptions& options) noexcept {
   return options.radius * (1.0 + 1e-9);
 }
 
-/// Capacity for the largest step; a step that needs more ends with over_capacity.
+/// Capacity for the largest step. A step that needs more ends with over_capacity.
 struct Capacity {
-  /// Candidates of one query. Under the certified rule, on an index that traverses along motions, a
+  /// Candidates of one query. With the certified rule on an index that traverses along motions, a
   /// step makes queries only to classify a tip.
   std::size_t triangles = std::size_t{1} << 16;
   /// Planes of a rule at the same time; see most_cutting_planes.
   std::size_t planes = std::size_t{1} << 14;
   std::size_t variables = 7;    // columns of the Jacobian, or 3 without one
-  std::size_t extra_rows = 64;  // of the caller's own
+  std::size_t extra_rows = 64;  // the caller's own rows
   std::size_t nodes = 0;        // of the branch and bound; at least StepOptions::nodes
-  /// Work units of one cycle: see Budget. A motion that cannot be proven with them is not made. 0:
-  /// work_units_of_traversals on an index that traverses along motions, such as wide_bvh, and
-  /// work_units_of_queries on others, which return all triangles in the region.
-  union {
-    std::size_t work_units = 0;
-    [[deprecated("use work_units")]] std::size_t looks;
-  };
+  /// Work units of one cycle: see Budget. A motion that cannot be proved within them is not
+  /// returned. 0: work_units_of_traversals on an index that traverses along motions, such as
+  /// wide_bvh; work_units_of_queries on others, which return all triangles in the region.
+  std::size_t work_units = 0;
+  [[deprecated("use work_units")]] std::size_t looks = 0;  // its former name
 
-  static constexpr std::size_t work_units_of_traversals = std::size_t{1}
-                                                          << 16;  // of an index that traverses
+  /// The default for an index that traverses along motions.
+  static constexpr std::size_t work_units_of_traversals = std::size_t{1} << 16;
   static constexpr std::size_t work_units_of_queries = std::size_t{1} << 22;  // not for real time
 
   /// Returns `work_units`, or if that is 0, the default for an index. Allocates.

@@ -17,7 +17,7 @@ namespace keepout {
 template <std::size_t most_points>
 class SideMemory {
  public:
-  /// Returns true if the last step was beside this mesh.
+  /// Returns true if the last step was made for this mesh.
   bool is_of(const Mesh& mesh) const noexcept { return mesh_id_ == mesh.id(); }
 
   /// Returns true if a point is within `distance` of the path of its last step. [length]
@@ -31,7 +31,7 @@ class SideMemory {
     return (off - fraction * path.back).norm() <= distance;
   }
 
-  /// Notes the end of a step of a point, and the vector from there to its start. [length]
+  /// Records the end of a step of a point, and the vector from the end to the start. [length]
   void note(const Mesh& mesh, std::size_t point, const Vec3& end, const Vec3& back) noexcept {
     mesh_id_ = mesh.id();
     paths_[point] = {end, back};
@@ -46,7 +46,7 @@ class SideMemory {
     Vec3 back = Vec3::Zero();
   };
 
-  std::uint64_t mesh_id_ = 0;  // 0: of no mesh
+  std::uint64_t mesh_id_ = 0;  // 0: no mesh
   std::array<Path, most_points> paths_ = {};
 };
 

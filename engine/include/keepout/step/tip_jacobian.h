@@ -7,7 +7,7 @@
 
 namespace keepout {
 
-/// A matrix or an expression of Eigen's.
+/// A matrix or an expression of Eigen.
 template <class Type>
 concept EigenExpression = std::derived_from<Type, Eigen::MatrixBase<Type>>;
 
@@ -15,17 +15,17 @@ concept EigenExpression = std::derived_from<Type, Eigen::MatrixBase<Type>>;
 /// joint]
 class TipJacobian {
  public:
-  /// 3 rows, a column for each joint.
+  /// A matrix of 3 rows, with a column for each joint.
   using Matrix = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-  /// Of numbers that may be any strides apart.
+  /// A view with any strides.
   using View =
       Eigen::Map<const Matrix, Eigen::Unaligned, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
 
-  /// Of any 3 x n matrix of Eigen's, fixed or dynamic, row by row or column by column, and of a
-  /// block, a transpose or a map of one: of a 6 x n Jacobian, its topRows<3>(). What is viewed must
-  /// outlive the step; a matrix that has no name, or is yet to be computed, is refused by the
-  /// compiler, and so is one of another number of rows where the type tells. A dynamic one of other
-  /// than 3 rows makes the step invalid_input.
+  /// Views any 3 x n matrix of Eigen, fixed or dynamic, by rows or by columns. Also views a block,
+  /// a transpose or a map: of a 6 x n Jacobian, its topRows<3>(). The viewed matrix must outlive
+  /// the step. The compiler rejects temporaries, expressions that must be computed, and types with
+  /// another number of rows. A dynamic matrix with another number of rows makes the step
+  /// invalid_input.
   template <class Expression>
   requires EigenExpression<std::remove_cvref_t<Expression>> TipJacobian(Expression&& matrix)
   noexcept : joints_(matrix.rows() == 3 ? matrix.cols() : 0) {
@@ -35,11 +35,12 @@ class TipJacobian {
     constexpr bool is_of_doubles = std::same_as<typename Type::Scalar, double>;
     constexpr bool is_there =
         has_memory<Type> && (std::is_lvalue_reference_v<Expression> || !is_matrix<Type>);
-    static_assert(may_have_3_rows,
-                  "a tip's Jacobian has 3 rows: of a 6 x n one give J.topRows<3>(), or whichever "
-                  "rows move the tip");
+    static_assert(
+        may_have_3_rows,
+        "a tip's Jacobian has 3 rows: of a 6 x n Jacobian give J.topRows<3>(), or the rows "
+        "that move the tip");
     static_assert(is_of_doubles,
-                  "a tip's Jacobian is of doubles: give a matrix made by J.cast<double>()");
+                  "a tip's Jacobian is of doubles: give the result of J.cast<double>()");
     static_assert(
         is_there,
         "a tip's Jacobian is viewed, not copied: give the result a name that outlives the "
@@ -51,18 +52,18 @@ class TipJacobian {
     }
   }
 
-  /// `data`: 3 `joints` numbers, column by column, which must outlive the step.
+  /// Views 3 x `joints` numbers, column by column, which must outlive the step.
   TipJacobian(const double* data, Eigen::Index joints) noexcept : data_(data), joints_(joints) {}
 
-  /// How many columns there are; 0 where there are not three rows.
+  /// Returns the number of columns; 0 unless there are three rows.
   Eigen::Index joints() const noexcept { return joints_; }
-  /// The first of its numbers.
+  /// Returns the first number.
   const double* data() const noexcept { return data_; }
-  /// Whether its numbers follow one another, column by column.
+  /// Returns true if the numbers are contiguous, column by column.
   bool is_packed() const noexcept {
     return from_row_to_row_ == 1 && (from_column_to_column_ == 3 || joints_ == 1);
   }
-  /// J (3, n), as a view.
+  /// Returns J (3, n) as a view.
   View matrix() const noexcept {
     return {data_, 3, joints_, {from_column_to_column_, from_row_to_row_}};
   }

@@ -10,15 +10,15 @@
 
 namespace keepout {
 
-/// Finds the first contact that speaks against a trial, among the triangles that the traversal
+/// Finds the first contact of a triangle that objects to a trial, among those that the traversal
 /// shows: rule 5 of docs/certified-step.md. Adds the triangles that it examines to the prepared
 /// triangles of the rule.
 class CertifiedRule::ContactSearch final : public TriangleVisitor {
  public:
-  /// Writes to `passage`, all but nothing_near. A triangle nearer to the tip than `too_close` ends
-  /// the search for contacts: visit() returns 0, and the traversal then shows only triangles that
-  /// may be within the level at the start of the motion. So the prepared triangles get all
-  /// triangles nearer than `too_close`.
+  /// Writes all of `passage` except nothing_near. A triangle nearer to the tip than `too_close`
+  /// ends the search for contacts: visit() then returns 0. From then on the traversal shows only
+  /// triangles that may be within the level at the start of the motion. So the prepared triangles
+  /// include all triangles nearer than `too_close`.
   ContactSearch(CertifiedRule& rule, const Vec3& trial, std::span<const HalfSpace> planes,
                 double too_close, Passage& passage) noexcept
       : terms_(*rule.terms_),
@@ -39,7 +39,7 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
   }
 
  private:
-  // In work units, about as long as each takes.
+  // In work units.
   static constexpr std::size_t work_of_a_triangle = 2;
   static constexpr std::size_t work_of_contact = 6;
 
@@ -71,11 +71,11 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
     if (terms_.is_clear_at_once(prepared, trial_)) return;
     budget_.spend(work_of_contact);
     // The time of contact is cheaper to find than a proof of clearance, and most triangles that
-    // come this far are met. It is a lower bound (Lemma 6), so a prepared triangle whose contact is
-    // later than that with another prepared triangle does not matter. latest() is beyond the end
-    // until there is a contact: up to then a time after the end, which is a proof by rule 5 (d),
-    // still goes to stays_clear(). If that finds no proof, the prepared triangle objects to the end
-    // of the trial, with free_fraction 1: that costs motion, not safety.
+    // come this far are hit. The time is a lower bound (Lemma 6), so a contact that is later than
+    // an earlier one does not matter. Without an earlier contact, latest() is beyond the end of the
+    // trial. A time after the end is a proof by rule 5 (d), but still goes to stays_clear(). If
+    // that finds no proof, the triangle objects to the end of the trial, with free_fraction 1. That
+    // costs motion, not safety.
     const Contact contact = terms_.contact(prepared, trial_, latest());
     if (!is_sooner(contact, prepared)) return;
     if (!terms_.is_surely_too_close(contact, prepared, trial_)) {
@@ -86,8 +86,8 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
     passage_.prepared = note;
   }
 
-  /// Returns true if the contact is before the first one so far; of equals the first by its
-  /// corners.
+  /// Returns true if the contact is before the first one so far. If both are equally early, the
+  /// order of the corners decides.
   bool is_sooner(const Contact& contact, const PreparedTriangle& prepared) const noexcept {
     const Contact& first = passage_.contact;
     return contact.time < first.time || (contact.time == first.time && passage_.has_contact() &&
@@ -107,8 +107,8 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
 
 namespace {
 
-// Cosines of the angles of normals: of walls in about the same direction, and of planes that are
-// almost parallel, which solvers find contradictory by their rounding.
+// Cosines of angles between normals: of walls in about the same direction, and of almost parallel
+// planes, which rounding may make contradictory for a solver.
 constexpr double same_direction = 0.8;
 constexpr double almost_parallel = 0.99;
 
@@ -138,17 +138,17 @@ Ball CertifiedRule::region(const RuleInput& input) const noexcept {
 
 bool CertifiedRule::makes_queries() const noexcept { return !index().traverses(); }
 
-/// Sets the levels, and begins the traversal, which shows triangles trial by trial: none is
-/// gathered yet.
+/// Sets the levels, and begins the traversal, which shows triangles trial by trial. It has shown no
+/// triangle yet.
 bool CertifiedRule::gather(const RuleInput& input) noexcept {
   prepared_.clear();
   *terms_ = CertifiedTerms::keeping(input.clearance, tolerance(input));
-  // A motion that ends in the ball over the target is no longer than its diameter.
+  // A motion that ends in the ball over the target is at most as long as the ball's diameter.
   const double longest = std::min(input.longest, 2.0 * searched_ends(input).radius * (1.0 + 1e-9));
   return traversal_->begin({input.tip, region(input), terms_->plane_level, longest});
 }
 
-/// Called twice in a recovery (Cycle::run): the same tip gives the same levels and walls, and the
+/// A recovery calls this twice (Cycle::run). The same tip gives the same levels and walls, and the
 /// second target is not used.
 Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
   at_target_.reset();
@@ -158,11 +158,11 @@ Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
   if (traversal_->region_is_empty()) return {};
 
   // The traversal shows the triangles near the tip first. If the tip has its clearance, the
-  // traversal also finds what speaks against the target, which is the first trial.
+  // traversal also finds the triangles that object to the target, which is the first trial.
   const double too_close = input.clearance - lost_below * tau;
   const Passage passage = traverse_along(input.target, {}, too_close);
   if (budget().is_spent()) return {budget().failure()};
-  // Now prepared_ has all triangles nearer than `too_close`.
+  // prepared_ now has all triangles nearer than `too_close`.
   const PreparedTriangle* closest = nearest([](const PreparedTriangle&) { return true; });
   const std::optional<double> distance = known_distance(closest, input.clearance, tau);
   if (closest == nullptr || closest->distance() >= too_close) {
@@ -183,15 +183,15 @@ Opening CertifiedRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept {
   return {Status::recovering, target, distance};
 }
 
-/// Forgets the prepared triangles together with the traversal's notes, which are indices of
-/// prepared triangles. `level`: of the traversals to come. [length]
+/// Clears the prepared triangles together with the traversal's notes, which are their indices.
+/// `level`: of the traversals to come. [length]
 void CertifiedRule::forget_prepared_triangles(double level) noexcept {
   prepared_.clear();
   traversal_->begin_again(level);
 }
 
-/// Traverses the index along a trial to the first contact that speaks against it; see
-/// ContactSearch.
+/// Traverses the index along a trial to the first contact of a triangle that objects (see
+/// ContactSearch).
 CertifiedRule::Passage CertifiedRule::traverse_along(const Vec3& trial,
                                                      std::span<const HalfSpace> planes,
                                                      double too_close) noexcept {
@@ -201,8 +201,8 @@ CertifiedRule::Passage CertifiedRule::traverse_along(const Vec3& trial,
   return passage;
 }
 
-/// Returns the nearest of the prepared triangles that `accepts` accepts, of equals the first by
-/// their corners; null if it accepts none.
+/// Returns the nearest of the prepared triangles for which `accepts` is true, or null. If two are
+/// equally near, the order of the corners decides.
 template <class Accepts>
 const PreparedTriangle* CertifiedRule::nearest(const Accepts& accepts) const noexcept {
   const PreparedTriangle* found = nullptr;
@@ -217,7 +217,8 @@ const PreparedTriangle* CertifiedRule::nearest(const Accepts& accepts) const noe
 }
 
 /// Chooses prepared triangles nearer to the tip than `too_close` that face it from different
-/// directions, the nearest first. Precondition: `first` is the nearest, and it is nearer than that.
+/// directions, the nearest first. Precondition: `first` is the nearest, and nearer than
+/// `too_close`.
 void CertifiedRule::choose_walls(const PreparedTriangle& first, double too_close) noexcept {
   const auto is_new = [&](const PreparedTriangle& prepared) {
     return prepared.distance() < too_close &&
@@ -232,8 +233,8 @@ void CertifiedRule::choose_walls(const PreparedTriangle& first, double too_close
   }
 }
 
-/// Adds the planes of all walls together, unless the planes have a similar one: between many faces
-/// a trial for each would cost too much of the budget.
+/// Adds the planes of all walls together, except where there is a similar plane. Between many
+/// faces, a trial for each plane would cost too much of the budget.
 void CertifiedRule::add_planes_of_walls(HalfSpaceBuffer& planes) noexcept {
   for (const PreparedTriangle& wall : walls_) {
     const bool has_similar = std::any_of(planes.begin(), planes.end(), [&](const HalfSpace& plane) {
@@ -257,10 +258,10 @@ Judgement CertifiedRule::judge(const RuleInput& input, const Vec3& trial,
     return {Verdict::accepted};
   }
   const bool is_known = at_target_ && planes.empty() && trial == input.target;
-  // No triangle ends the search for contacts: open() has dealt with the distance of the tip.
+  // open() has examined the distance of the tip, so no triangle ends the search for contacts.
   constexpr double too_close = 0.0;
   const Passage passage = is_known ? *at_target_ : traverse_along(trial, planes.view(), too_close);
-  // If the budget is spent, triangles may have been left out, and nothing may be concluded.
+  // If the budget is spent, the traversal may have left out triangles, so there is no conclusion.
   if (budget().is_spent()) return {Verdict::blocked, 0.0};
   if (!passage.has_contact()) return {Verdict::accepted};
   const HalfSpace& plane = passage.contact.plane;
@@ -269,7 +270,7 @@ Judgement CertifiedRule::judge(const RuleInput& input, const Vec3& trial,
     return {Verdict::blocked, free_fraction};
   }
   planes.push(terms_->plane_for(prepared_[passage.prepared], input, trial, plane));
-  // With the first objection. A single wall gets its plane by an objection of its own.
+  // All walls get planes with the first objection. A single wall gets its plane when it objects.
   if (walls_.size() > 1) add_planes_of_walls(planes);
   return {Verdict::objected, free_fraction};
 }

@@ -13,12 +13,12 @@
 namespace keepout {
 namespace {
 
-// A plane that is farther from an accepted motion, as a fraction of the target, has not shaped it.
+// A plane that is farther from an accepted motion, as a fraction of the target, is idle.
 constexpr double idle_slack = 1e-6;
 
-/// A turn of a plane, n = old + theta (wanted - old), normalized. The normals that allow a motion
-/// are a convex cone, so the turns that do are an interval from theta 0 (Lemma 7, whose levels l_0
-/// and l_1 are the `least` of both ends).
+/// A rotation of a plane: n = old + theta (wanted - old), normalized. The normals that allow a
+/// motion are a convex cone, so the allowed theta are an interval from 0 (Lemma 7). Its levels l_0
+/// and l_1 are the `least` of both ends.
 class Turn {
  public:
   Turn(const HalfSpace& plane, const Vec3& change, const Triangle& corners, double plane_level,
@@ -38,7 +38,7 @@ class Turn {
   bool is_allowed_at(double theta) noexcept {
     blend_ = old_ + theta * change_;
     length_ = blend_.norm();
-    if (!(length_ > 1e-3)) return false;  // all but opposite: no direction in between
+    if (!(length_ > 1e-3)) return false;  // almost opposite: no direction in between
     deepest_ = 0;
     double most = depth_[0] + theta * deepens_[0];
     for (std::size_t c = 1; c < 3; ++c) {
@@ -59,9 +59,9 @@ class Turn {
   /// Returns the unit normal at the last theta.
   Vec3 normal() const noexcept { return blend_ / length_; }
 
-  /// Returns Newton's next theta after one that failed. The distance that a blend leaves is concave
-  /// in theta: so this comes from above, and never passes the last theta that is allowed. It heads
-  /// for half of the slack, so that it arrives.
+  /// Returns Newton's next theta after one that is not allowed. The distance that a blend leaves is
+  /// concave in theta. So the iteration comes from above, and never passes the last theta that is
+  /// allowed. It aims at half of the slack, so that it ends.
   double next(double theta) const noexcept {
     const End& end = ends_[tight_];
     const double missing = spare_ - 0.5 * slack_ * length_;
@@ -72,7 +72,8 @@ class Turn {
   }
 
  private:
-  /// An end of the kept motion, and the distance from the corners that a plane must leave it.
+  /// An end of the kept motion, and the least distance that a plane must leave between it and the
+  /// corners.
   struct End {
     double along_old;
     double along_change;
@@ -84,11 +85,11 @@ class Turn {
   double slack_;
   std::array<End, 2> ends_;
   std::array<double, 3> depth_;    // of the corners along the old normal
-  std::array<double, 3> deepens_;  // ... and along the change
-  // Of the last theta.
+  std::array<double, 3> deepens_;  // of the corners along the change
+  // At the last theta.
   Vec3 blend_;
   double length_ = 0;  // |blend|
-  double spare_ = 0;   // distance beyond the least one, times the length of the blend
+  double spare_ = 0;   // distance beyond `least`, times length_
   std::size_t tight_ = 0;
   std::size_t deepest_ = 0;
 };
@@ -116,13 +117,13 @@ CertifiedTerms CertifiedTerms::recovering(double nearest, double lift, double to
 bool CertifiedTerms::relax(HalfSpaceBuffer& planes) noexcept {
   const double less = lift > 8.0 * tolerance ? 0.125 * lift : 0.0;
   if (less == 0.0) {
-    if (lift > 0.0) most_demand = most_floor;  // once: the retreat is dropped
+    if (lift > 0.0) most_demand = most_floor;  // once, when the retreat is dropped
     lift = 0.0;
     return let_stand_still(planes);
   }
   bool changed = false;
   for (HalfSpace& plane : planes) {
-    if (plane.source == no_triangle) continue;  // of the motion sphere
+    if (plane.source == no_triangle) continue;  // the bound of the motion sphere
     changed = changed || plane.offset > 0.0;
     plane.offset -= lift - less;
   }
@@ -154,8 +155,8 @@ bool CertifiedTerms::is_surely_too_close(const Contact& contact, const PreparedT
   if (!contact.is_reached) return false;
   const double along = contact.touched.dot(trial) / trial.squaredNorm();
   const Vec3 nearest = std::clamp(along, 0.0, 1.0) * trial - contact.touched;
-  // Closer by more than the rounding of `touched`, and than the slack of stays_clear, however small
-  // the floor is.
+  // Clearly closer: by more than the rounding of `touched` and the slack of stays_clear, however
+  // small the floor is.
   constexpr double clearly = 1.0 - 1e-5;
   return nearest.norm() < clearly * floor(prepared) - 2.0 * proof_slack * tolerance;
 }
@@ -175,7 +176,7 @@ HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const PreparedTriangle&
   const Vec3 change = prepared.nearest_to(towards).normal - plane.normal;
   if (!(change.squaredNorm() > least_turn * least_turn)) return plane;
   Turn turn(plane, change, prepared.corners(), plane_level, kept, proof_slack * tolerance);
-  constexpr int most_evaluations = 16;  // five were seen
+  constexpr int most_evaluations = 16;  // the most seen is 5
   double theta = 1.0;
   for (int i = 0; i < most_evaluations; ++i) {
     if (turn.is_allowed_at(theta)) {
@@ -183,7 +184,7 @@ HalfSpace CertifiedTerms::turned(const HalfSpace& plane, const PreparedTriangle&
       return {n, prepared.support(n) + plane_level, plane.source};
     }
     theta = std::min(turn.next(theta), theta);
-    if (!(theta > 1e-6)) break;  // not worth it
+    if (!(theta > 1e-6)) break;  // too small a rotation to matter
   }
   return plane;
 }

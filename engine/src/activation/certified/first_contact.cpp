@@ -10,7 +10,7 @@
 namespace keepout {
 namespace {
 
-// Far above the most ever seen (9): beyond it the time is earlier than the contact, which is safe.
+// Far above the most seen, 9. A time after the last step is before the contact, which is safe.
 constexpr int most_newton_steps = 48;
 
 HalfSpace plane_of(const PreparedTriangle::Nearest& nearest, const PreparedTriangle& prepared,
@@ -18,10 +18,10 @@ HalfSpace plane_of(const PreparedTriangle::Nearest& nearest, const PreparedTrian
   return {nearest.normal, nearest.support + level, prepared.triangle()};
 }
 
-/// Returns the time until a motion along z comes within `level` of a point, where `away` leads from
-/// the point to the start; 0, which is no leap, if it does not.
+/// Returns the time until a motion along z comes within `level` of a point; 0, which is no leap, if
+/// it does not. `away`: from the point to the start.
 double time_until(const Vec3& away, const Vec3& z, double level) noexcept {
-  // |away + t z| = level, the earlier of the two.
+  // The earlier solution of |away + t z| = level.
   const double falling = -away.dot(z);
   const double missing = away.squaredNorm() - level * level;
   const double square = falling * falling - z.squaredNorm() * missing;
@@ -29,15 +29,15 @@ double time_until(const Vec3& away, const Vec3& z, double level) noexcept {
   return missing / (falling + std::sqrt(square));
 }
 
-/// Returns the part of v across an edge: bitwise identical for every prepared triangle that shares
+/// Returns the part of v across an edge, bitwise identical for all prepared triangles that share
 /// the edge.
 Vec3 across_edge(const Vec3& v, const Vec3& along) noexcept {
   return v - along * (along.dot(v) / along.squaredNorm());
 }
 
-/// Returns the time until a motion along z comes within `level` of a prepared triangle's corner, or
-/// of the line of its edge, where `away` leads from there to the start, across the edge; 0 for the
-/// face, or if it does not.
+/// Returns the time until a motion along z comes within `level` of a corner of a prepared triangle,
+/// or of the line of an edge. Returns 0 for the face, or if it does not come so close. `away`: from
+/// the corner, or across the edge from its line, to the start.
 double time_until(const Vec3& away, const Vec3& z, const PreparedTriangle& prepared,
                   Feature feature, double level) noexcept {
   if (is_face(feature)) return 0.0;
@@ -46,8 +46,8 @@ double time_until(const Vec3& away, const Vec3& z, const PreparedTriangle& prepa
 }
 
 /// Returns the vector from a prepared triangle's corner, or across the line of its edge, to the
-/// tip. It depends on corner or edge alone, so times that are computed from it are bitwise
-/// identical for all prepared triangles that share them: their corners decide which is first, and
+/// tip. It depends on corner or edge alone, so times computed from it are bitwise identical for all
+/// prepared triangles that share the feature. Their corners then decide which contact is first, and
 /// not rounding.
 Vec3 from_feature_to_tip(const PreparedTriangle& prepared, Feature feature) noexcept {
   const int number = number_of(feature);
@@ -55,9 +55,9 @@ Vec3 from_feature_to_tip(const PreparedTriangle& prepared, Feature feature) noex
   return -across_edge(prepared.corners()[number == 2 ? 0 : number], prepared.edge(number));
 }
 
-/// Returns the contact of a motion with the plane of the face, which is no later than that with the
-/// prepared triangle. Reached if it is over the face. Returns nothing if the motion does not
-/// approach the plane.
+/// Returns the contact of a motion with the plane of the face, which is no later than the contact
+/// with the prepared triangle. It is reached if it is over the face. Returns nothing if the motion
+/// does not approach the plane.
 std::optional<Contact> contact_of_face_plane(const PreparedTriangle& prepared, const Vec3& z,
                                              double level) noexcept {
   const PreparedTriangle::Nearest nearest = prepared.on_face_plane(Vec3::Zero());
@@ -78,15 +78,15 @@ Contact first_contact(const PreparedTriangle& prepared, const Vec3& z, double le
                       double latest) noexcept {
   PreparedTriangle::Nearest nearest = prepared.at_tip();
   double time = 0.0;
-  // A contact that is given up is later than `latest` by more than its last digits.
+  // A rejected contact is later than `latest` by more than its last digits.
   const double digits = slack / z.norm();
   const double too_late = latest + digits;
   for (int i = 0; i < most_newton_steps; ++i) {
     const Line line = line_of(nearest, z, level);
     if (!(line.slope < 0.0)) break;
-    const double last = time;  // where `nearest` was taken; `time` is the next
+    const double last = time;  // the time of `nearest`; `time` is the next
     time = -line.at_0 / line.slope;
-    // Never earlier than before, whatever rounding does: a time later than `latest` stays later.
+    // Rounding must not make a time earlier: a time later than `latest` stays later.
     if (i > 0) time = std::max(time, last);
     if (nearest.distance - level <= slack) {
       const bool is_on_face = is_face(nearest.feature);
@@ -100,7 +100,7 @@ Contact first_contact(const PreparedTriangle& prepared, const Vec3& z, double le
     // Too late, or no progress in double.
     if (time > too_late || !(time > last && time < 1.0)) break;
     if (is_face(nearest.feature)) {
-      // The contact of its plane is the contact if it is over the face.
+      // The contact with the face's plane is the contact if it is over the face.
       if (prepared.has_above(time * z)) {
         return {time, plane_of(nearest, prepared, level), true, time * z - level * nearest.normal};
       }
@@ -112,7 +112,7 @@ Contact first_contact(const PreparedTriangle& prepared, const Vec3& z, double le
           time = std::max(time, plane->time);
         }
       }
-      // The leap: to the contact of the nearest corner or edge, if the prepared triangle is no
+      // The leap to the contact with the nearest corner or edge, if the prepared triangle is no
       // closer there.
       const double leap = last + time_until(nearest.distance * nearest.normal, z, prepared,
                                             nearest.feature, level + 0.5 * slack);

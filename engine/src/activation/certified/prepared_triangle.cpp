@@ -26,8 +26,8 @@ PreparedTriangle::PreparedTriangle(const Triangle& ordered, TriangleId number) n
   product_ = edge_01.dot(edge_02);
   const double longest2 =
       std::max({length2_01_, length2_02_, length2_01_ - 2.0 * product_ + length2_02_});
-  // A needle, A9 of docs/certified-step.md: barycentric coordinates are not exact enough.
-  constexpr double needle = 1e-2;  // height, in lengths of the longest edge
+  // On a needle (A9 of docs/certified-step.md) barycentric coordinates are not exact enough.
+  constexpr double needle = 1e-2;  // height, as a fraction of the longest edge
   if (area2 > needle * needle * longest2 * longest2) {
     determinant_ = length2_01_ * length2_02_ - product_ * product_;
     face_normal_ = normal / std::sqrt(area2);
@@ -45,13 +45,13 @@ inline PreparedTriangle::Shares PreparedTriangle::shares(const Vec3& point) cons
           length2_01_ * along_02 - product_ * along_01};
 }
 
-// A direction is known only to the root of a rounding if two features are about equally near, and
-// worse close to the prepared triangle and on a needle. A normal is accepted at once if it proves
-// this fraction of a distance; otherwise all candidates are tried (nearest_with_care).
+// If two features are about equally near, a direction is known only to the root of a rounding; it
+// is worse close to the triangle, and on a needle. A normal that proves this fraction of the
+// distance is accepted at once. Otherwise nearest_with_care() tries all candidates.
 constexpr double tight = 1.0 - 1e-12;
 
 /// Fills `nearest` for the vector `off`, `distance` long, from a point of the prepared triangle to
-/// `point`. Returns true if its normal proves that distance, so that no other point is closer.
+/// `point`. Returns true if the normal proves that distance, so that no other point is closer.
 inline bool PreparedTriangle::is_nearest(const Vec3& point, const Vec3& off, double distance,
                                          Feature feature, Nearest& nearest) const noexcept {
   nearest.normal = off / distance;
@@ -95,9 +95,9 @@ PreparedTriangle::Nearest PreparedTriangle::nearest_to(const Vec3& point) const 
   Nearest nearest;
   const Shares at = shares(point);
   bool found = false;
-  // The region of the point, by its barycentric coordinates and its feet on the edges. Face: all
-  // coordinates are positive. Edge: the coordinate of the opposite corner is not, and the foot is
-  // on the edge. Else a corner.
+  // The barycentric coordinates and the feet on the edges give the region of the point. Face: all
+  // coordinates are positive. Edge: the coordinate of the opposite corner is not positive, and the
+  // foot is on the edge. Otherwise a corner.
   if (at.are_inside(determinant_)) {
     nearest = on_face_plane(point);
     found = nearest.normal.dot(point) - nearest.support >= tight * nearest.distance;
@@ -157,8 +157,8 @@ Vec3 PreparedTriangle::normal_against(const Vec3& direction) const noexcept {
   return normal.dot(direction) <= 0.0 ? normal : Vec3(-normal);
 }
 
-/// Returns a direction made perpendicular to an edge: rounding along the edge would count over its
-/// whole length.
+/// Returns the direction made perpendicular to an edge, because an error along the edge would grow
+/// with the edge's length.
 Vec3 PreparedTriangle::across(const Vec3& n, int edge) const noexcept {
   const Vec3 along = this->edge(edge);
   const double length2 = along.squaredNorm();
@@ -170,7 +170,7 @@ Vec3 PreparedTriangle::normal_around(int edge, double level) const noexcept {
   const Vec3& from = corners_[edge];
   const Vec3 along = (corners_[(edge + 1) % 3] - from).normalized();
   if (!along.allFinite()) return Vec3::Zero();
-  // Seen along the edge: a circle of radius `level`, and its tangents through the tip.
+  // Seen along the edge: the tangents through the tip to a circle of radius `level`.
   const Vec3 foot = from - along.dot(from) * along;
   const double distance = foot.norm();
   if (!(distance > level)) return Vec3::Zero();

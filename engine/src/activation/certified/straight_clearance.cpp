@@ -6,7 +6,7 @@
 namespace keepout {
 namespace {
 
-// Far above the most ever seen (12): beyond it the answer is no, which is safe.
+// Far above the most seen, 12. After the last blend the answer is no, which is safe.
 constexpr int most_blends = 40;
 
 /// Returns the blend of a falling and a rising normal whose line is level along the motion.
@@ -27,12 +27,13 @@ std::optional<Vec3> proof_of_clearance(const PreparedTriangle& prepared, const V
   Vec3 n_right = at_end.normal;
   Line right = line_of(at_end, z, level);
   if (right.proves_clear(slack)) return n_right;
-  // A distance that never falls, or always does, is least at an end, where the level was proven, up
-  // to rounding; then no is the safe answer.
+  // A distance that only falls or only rises is least at an end, where the level was proven up to
+  // rounding. So "no" is the safe answer.
   if (!(left.slope < 0.0 && right.slope > 0.0)) return std::nullopt;
 
-  // In between, the crossing of the two lines bounds the least distance from below. The line of the
-  // blended normal is a better bound; it is exact if both normals are of the same corner or edge.
+  // The crossing of the two lines bounds the least distance in between from below. The line of the
+  // blended normal is a better bound. It is exact if both normals belong to the same corner or
+  // edge.
   for (int i = 0; i < most_blends; ++i) {
     const Vec3 blend = level_blend(n_left, left.slope, n_right, right.slope);
     if (separates(blend, prepared.corners(), z, level, slack)) return blend;

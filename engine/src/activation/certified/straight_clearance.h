@@ -7,14 +7,14 @@
 
 namespace keepout {
 
-/// A lower bound of the distance of t z from a prepared triangle, less a level: `at_0` + t `slope`
+/// A lower bound of the distance of t z from a prepared triangle, minus a level: `at_0` + t `slope`
 /// (Lemma 2 of docs/certified-step.md).
 struct Line {
   double at_0;
   double slope;
 
-  /// Returns true if the bound stays above -slack on the whole motion, which proves that the motion
-  /// keeps the level (Lemma 1).
+  /// Returns true if the bound is at least -slack on the whole motion, which proves the level
+  /// (Lemma 1).
   bool proves_clear(double slack) const noexcept {
     return at_0 >= -slack && at_0 + slope >= -slack;
   }
@@ -26,15 +26,15 @@ inline Line line_of(const PreparedTriangle::Nearest& nearest, const Vec3& z,
   return {-nearest.support - level, nearest.normal.dot(z)};
 }
 
-/// Returns the normal of a plane that proves that the whole motion from 0 to z stays `level` away
-/// from the prepared triangle: dist(t z, T) >= level - slack for all t in [0, 1]. Returns nothing
-/// if the motion comes closer, or if rounding hides the answer. Precondition: level <= prepared
-/// triangle.distance() + slack, and far above the rounding of lengths. [length]
+/// Returns the normal of a plane that proves the level on the motion from 0 to z: dist(t z, T) >=
+/// level - slack for t in [0, 1]. Returns nothing if the motion comes closer, or if rounding hides
+/// the answer. Precondition: level <= prepared.distance() + slack, and far above the rounding of
+/// lengths. [length]
 std::optional<Vec3> proof_of_clearance(const PreparedTriangle& prepared, const Vec3& z,
                                        double level, double slack) noexcept;
 
-/// Returns true if a plane with normal n is such a proof: the triangle, relative to the tip and
-/// grown by `level`, is on one side, and both ends of the motion are on the other.
+/// Returns true if a plane with normal n is such a proof: the triangle, grown by `level`, is on one
+/// side, and both ends of the motion on the other. `corners`: relative to the tip.
 inline bool separates(const Vec3& n, const Triangle& corners, const Vec3& z, double level,
                       double slack) noexcept {
   return Line{-support(corners, n) - level, n.dot(z)}.proves_clear(slack);

@@ -13,7 +13,7 @@
 namespace keepout {
 namespace {
 
-// A search for a contact takes a few strides with exact normals. Proposed normals may take more, so
+// A search for a contact takes a few strides with exact normals. Proposed normals may need more, so
 // their number is limited.
 constexpr int most_strides = 64;
 constexpr int most_proposed_strides = 8;
@@ -55,8 +55,8 @@ ConvexToolRule::Proof ConvexToolRule::proof_along(const Vec3& normal, const Vec3
   return {normal, separation_along(normal, tool_, position, mesh().triangle(triangle))};
 }
 
-/// Returns the proof along the direction from the triangle to the middle of the tool: cheap, and
-/// enough for most triangles.
+/// Returns the proof along the direction from the triangle to the middle of the tool. It is cheap,
+/// and enough for most triangles.
 ConvexToolRule::Proof ConvexToolRule::quick_proof(const Hit& hit,
                                                   const Vec3& position) const noexcept {
   const Vec3 on_triangle = gathered_ball().center + hit.closest.offset - position;
@@ -70,8 +70,8 @@ ConvexToolRule::Proof ConvexToolRule::quick_proof(const Hit& hit,
   return proof_along(direction_of(middle - on_triangle), position, hit.triangle);
 }
 
-/// Returns the proof by the proposed normal if it proves more than `enough`, otherwise by the exact
-/// one.
+/// Returns the proof by the proposed normal if it proves more than `enough`; otherwise the proof by
+/// the exact normal.
 ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& position,
                                                TriangleId triangle) noexcept {
   const Triangle corners = mesh().triangle(triangle);
@@ -97,7 +97,7 @@ Opening ConvexToolRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept 
   const double longest = (ends.center - input.tip).norm() + ends.radius + region_beyond * tau;
   for (const Hit& hit : hits()) {
     Near near{hit.triangle, quick_proof(hit, input.tip), false};
-    if (near.at_start.distance > input.clearance + longest) continue;  // out of any motion's reach
+    if (near.at_start.distance > input.clearance + longest) continue;  // no motion can reach it
     if (!(near.at_start.distance > input.clearance)) {
       near.at_start = proof_of(input.clearance, input.tip, hit.triangle);
       near.is_refined = true;
@@ -118,9 +118,9 @@ Opening ConvexToolRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept 
     }
     return {};
   }
-  // Not above for NaN.
+  // This form of the condition is true for NaN.
   if (!(closest.distance > touching_within * tau)) return {Status::touching};
-  // Too close already: no triangle may come closer than the nearest one, and all of them retreat.
+  // No triangle may come closer than the nearest one, and all of them retreat.
   const double lift = std::min(input.recovery, input.clearance - closest.distance);
   for (Near& near : near_) {
     near.plane_level = closest.distance + lift;
@@ -130,7 +130,7 @@ Opening ConvexToolRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept 
   return {Status::recovering, retreat_target(input, closest.normal, lift)};
 }
 
-/// Fills the list with all triangles that the trial may come too close to.
+/// Fills suspects_ with all triangles that the trial may come too close to.
 void ConvexToolRule::find_suspects(const RuleInput& input, const Vec3& trial) noexcept {
   const double length = trial.norm();
   const double slack = contact_slack * tolerance(input);
@@ -146,8 +146,7 @@ void ConvexToolRule::find_suspects(const RuleInput& input, const Vec3& trial) no
   });
 }
 
-/// Returns true if one of the planes, or the proof at the start, shows that the trial keeps the
-/// level.
+/// Returns true if one of the planes, or the proof at the start, proves the level on the trial.
 bool ConvexToolRule::keeps_clear(Near& near, const RuleInput& input, const Vec3& trial,
                                  double level, std::span<const HalfSpace> planes) noexcept {
   const auto proves = [&](const Proof& proof) {
@@ -164,9 +163,9 @@ bool ConvexToolRule::keeps_clear(Near& near, const RuleInput& input, const Vec3&
   return proves(near.at_start);
 }
 
-/// Returns where a trial first comes down to the level, if it does before `latest`. Newton's method
-/// from the left on the distance, which is convex in time: each plane proves the motion up to the
-/// next stride.
+/// Returns the contact at which a trial first comes down to the level, if that is before `latest`.
+/// Uses Newton's method from the left on the distance, which is convex in time: each plane proves
+/// the motion up to the next stride.
 std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near& near,
                                                                      const RuleInput& input,
                                                                      const Vec3& trial,
@@ -192,7 +191,7 @@ std::optional<ConvexToolRule::Contact> ConvexToolRule::first_contact(const Near&
 Judgement ConvexToolRule::judge(const RuleInput& input, const Vec3& trial,
                                 HalfSpaceBuffer& planes) noexcept {
   using Verdict = Judgement::Verdict;
-  // Nothing is known of triangles outside the query.
+  // Triangles outside the query are unknown.
   const Ball& bounds = tool_.bounding_ball();
   const double from_center = (input.tip + bounds.center + trial - gathered_ball().center).norm();
   if (!(from_center + bounds.radius + input.clearance <= gathered_ball().radius)) {

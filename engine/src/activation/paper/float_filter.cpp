@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A floating-point filter: floats decide where they are sure, within bands of their rounding.
+// A floating-point filter: floats decide where their rounding allows it.
 //
-// A first look at the leaves settles what is out of the ball, and what is in it and has no plane
-// that is wanted. It needs neither the closest point nor the neighbors. What is left is brought
-// close together and looked at again: where is its closest point, and do the neighbors share it?
+// The first pass over the leaves settles the triangles out of the ball, and those in it that have
+// no wanted plane. It needs neither closest points nor neighbors. The second pass packs the
+// remaining triangles. It finds the closest point of each, and if the neighbors share it.
 //
 // A point c of a triangle is its nearest to the origin if c . v >= |c|^2 for all its corners v. For
 // a corner, and for a point inside a side, these are signs of polynomials in the products of the
-// corners, relative to the ball's center. That c is nearest for the triangle across a side as well
-// is the same question about its third corner, the apex.
+// corners, relative to the ball's center. The same test with the apex, the third corner of the
+// triangle across a side, shows if c is nearest for that triangle too.
 //
-// Rounding. Let u = 2^-24, S a bound of all corners and apexes, E the error of a corner but for 2 u
-// of itself. A product of two corners is off by 2 S E + 7 u S^2, the difference of two such by
-//     band = S (4.2 E + 20 u S),
-// sums of four by twice that. What is computed from these carries the bands of its terms, each
-// times the size of its cofactors. Rounding in a product of two such terms is below the band times
+// Rounding. Let u = 2^-24, S a bound of all corners and apexes, and E the error of a corner besides
+// 2 u of its length. A product of two corners is off by 2 S E + 7 u S^2. A difference of two
+// products is off by
+//      band = S (4.2 E + 20 u S),
+// and a sum of four by twice that. A number computed from these carries the bands of its terms,
+// each times the size of its cofactors. Rounding in a product of two such terms is below the band
+// times either. `tiny` covers products that underflow.
 // either. Products that might lose digits below the least float are made up for by `tiny`.
 #include <algorithm>
 #include <bit>
@@ -25,7 +27,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "activation/paper/float_filter.cpp"
 #include <hwy/foreach_target.h>
-// After it, for it tells for whom to compile.
+// After foreach_target.h, which sets the target to compile for.
 #include <hwy/cache_control.h>
 
 #include "../../index/tree_parts/ball_screen.h"
@@ -60,7 +62,7 @@ HWY_INLINE M has(VU flags, std::uint32_t flag) {
   return hn::RebindMask(FloatTag(), hn::TestBit(flags, set(flag)));
 }
 
-/// Of a number that rounding may have changed by so much: what is sure.
+/// The signs that are certain of numbers that rounding may have changed by a band.
 struct Sign {
   M positive, negative;
 };
@@ -69,19 +71,19 @@ HWY_INLINE Sign sign_of(V value, V band) {
   return {hn::Gt(value, band), hn::Lt(value, hn::Neg(band))};
 }
 
-/// Of the products of corners within `reach`.
+/// Returns the error band of products of corners within `reach`.
 HWY_INLINE V band_of(V reach, const FilterQuery& query) {
   return reach * (set(4.2f * query.error) + set(20.0f * u) * reach) + set(tiny);
 }
 
-/// Points of a block, relative to the tip.
+/// Returns points of a block relative to the tip.
 HWY_INLINE Vector relative(const float (&at)[3][LeafBlock::lanes], std::size_t lane,
                            const FilterQuery& query) {
   const FloatTag d;
   return load(d, at, lane) - all(d, query.high) - all(d, query.low);
 }
 
-/// The first look. `place`: of the leaf's first lane.
+/// The first pass over a leaf. `place`: the number of the leaf's first lane.
 HWY_INLINE void look(const LeafBlock& leaf, const LeafEdges& edges, std::size_t place,
                      std::size_t lane, const FilterQuery& query, Unfinished& unfinished) {
   const FloatTag d;
@@ -95,7 +97,8 @@ HWY_INLINE void look(const LeafBlock& leaf, const LeafEdges& edges, std::size_t 
   const V around = hn::Load(d, edges.span + lane) + set(query.error);
   const V reach = set(outward) * (first + around);
   const V band = band_of(reach, query);
-  // Beyond the ball if all corners are beyond a plane that is; in it if one corner is.
+  // Beyond the ball if all corners are beyond a plane that is beyond it; in the ball if one corner
+  // is.
   const V along = hn::Min(hn::Min(dot(p[0], p[1]), dot(p[0], p[2])), squares[0]);
   const M far =
       both(hn::Gt(along - band, set(query.radius * outward) * first), hn::Lt(reach, set(overflow)));
@@ -103,8 +106,8 @@ HWY_INLINE void look(const LeafBlock& leaf, const LeafEdges& edges, std::size_t 
   if (!any(near)) return;
   const V nearest = hn::Min(hn::Min(squares[0], squares[1]), squares[2]);
   const M inside = hn::Lt(nearest + band, set(query.inside * query.inside));
-  // How high the tip is above the face: off by the error of the corner, and by 6 u of its distance;
-  // as much again for good measure.
+  // The height of the tip above the face has the error of the corner, plus 6 u of its distance. The
+  // slack allows twice these 6 u.
   const Vector normal = load(d, edges.normal, lane);
   const V above = hn::Neg(dot(normal, p[0]));
   const V slack = set(12.0f * u) * reach + set(1.1f * query.error + query.rounding + tiny);
@@ -135,30 +138,30 @@ HWY_INLINE void look(const LeafBlock& leaf, const LeafEdges& edges, std::size_t 
   unfinished.size += packing.count();
 }
 
-/// Where a closest point may lie: on a corner a, or inside the side from a to b.
+/// A place where the closest point may lie: on a corner a, or inside the side from a to b.
 struct Foot {
   Vector a, b;
   V aa;           // |a|^2
-  V along;        // a . (b - a), negative; on a corner 0
-  V length2;      // |b - a|^2; on a corner 1
-  M inside_side;  // elsewhere the two are exact
+  V along;        // a . (b - a), negative; 0 on a corner
+  V length2;      // |b - a|^2; 1 on a corner
+  M inside_side;  // false on a corner, where along and length2 are exact
 };
 
-/// The sign of x - along y / length2.
+/// Returns the sign of x - along y / length2.
 HWY_INLINE Sign sign_at(const Foot& foot, V x, V y, V band) {
   const V of_side = set(2.0f) * (hn::Abs(x) + hn::Abs(foot.along)) + hn::Abs(y) + set(8.0f) * band;
   const V sizes = foot.length2 + hn::IfThenElseZero(foot.inside_side, of_side);
   return sign_of(foot.length2 * x - foot.along * y, set(2.0f) * band * sizes + set(tiny));
 }
 
-/// Of c . v - |c|^2 for the closest point c and another point v.
+/// Returns the sign of c . v - |c|^2 for the closest point c and another point v.
 HWY_INLINE Sign beyond(const Foot& foot, const Vector& v, V band) {
   const V lift = dot(foot.a, v) - foot.aa;
   const V skew = dot(foot.b, v) - (foot.aa + foot.along) - lift;  // (b - a) . (v - a)
   return sign_at(foot, lift, skew, band);
 }
 
-/// Of |c| - limit for the closest point c.
+/// Returns the sign of |c| - limit for the closest point c.
 HWY_INLINE Sign over(const Foot& foot, float limit, V band) {
   return sign_at(foot, foot.aa - set(limit * limit), foot.along, band);
 }
@@ -172,7 +175,7 @@ struct Closest {
 
 HWY_INLINE Closest closest_of(const Vector (&p)[3], V band) {
   const V squares[3] = {dot(p[0], p[0]), dot(p[1], p[1]), dot(p[2], p[2])};
-  Sign along[3][2];  // each side, from either end
+  Sign along[3][2];  // of each side, from either end
   Foot foot_of[3];   // inside each side
   M at[places];
   for (std::size_t s = 0; s < 3; ++s) {
@@ -207,8 +210,9 @@ HWY_INLINE Closest closest_of(const Vector (&p)[3], V band) {
   return closest;
 }
 
-/// The apexes across the sides that meet at the closest points; across the one, if it is inside it.
-/// `which`: the triangles, as in Unfinished. Of those that are not asked about: anything.
+/// The apexes across the sides that meet at the closest points, or across the one side that a
+/// closest point is inside of. `which`: the triangles, as in Unfinished. Lanes that are not in
+/// `asked` have undefined values.
 struct Apexes {
   alignas(64) float of[2][3][LeafBlock::lanes] = {};  // [first or second][axis][lane]
 
@@ -228,8 +232,8 @@ struct Apexes {
   }
 };
 
-/// The second look: at some of the unfinished from `at` on. Those that remain go to the end of the
-/// `kept` first ones, which grow.
+/// The second pass, over a vector of unfinished triangles from `at` on. Moves those that remain to
+/// the first `kept` places, and increases `kept`.
 HWY_INLINE void look_again(std::span<const LeafEdges> edges, const FilterQuery& query,
                            std::size_t at, Unfinished& unfinished, std::size_t& kept) {
   const FloatTag d;
@@ -254,7 +258,7 @@ HWY_INLINE void look_again(std::span<const LeafEdges> edges, const FilterQuery& 
   const M faceless = has(faces, Unfinished::faceless);
   const M asked = but_not(in, both(idle, faceless));
   M open = but_not(used, either(in, out));
-  M second = none(), third = none();  // conditions of Algorithm 1
+  M second = none(), third = none();  // conditions 2 and 3 of Algorithm 1
   if (any(asked)) {
     const Apexes apexes(closest.place, asked, edges, unfinished.which + at);
     const VU its = hn::Shr(roles, hn::ShiftLeft<2>(closest.place) + closest.place);
@@ -283,7 +287,7 @@ HWY_INLINE void look_again(std::span<const LeafEdges> edges, const FilterQuery& 
   kept += packing.count();
 }
 
-/// Asks the memory for what a first look reads.
+/// Prefetches what the first pass reads.
 HWY_INLINE void fetch(const LeafBlock& leaf, const LeafEdges& edges) {
   for (const auto& corner : leaf.corner) {
     for (const auto& axis : corner) hwy::Prefetch(axis);
@@ -296,7 +300,7 @@ HWY_INLINE void fetch(const LeafBlock& leaf, const LeafEdges& edges) {
 std::size_t Filter(std::span<const LeafBlock> leaves, std::span<const LeafEdges> edges,
                    std::span<const std::uint32_t> listed, const FilterQuery& query,
                    Unfinished& unfinished) {
-  constexpr std::size_t ahead = 6;  // so many leaves is memory ahead of the look at them
+  constexpr std::size_t ahead = 6;  // leaves to prefetch before their pass
   unfinished.size = unfinished.in = 0;
   std::size_t i = 0;
   for (; i < listed.size() && unfinished.size + LeafBlock::lanes <= Unfinished::most; ++i) {
@@ -322,7 +326,7 @@ namespace keepout::paper {
 
 HWY_EXPORT(Filter);
 
-/// As the best instructions there are do it: chosen where one namespace of a target is in sight.
+/// Runs the best version for the processor. Defined where only one target's namespace is visible.
 static std::size_t filter(std::span<const LeafBlock> leaves, std::span<const LeafEdges> edges,
                           std::span<const std::uint32_t> listed, const FilterQuery& query,
                           Unfinished& unfinished) noexcept {
@@ -348,12 +352,12 @@ FilterQuery filter_query(const RuleInput& input, const Ball& ball, const LeafFra
   query.radius = at_least(ball.radius);
   query.inside = at_most(ball.radius);
   query.rounding = at_least(input.rounding);
-  // What two floats leave of the tip, and the rounding of a difference as small as `low`.
+  // The part of the tip beyond two floats, and the rounding of a difference as small as `low`.
   const double split = 0x1p-46 * tip.cwiseAbs().maxCoeff();
   query.error = at_least(std::sqrt(3.0) * (frame.error + split));
   query.idle_height = query.idle = std::numeric_limits<float>::infinity();
   if (idle_planes == IdlePlanes::left_out) {
-    // A share of the height makes up for the rounding of the middle's.
+    // The factor covers the rounding of the height of the middle.
     query.idle_height = at_least((idle.radius + input.clearance) * (1.0 + 0x1p-19));
     query.idle = at_least(idle.radius + idle.center.norm() + input.clearance);
   }

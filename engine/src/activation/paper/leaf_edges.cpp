@@ -10,13 +10,13 @@ namespace keepout {
 namespace {
 
 bool is_sturdy(const Triangle& t) noexcept {
-  constexpr double least_height = 1e-3;  // as a share of the longest side
+  constexpr double least_height = 1e-3;  // as a fraction of the longest side
   const double longest2 = std::max(
       {(t[1] - t[0]).squaredNorm(), (t[2] - t[1]).squaredNorm(), (t[0] - t[2]).squaredNorm()});
   return (t[1] - t[0]).cross(t[2] - t[0]).norm() > least_height * longest2;
 }
 
-/// The corner of a neighbor that is not on the edge it shares.
+/// Returns the corner of a neighbor that is not on the shared edge.
 Vec3 apex_across(const Mesh& mesh, TriangleId from, int edge, TriangleId neighbor) noexcept {
   const VertexId a = mesh.corners(from)[static_cast<std::size_t>(edge)];
   const VertexId b = mesh.corners(from)[static_cast<std::size_t>((edge + 1) % 3)];
@@ -44,9 +44,9 @@ LeafEdges edges_of(const LeafBlock& leaf, const LeafFrame& frame, const Mesh& me
     double span = 0.0;
     for (const Vec3& corner : triangle) span = std::max(span, (corner - first).norm());
 
-    std::uint32_t roles[3] = {};  // of each side, as of the first one at a place
+    std::uint32_t roles[3] = {};  // of each side, as the first one at a place
     for (std::size_t side = 0; side < 3; ++side) {
-      // Between two corners, whichever comes first.
+      // The edge between two corners, in either order.
       const auto [from, to] = corners_at[3 + side];
       const int edge = (4 - order.corner[from] - order.corner[to]) % 3;
       const EdgeKind kind = adjacency.kind(t, edge);

@@ -11,8 +11,7 @@
 namespace keepout {
 namespace {
 
-/// The edges of a triangle on which a feature lies: one for an edge, the two that meet for a
-/// vertex.
+/// The edges on which a feature lies: one for an edge, the two that meet for a vertex.
 struct EdgesAt {
   std::array<int, 2> edges;
   int count;
@@ -71,7 +70,7 @@ std::optional<HalfSpace> PaperRule::plane_of(const RuleInput& input,
     if (!positive) return std::nullopt;
     return plane_through(hit, normal, input.clearance);
   }
-  // Condition 2: on a ridge, and nearest for the neighbor as well.
+  // Condition 2: the closest point is on a ridge, and nearest for the neighbor as well.
   switch (role_in_condition_2(input, hit)) {
     case Role::speaks: {
       if (!touches(input, hit)) return plane_through(hit, away_from(hit), input.clearance);
@@ -83,7 +82,7 @@ std::optional<HalfSpace> PaperRule::plane_of(const RuleInput& input,
     case Role::none:
       break;
   }
-  // Condition 3: on a valley.
+  // Condition 3: the closest point is on a valley.
   if (positive && !normal.isZero(0.0) && touches_a_valley(hit)) {
     return plane_through(hit, normal, input.clearance);
   }
@@ -99,7 +98,7 @@ PaperRule::Role PaperRule::role_in_condition_2(const RuleInput& input,
     const TriangleId neighbor = adjacency_->neighbor(hit.triangle, edge);
     const ClosestPoint theirs = closest_point(mesh().triangle(neighbor), input.tip);
     if (is_face(theirs.feature) || theirs.offset != hit.closest.offset) continue;
-    // On the surface each face speaks for itself, as there is no shared plane.
+    // On the surface each face has its own plane, because there is no shared one.
     if (neighbor < hit.triangle && !touches(input, hit)) return Role::leaves_it_to_a_neighbor;
     role = Role::speaks;
   }

@@ -46,7 +46,7 @@ bool PaperBlocks::find(const RuleInput& input, HalfSpaceBuffer& planes) noexcept
   return true;
 }
 
-/// Finds the planes in no order. False if there are more triangles than room was made for.
+/// Finds the planes, in no order. Returns false if the triangles exceed the capacity.
 bool PaperBlocks::gather(const RuleInput& input, const Ball& ball, IdlePlanes idle) noexcept {
   const FilterQuery query = filter_query(input, ball, blocks_.frame(), idle);
   idle_planes_ = idle;
@@ -81,8 +81,8 @@ bool PaperBlocks::gather(const RuleInput& input, const Ball& ball, IdlePlanes id
   return true;
 }
 
-/// What the exact kernel says of a triangle whose closest point is at this one of the `places`.
-/// Where the mesh's corners are floats the leaf, which was just looked at, has them.
+/// Returns the answer of the exact kernel for a triangle whose closest point is on this one of the
+/// `places`. If the mesh's corners are floats, they are read from the leaf, which is in the cache.
 ClosestPoint PaperBlocks::closest_point_at(std::size_t place, const LeafBlock& leaf,
                                            std::size_t lane, const Vec3& tip) const noexcept {
   const auto corner = [&](std::size_t c) -> Vec3 {

@@ -12,29 +12,29 @@
 
 namespace keepout {
 
-/// The paper's rule on an index whose triangles are in leaf blocks: query and conditions in one
-/// look at each leaf. Floats tell which triangles have a plane where they are sure, PaperRule is
-/// asked about the others. So the planes are its own, bit for bit and in the same order, whatever
-/// the index and the width of lanes.
+/// The rule `paper` on an index with leaf blocks. It reads each leaf once, for the query and for
+/// the conditions. Floats decide where they are sure, and PaperRule decides the other triangles. So
+/// the planes and their order are identical to PaperRule's, for every index and lane width.
 ///
-/// Where the answer is a projection (RuleInput::is_projected), idle planes are not even made: as
-/// long as standing still is allowed, all that the solver looks at lies in idle_ball. Otherwise it
-/// gets them all.
+/// If the answer is a projection (RuleInput::is_projected), idle planes are not computed: as long
+/// as standing still is allowed, all motions that the solver considers are in idle_ball. Otherwise
+/// the solver gets all planes.
 class PaperBlocks {
  public:
-  /// With room for so many triangles in a ball. All must outlive this; they are of one mesh.
+  /// Allocates memory for `room` triangles in a ball. All arguments must outlive this object, and
+  /// belong to one mesh.
   PaperBlocks(const PaperRule& rule, const Mesh& mesh, const Adjacency& adjacency,
               const TriangleBlocks& blocks, std::size_t room);
 
-  /// Appends the planes that the rule has in its region. False if there are more triangles than
-  /// room was made for.
+  /// Appends the planes of the rule in its region. Returns false if the triangles exceed the
+  /// capacity.
   bool find(const RuleInput& input, HalfSpaceBuffer& planes) noexcept;
 
-  /// How many triangles were in the ball when planes were last found.
+  /// Returns the number of triangles in the ball of the last find().
   std::size_t triangles() const noexcept { return triangles_; }
 
-  /// Whether the planes that were last found are all that could speak against a motion: idle ones
-  /// were left out only for motions that they are idle for.
+  /// Returns true if the planes of the last find() are all that can exclude the motion. It left out
+  /// planes only for motions in idle_ball.
   bool covers(const RuleInput& input, const Vec3& motion) const noexcept;
 
  private:
@@ -48,10 +48,10 @@ class PaperBlocks {
   std::vector<LeafEdges> edges_;  // of each leaf
   std::vector<Vec3> normals_;     // of each triangle
 
-  // Of this cycle.
+  // The state of the present cycle.
   IdlePlanes idle_planes_ = IdlePlanes::found;
   std::size_t triangles_ = 0;  // in the ball
-  LeafBuffer leaves_;          // that the ball touches
+  LeafBuffer leaves_;          // leaves that the ball touches
   std::unique_ptr<Unfinished> unfinished_;
   HalfSpaceBuffer found_{0};
 };

@@ -14,15 +14,16 @@
 namespace keepout {
 namespace {
 
-// How far a plane stands off from what it separates, to have its neighbors behind it as well: a
-// share of the radius, but no more than a share of its room, so that the tip still gets close.
+// The standoff of a plane from the triangle that it separates, so that it separates neighbors too.
+// It is a fraction of the radius, but at most a fraction of the plane's distance from the tip, so
+// that the tip can still get close.
 constexpr double standoff_of_radius = 0.01;
 constexpr double standoff_of_room = 0.25;
 
 bool is_length(double x) noexcept { return x >= 0.0 && x <= longest_length; }  // false for NaN
 
-/// Points spread evenly in the unit ball. Source: Roberts, "The unreasonable effectiveness of
-/// quasirandom sequences", 2018: multiples of powers of 1 / g, where g^4 = g + 1.
+/// Returns points spread evenly in the unit ball. Source: Roberts, "The unreasonable effectiveness
+/// of quasirandom sequences", 2018: multiples of powers of 1 / g, where g^4 = g + 1.
 template <std::size_t count>
 std::array<Vec3, count> points_in_unit_ball() noexcept {
   constexpr double g = 1.2207440846057596;
@@ -37,8 +38,9 @@ std::array<Vec3, count> points_in_unit_ball() noexcept {
   return points;
 }
 
-/// The direction from the closest point to the tip. The edge it must be perpendicular to is better
-/// known than a short way is: without it, a tip very near to an edge would get no valid plane.
+/// Returns the direction from the closest point to the tip. On an edge the direction is made
+/// perpendicular to it, because the rounding of a short offset would leave a tip very near to an
+/// edge without a valid plane.
 Vec3 away_from(const ClosestPoint& closest, const Triangle& triangle) noexcept {
   Vec3 away = -closest.offset / closest.distance;
   if (is_edge(closest.feature)) {
@@ -60,22 +62,23 @@ void hold_still(HalfSpaceBuffer& planes) noexcept {
   }
 }
 
-/// What is asked, and the lengths that follow from it. All [length].
+/// The arguments, and the lengths that follow from them. All [length].
 struct FreePolytope::Query {
   Vec3 tip;
   double radius;
   double clearance;
-  double kept = 0.0;      // the distance that the planes keep
-  double reach = 0.0;     // nothing farther away can come within that distance
+  double kept = 0.0;      // distance that the planes keep
+  double reach = 0.0;     // triangles farther away cannot come within that distance
   double rounding = 0.0;  // of the guarantee; half of it is for the arithmetic
 
-  /// The least offset of a plane with this normal that keeps the triangle off; where that is out of
-  /// the ball, the ball's rim.
+  /// Returns the least offset of a plane with this normal that keeps the triangle at the distance
+  /// `kept`; at least -radius, where the plane touches the ball.
   double least_offset(const TriangleFromTip& triangle, const Vec3& normal) const noexcept {
     return std::max(support_within(triangle, normal, reach, 0.25 * rounding) + kept, -radius);
   }
 
-  /// The plane of that normal which keeps the triangle off, if it allows standing still.
+  /// Returns the plane with this normal that keeps the triangle at that distance, if it allows
+  /// standing still.
   std::optional<HalfSpace> plane(const TriangleFromTip& triangle, const Vec3& normal,
                                  TriangleId source) const noexcept {
     const double least = least_offset(triangle, normal);
@@ -84,8 +87,8 @@ struct FreePolytope::Query {
     return HalfSpace{normal, std::min(least + std::max(standoff, 0.5 * rounding), 0.0), source};
   }
 
-  /// Whether the plane keeps the triangle off as well. A plane through the tip stands off from
-  /// nothing: there, what is coplanar but for its rounding counts as behind it.
+  /// Returns true if the plane also keeps the triangle at that distance. A plane through the tip
+  /// has no standoff. There, a triangle that is coplanar up to rounding counts as behind the plane.
   bool is_behind(const TriangleFromTip& triangle, const Vec3& closest,
                  const HalfSpace& plane) const noexcept {
     const double limit = plane.offset < 0.0 ? plane.offset : 0.5 * rounding;
@@ -97,7 +100,7 @@ struct FreePolytope::Query {
 FreePolytope::FreePolytope(std::shared_ptr<const Mesh> mesh, std::size_t triangles)
     : mesh_(std::move(mesh)), probes_(points_in_unit_ball<probe_count>()) {
   if (mesh_ == nullptr) throw Error("a free polytope needs a mesh");
-  // Never more hits than triangles: an absurd capacity costs nothing.
+  // There are at most as many hits as triangles, so a huge capacity costs nothing.
   turns_.resize(std::min(triangles, mesh_->triangle_count()));
 }
 
@@ -131,8 +134,8 @@ Status FreePolytope::prepare(Query& query, std::span<const Hit> hits) const noex
   }
   query.rounding = 1e-12 * query.radius + 2e-14 * std::sqrt(size2);
   if (nearest <= query.rounding) return Status::touching;
-  // At the clearance but for rounding, the clearance itself is kept, so that step by step nothing
-  // adds up.
+  // At the clearance up to rounding, the planes keep the clearance itself, so that losses do not
+  // add up over the steps.
   query.kept = nearest >= query.clearance - 0.25 * query.rounding ? query.clearance : nearest;
   query.reach = query.radius + query.kept;
   return Status::free;
@@ -153,7 +156,7 @@ std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hi
 
 Status FreePolytope::separate(const Query& query, std::span<const Hit> hits, Budget& budget,
                               HalfSpaceBuffer& planes) noexcept {
-  // In work units; that of a hit is mostly for the memory of its corners, and for sorting.
+  // In work units. Most of the work of a hit is memory access to its corners, and sorting.
   constexpr std::size_t work_of_plane = 24;
   budget.spend(2 * work_of_hit * hits.size());
   if (budget.is_spent()) return Status::out_of_budget;
@@ -189,7 +192,7 @@ std::optional<HalfSpace> FreePolytope::plane_for(const Query& query, const Hit& 
   const Vec3 facing = is_behind_it ? -seen.normal : seen.normal;
   std::optional<HalfSpace> face;
   if (!facing.isZero(0.0)) face = query.plane(seen, facing, hit.triangle);
-  if (face && is_face(hit.closest.feature)) return face;  // then the other is the same, less sharp
+  if (face && is_face(hit.closest.feature)) return face;  // the other is the same, but less exact
 
   const Vec3 away = away_from(hit.closest, mesh_->triangle(hit.triangle));
   const std::optional<HalfSpace> across = query.plane(seen, away, hit.triangle);

@@ -11,14 +11,14 @@
 namespace keepout {
 namespace {
 
-// A height below this share of the longest side is rounding, as it is to the closest-point kernel.
+// A height below this fraction of the longest side is rounding, as for the closest-point kernel.
 constexpr double needle = 1e-14;
 // A slope below this is rounding.
 constexpr double level = 1e-14;
 constexpr double nothing = -std::numeric_limits<double>::infinity();
 
-/// The unit normal across the longest side and the height upon it, orthogonalised twice: even for a
-/// needle all corners are then in its plane to within the rounding of the corners themselves.
+/// Returns the unit normal, from the longest side and the height on it, orthogonalized twice. So
+/// even for a needle all corners are in its plane, up to their own rounding.
 Vec3 normal_of(const std::array<Vec3, 3>& p) noexcept {
   int start = 0;
   double longest2 = -1.0;
@@ -39,7 +39,7 @@ Vec3 normal_of(const std::array<Vec3, 3>& p) noexcept {
   return base.cross(height / length);
 }
 
-/// The same over the part of one side that is in the ball.
+/// Like support_within(), but for the part of one side that is in the ball.
 double support_of_side(const Vec3& a, const Vec3& b, const Vec3& normal, double radius) noexcept {
   const Vec3 side = b - a;
   const double length = side.norm();
@@ -67,8 +67,8 @@ bool is_inside(const TriangleFromTip& triangle, const Vec3& in_plane, double sla
   return true;
 }
 
-/// The same over the disc in which the ball cuts the triangle's plane, if it is attained inside the
-/// triangle; otherwise the largest value is on a side.
+/// Like support_within(), but for the disc in which the ball cuts the triangle's plane, if the
+/// largest value is inside the triangle. Otherwise the largest value is on a side.
 double support_of_disc(const TriangleFromTip& triangle, const Vec3& normal, double radius,
                        double slack) noexcept {
   const Vec3 foot = triangle.normal * triangle.normal.dot(triangle.corners[0]);
@@ -78,8 +78,9 @@ double support_of_disc(const TriangleFromTip& triangle, const Vec3& normal, doub
   Vec3 slope = normal - triangle.normal * triangle.normal.dot(normal);
   slope -= triangle.normal * triangle.normal.dot(slope);
   const double steepness = slope.norm();
-  // Seen along its normal the disc is level, and what is left of the slope points anywhere. Where
-  // its center is outside of the triangle, a side of the triangle crosses it or all of it is.
+  // Seen along its normal the disc is level, and the rest of the slope has any direction. If the
+  // center of the disc is outside the triangle, a side of the triangle crosses the disc, or all of
+  // the disc is outside.
   const Vec3 extreme = steepness > level ? Vec3(foot + slope * (rim / steepness)) : foot;
   if (!is_inside(triangle, extreme, slack)) return nothing;
   return normal.dot(foot) + rim * steepness;
@@ -102,8 +103,8 @@ double support_within(const TriangleFromTip& triangle, const Vec3& normal, doubl
   const double farthest2 = std::max({p[0].squaredNorm(), p[1].squaredNorm(), p[2].squaredNorm()});
   if (farthest2 <= radius * radius || triangle.normal.isZero(0.0)) return whole;
 
-  // The sides' ball is the larger one: where rounding moves the extreme point of the disc out of
-  // the triangle, the side that it crosses still answers for it.
+  // The ball of the sides is the larger one. If rounding moves the extreme point of the disc out of
+  // the triangle, the side that it crosses still gives the support.
   double support = support_of_disc(triangle, normal, radius + 0.5 * slack, slack);
   for (int i = 0; i < 3; ++i) {
     support = std::max(support, support_of_side(p[i], p[(i + 1) % 3], normal, radius + slack));

@@ -7,18 +7,18 @@
 
 namespace keepout {
 
-/// A triangle as the tip sees it.
+/// A triangle relative to the tip.
 struct TriangleFromTip {
-  std::array<Vec3, 3> corners;  // relative to the tip, in an order that the winding has no part in
-  Vec3 normal;                  // unit, either way; zero for a needle that is all but a segment
+  std::array<Vec3, 3> corners;  // in an order that does not depend on the winding
+  Vec3 normal;                  // unit, of either sign; zero for a needle that is almost a segment
 };
 
 TriangleFromTip triangle_from_tip(const Triangle& triangle, const Vec3& tip) noexcept;
 
-/// The largest normal . p over the points p of the triangle that are in the ball of `radius` around
-/// the tip; -infinity if there are none. Never too small; too large by no more than the triangle's
-/// part in a ball larger by `slack` has it, for a needle its whole. [length]
-/// Precondition: `slack` is above the rounding of the corners, some 1e-15 of their distance.
+/// Returns the largest normal . p over the points p of the triangle that are in the ball of
+/// `radius` around the tip, or -infinity without such points. The result is never too small. It is
+/// at most the value for a ball larger by `slack`, and for a needle at most that of the whole
+/// triangle. [length]
 double support_within(const TriangleFromTip& triangle, const Vec3& normal, double radius,
                       double slack) noexcept;
 

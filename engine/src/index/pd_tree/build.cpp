@@ -11,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/pd_tree/build.cpp"
 #include <hwy/foreach_target.h>
-// After it, for it tells for whom to compile.
+// After foreach_target.h, which sets the target to compile for.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -19,8 +19,8 @@ namespace keepout::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// How far leaves extend along three directions, from `node.center`: low <= 0 <= high, to the
-/// rounding of floats. [length]
+/// Computes the extents of leaves from `node.center` along three directions, exact to the rounding
+/// of floats. They contain 0. [length]
 void extent_of(const PdNode& node, std::span<const LeafBlock> leaves, float (&least)[3],
                float (&most)[3]) {
   const hn::CappedTag<float, LeafBlock::lanes> d;
@@ -67,7 +67,7 @@ class Builder {
   Builder(const Mesh& mesh, std::span<PdNode> nodes, std::span<LeafBlock> leaves)
       : mesh_(mesh), nodes_(nodes), leaves_(leaves) {}
 
-  /// Returns what a leaf's coordinates are to the mesh's.
+  /// Builds the tree. Returns the frame of the leaves.
   LeafFrame build(unsigned threads) {
     {
       const LeafFill fill(mesh_, threads);
@@ -88,7 +88,8 @@ class Builder {
  private:
   using Centers = std::span<Center>;
 
-  /// Orients the box of a node, and of all below it, and leaves their triangles in leaves.
+  /// Orients the boxes of a node and of all nodes below it, and distributes their triangles to
+  /// leaves.
   void divide(Centers centers, Centers spare, std::size_t self, std::size_t first_leaf,
               unsigned threads) {
     PdNode& node = nodes_[self];
@@ -116,7 +117,7 @@ class Builder {
         });
   }
 
-  /// Along the direction of the largest spread.
+  /// Splits along the direction of the largest spread.
   static void split(Centers from, Centers to, std::size_t middle, const PdNode& node) {
     const auto along = [x = node.across[0][0], y = node.across[1][0],
                         z = node.across[2][0]](const Center& center) {
@@ -132,15 +133,15 @@ class Builder {
     split_at(from, to, middle, low, high, along);
   }
 
-  /// Sizes the box of a node, and of all below it.
+  /// Computes the sizes of the boxes of a node and of all nodes below it.
   void enclose(std::size_t self, std::size_t first_leaf, unsigned threads) {
     PdNode& node = nodes_[self];
     const std::span inside = leaves_.subspan(first_leaf, node.leaves);
     float low[3], high[3];
     HWY_DYNAMIC_DISPATCH(extent_of)(node, inside, low, high);
-    // The middle of the extents is the better center, to the rounding of its coordinates; how much
-    // that shifts the extents is known exactly.
-    Vec3 shift = Vec3::Zero();  // along the mesh's axes, then along the directions
+    // The middle of the extents is the better center, up to the rounding of its coordinates. The
+    // shift of the extents that results is known exactly.
+    Vec3 shift = Vec3::Zero();  // along the mesh's axes
     for (int axis = 0; axis < 3; ++axis) {
       double to_middle = 0.0;
       for (int k = 0; k < 3; ++k) {
@@ -166,13 +167,14 @@ class Builder {
         [&] { enclose(self + 2 * near, first_leaf + near, threads - threads / 2); });
   }
 
-  // The extents are off by 6 roundings of the farthest corner's distance, a query's place in the
-  // box by 8 of the box's size.
+  // The extents are off by 6 roundings of the farthest corner's distance. A query's position in the
+  // box is off by 8 roundings of the box's size.
   static constexpr double outward = 64 * 0x1p-24;
 
   const Mesh& mesh_;
   LeafFrame frame_;
-  Vec3 middle_;  // of the mesh's bounds, from there: where centers are measured from [length]
+  Vec3 middle_;  // of the mesh's bounds, from the frame's origin; the centers are relative to it
+                 // [length]
   std::span<PdNode> nodes_;
   std::span<LeafBlock> leaves_;
 };

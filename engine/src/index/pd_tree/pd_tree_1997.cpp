@@ -22,7 +22,7 @@ class PdTree1997::Builder {
         mesh_(tree.mesh()),
         mean_levels_(2 * static_cast<std::size_t>(std::bit_width(mesh_.triangle_count()))) {}
 
-  /// Of the node, and of all below it.
+  /// Builds a node and all nodes below it.
   void build(std::span<Center> centers, std::size_t level) {
     tree_.levels_ = std::max(tree_.levels_, level);
     const Spread spread = spread_of(centers);
@@ -58,7 +58,8 @@ class PdTree1997::Builder {
     return node;
   }
 
-  /// Returns how many come first: some, and not all.
+  /// Splits the centers in two, and returns the number in the first part: at least one, and not
+  /// all.
   std::size_t split(std::span<Center> centers, const Vec3& mean, const Vec3& direction,
                     std::size_t level) const {
     const auto along = [&](const Center& center) {

@@ -8,7 +8,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/pd_tree/query.cpp"
 #include <hwy/foreach_target.h>
-// After it, for it tells for whom to compile.
+// After foreach_target.h, which sets the target to compile for.
 #include <hwy/highway.h>
 
 #include "../tree_parts/leaf_test-inl.h"
@@ -16,13 +16,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// A ball as floats see it beside oriented boxes (PdNode).
+/// A ball in floats, for the test against oriented boxes (PdNode).
 ///
-/// The place of the center c in a box's frame is off by at most 8 u |c - center| + A, with u and A
-/// of ball_screen.cpp: two roundings of the difference, four of the products and their sum. Where a
-/// triangle in the box is as near as the radius r, |c - center| is at most r plus half the box's
-/// diagonal; the box was enlarged for the latter's share. The frame stretches lengths by at most
-/// 4 u, and squares and their sum round by 5 u.
+/// The position of the center c in a box's frame is off by at most 8 u |c - center| + A, with u and
+/// A of ball_screen.cpp. These are two roundings of the difference, and four of the products and
+/// their sum. If a triangle in the box is within the radius r, |c - center| is at most r plus half
+/// the box's diagonal. The box was enlarged for the second part. The frame stretches lengths by at
+/// most 4 u. Squares and their sum round by 5 u.
 struct OrientedScreen {
   explicit OrientedScreen(const BallScreen& ball) noexcept {
     constexpr double band = 0x1p-17;
@@ -35,19 +35,20 @@ struct OrientedScreen {
     inside2 = core > 0.0 ? at_most(core * core * (1.0 - band)) : -1.0f;
   }
 
-  float high_part[3];  // of the center, and what is left of it; the sum of both is meant [length]
+  float high_part[3];  // the center is high_part + low_part [length]
   float low_part[3];
-  float reach2;   // a box is out of reach if its squared distance computes to more
-  float inside2;  // all that is in a box touches the ball if its farthest corner's does not
+  float reach2;   // limit of a box's squared distance, beyond which the ball does not reach it
+  float inside2;  // limit for the farthest corner, within which all triangles in the box touch the
+                  // ball
 };
 
-/// How much of a box is in the ball.
+/// The part of a box that is in the ball.
 enum class Overlap { none, some, all };
 
-/// The squares of how far the ball's center is beyond a box along each of its directions, and of
-/// how far from the box's other side.
+/// Squares for each direction of a box: of how far the ball's center is beyond the box, and of its
+/// distance from the box's other side.
 struct Squares {
-  alignas(16) float beyond[4];  // the last is of no meaning
+  alignas(16) float beyond[4];  // the last element has no meaning
   alignas(16) float across[4];
 };
 
@@ -64,7 +65,7 @@ HWY_INLINE Squares squares(const PdNode& node, const float (&from_center)[3]) {
     of.across[k] = across * across;
   }
 #else
-  // All three directions at once; a load of four takes in the number behind them.
+  // All three directions at once. A load of four includes the next number, which has no effect.
   const hn::FixedTag<float, 4> d;
   const auto x = hn::Mul(hn::LoadU(d, node.across[0]), hn::Set(d, from_center[0]));
   const auto y = hn::Mul(hn::LoadU(d, node.across[1]), hn::Set(d, from_center[1]));
@@ -97,7 +98,7 @@ HWY_NOINLINE void traversal(const PdNode* nodes, const OrientedScreen& screen,
     std::uint32_t node;
     std::uint32_t first_leaf;
   };
-  // Deeper than the tree can be: its halves of at most 2^27 leaves differ by one.
+  // Deeper than any tree: its halves of at most 2^27 leaves differ by one leaf.
   Subtree stack[64];
   std::size_t waiting = 0;
   LeafList list;

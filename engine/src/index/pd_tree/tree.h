@@ -13,35 +13,36 @@ namespace keepout {
 
 /// An oriented box around consecutive leaves, in one cache line.
 struct alignas(64) PdNode {
-  /// The principal directions of what is in the box, largest spread first: orthonormal to the
-  /// rounding of floats. across[axis][direction], so that the three directions are together.
+  /// The principal directions of the triangles in the box, largest spread first: orthonormal up to
+  /// the rounding of floats. Stored as across[axis][direction], so that the three directions are
+  /// together.
   float across[3][3];
 
   float center[3];  // of the box, from the origin of the tree's frame [length]
   float half[3];    // half of the box's size along each direction, rounded outward [length]
 
-  /// How many leaves are in the box. Where more than one, the first half of them, rounded down, is
-  /// in the next node, and the others in the one behind that node's subtree.
+  /// The number of leaves in the box. If it is above 1, the next node contains the first half of
+  /// the leaves, rounded down. The node after that node's subtree contains the others.
   std::uint32_t leaves;
 };
 
 /// The nodes and leaves of a PdTree.
 class PdTree::Tree final : public TriangleBlocks {
  public:
-  /// Builds it. Throws Error for a mesh of more than most_triangles.
+  /// Builds the tree. Throws Error for a mesh of more than most_triangles.
   Tree(const PdTree& index, unsigned threads);
 
-  /// The mesh of the index.
+  /// Returns the mesh of the index.
   const Mesh& mesh() const noexcept { return index_.mesh(); }
 
-  /// A parent stands before its children; the first is the root.
+  /// Returns the nodes: a parent comes before its children, and the root is first.
   std::span<const PdNode> nodes() const noexcept { return nodes_; }
-  /// In the order in which the nodes hold them.
+  /// Returns the leaves, in the order of the nodes.
   std::span<const LeafBlock> leaves() const noexcept override { return leaves_; }
   const LeafFrame& frame() const noexcept override { return frame_; }
   void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
 
-  /// Memory of the nodes and leaves. [bytes]
+  /// Returns the memory of the nodes and leaves. [bytes]
   std::size_t memory() const noexcept;
 
  private:

@@ -25,7 +25,7 @@ void* allocate_blocks(std::size_t bytes) {
   void* const memory = std::aligned_alloc(unit, rounded_up(bytes, unit));
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef __linux__
-  // Advice alone: without huge pages all works as well, only slower.
+  // A hint: without huge pages all is the same, only slower.
   if (unit == huge_page) madvise(memory, rounded_up(bytes, unit), MADV_HUGEPAGE);
 #endif
   return memory;

@@ -11,7 +11,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/tree_parts/leaf_fill.cpp"
 #include <hwy/foreach_target.h>
-// After it, for it tells for whom to compile.
+// After foreach_target.h, which sets the target to compile for.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -65,7 +65,7 @@ HWY_INLINE void store(const Place<double>& place, const Vec3& origin,
   write(place.z, 2);
 }
 
-/// The corners of a leaf's triangles, each beside a number that is not looked at. [length]
+/// The corners of a leaf's triangles, each with one unused number. [length]
 template <class Number>
 struct alignas(64) Gathered {
   Number corner[3][LeafBlock::lanes][4];
@@ -90,8 +90,9 @@ HWY_INLINE void copy(const Vec3& from, double (&to)[4]) {
   to[3] = 0.0;
 }
 
-/// Writes the corners in lexicographic order: as corner_order does, equal ones keep theirs. They
-/// are ordered before the origin is taken off, whose rounding could make different ones equal.
+/// Writes the corners in lexicographic order; equal corners keep their order, as in corner_order().
+/// Corners are ordered before the origin is subtracted, because rounding could make different
+/// corners equal.
 template <class Number>
 HWY_INLINE void write_in_order(const Gathered<Number>& from, const Vec3& origin, LeafBlock& leaf) {
   const Lanes<Number> d;
@@ -125,7 +126,7 @@ HWY_INLINE void write_in_order(const Gathered<Number>& from, const Vec3& origin,
   }
 }
 
-/// What is asked of the mesh for a leaf.
+/// The vertices of a leaf's triangles.
 using VerticesOfLeaf = Corners[LeafBlock::lanes];
 
 HWY_INLINE bool is_full(const LeafBlock& leaf) { return leaf.is_used(LeafBlock::lanes - 1); }
@@ -142,8 +143,8 @@ HWY_INLINE void look_up(const Corners* triangles, const LeafBlock& leaf, Vertice
   }
 }
 
-/// Nearly every read would be waited for: what names a leaf's triangles is fetched many leaves
-/// ahead, triangles when that has come, and vertices when those have.
+/// Without prefetching, the processor would wait for nearly every read. So the triangle numbers of
+/// a leaf are fetched many leaves ahead, then its triangles, then its vertices.
 template <class Number, class Vertex>
 HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices, const Vec3& origin,
                             std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
@@ -151,7 +152,7 @@ HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices, co
   constexpr std::size_t triangles_ahead = 12;
   constexpr std::size_t sources_ahead = 24;
   VerticesOfLeaf looked_up[vertices_ahead];
-  // Those that the call before this one has fetched.
+  // The previous call has fetched these.
   for (std::size_t i = first; i < std::min(first + vertices_ahead, leaves.size()); ++i) {
     look_up(triangles, leaves[i], looked_up[i % vertices_ahead]);
   }
@@ -192,9 +193,9 @@ void FillFromDoubles(const Corners* triangles, const Vec3* vertices, const Vec3&
   fill_leaves<double>(triangles, vertices, origin, leaves, first, last);
 }
 
-/// Rounds vertices to floats. Whether they are the same numbers.
+/// Rounds vertices to floats. Returns true if all keep their values.
 bool RoundVertices(std::span<const Vec3> from, LeafFill::FloatVertex* to) {
-  // A vertex and the coordinate behind it, which does no harm.
+  // Each read also covers the next coordinate, which has no effect.
   const hn::CappedTag<double, 4> d;
   const hn::Rebind<float, decltype(d)> floats;
   auto off = hn::Zero(d);
@@ -234,12 +235,12 @@ LeafFill::LeafFill(const Mesh& mesh, unsigned threads)
     if (!HWY_DYNAMIC_DISPATCH(RoundVertices)(share, &vertices_[begin])) are_floats = false;
   });
   if (are_floats) return;
-  // Corners that are one float may be in an order all the same: then the doubles are asked.
+  // Corners that round to the same floats may still have an order, so the doubles are used.
   vertices_ = {};
   const Box& bounds = mesh.bounds();
   frame_.origin = bounds.center();
-  // Half of a float's last digit, and of a double's where it is taken off the origin. Below the
-  // range of floats the last digit stays as large.
+  // Half of a float's last digit, and of a double's for the subtraction of the origin. Below the
+  // normal range of floats the last digit keeps its size.
   const double farthest =
       std::max((bounds.high - frame_.origin).maxCoeff(), (frame_.origin - bounds.low).maxCoeff());
   frame_.error = 0x1p-24 * (1.0 + 0x1p-20) * farthest + 0x1p-149;

@@ -11,30 +11,30 @@
 
 namespace keepout {
 
-/// Writes the corners of a mesh's triangles to leaves. A mesh is in an order of its own and each of
-/// its vertices is asked for six times, so where they are floats they are put into a table of
-/// floats first, four to a cache line. Others are measured from the middle of the triangles, so
-/// that neither the origin nor vertices that no triangle uses cost digits.
+/// Writes the corners of a mesh's triangles to leaves. The mesh has its own order, and each vertex
+/// is read about six times. So vertices that are floats are first copied to a table of floats, four
+/// to a cache line. Other vertices are stored relative to the middle of the triangles. So neither
+/// the origin nor vertices without triangles cost digits.
 class LeafFill {
  public:
-  /// Goes over the vertices once. `mesh` must outlive this.
+  /// Reads the vertices once. `mesh` must outlive this object.
   LeafFill(const Mesh& mesh, unsigned threads);
 
-  /// What a leaf's coordinates are to the mesh's.
+  /// Returns the frame of the leaves.
   const LeafFrame& frame() const noexcept { return frame_; }
 
-  /// Fills leaves first .. last - 1, whose `tagged_triangle` says which triangles are theirs, and
-  /// has what those behind them need brought nearer. The bits `odd` are set anew.
+  /// Fills leaves first .. last - 1, whose `tagged_triangle` already has the numbers of their
+  /// triangles. Prefetches the data of the leaves after them.
   void fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last) const noexcept;
 
-  /// Never straddles cache lines. [length]
+  /// A vertex that never crosses a cache line. [length]
   struct alignas(16) FloatVertex {
-    float x[4];  // the last one is not looked at
+    float x[4];  // the last is unused
   };
 
  private:
   const Mesh& mesh_;
-  BlockVector<FloatVertex> vertices_;  // none where the mesh's are no floats
+  BlockVector<FloatVertex> vertices_;  // empty if the mesh's vertices are not floats
   LeafFrame frame_;
 };
 

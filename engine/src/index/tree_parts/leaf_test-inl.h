@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which triangles of a leaf touch a ball, sixteen at a time or as many as the processor can. Every
-// lane does the same operations whatever the processor, so the answer is the same, too, and its
-// order. Compiled once for each kind of processor: see foreach_target.h of Highway.
+// Finds the triangles of a leaf that touch a ball, sixteen at a time or as many as the processor
+// can. Every lane does the same operations on every processor, so the answer and its order are the
+// same. Compiled once for each SIMD target: see foreach_target.h of Highway.
 #if defined(KEEPOUT_INDEX_LEAF_TEST_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KEEPOUT_INDEX_LEAF_TEST_INL_H
 #undef KEEPOUT_INDEX_LEAF_TEST_INL_H
@@ -59,8 +59,8 @@ HWY_INLINE TriangleLanes relative_to_center(const LeafBlock& leaf, std::size_t f
           load(d, leaf.corner[2], first) - high - low};
 }
 
-/// Returns the point of each triangle nearest to the origin, to within a rounding that leaves it in
-/// the triangle.
+/// Returns the point of each triangle nearest to the origin. Its rounding leaves it in the
+/// triangle.
 HWY_INLINE Vector nearest_point(const TriangleLanes& t) {
   const FloatTag d;
   const V zero = hn::Zero(d);
@@ -88,7 +88,7 @@ HWY_INLINE Vector nearest_point(const TriangleLanes& t) {
   offer(on_edge(t.a, ac, to_c, ac2));
   offer(on_edge(t.b, bc, hn::Neg(dot(bc, t.b)), dot(bc, bc)));
 
-  // In the middle, where both barycentric coordinates and their rest are positive.
+  // In the middle, both barycentric coordinates and the remainder are positive.
   const V across = dot(ab, ac);
   const V area2 = hn::Sub(hn::Mul(ab2, ac2), hn::Mul(across, across));
   const V at_b = hn::Sub(hn::Mul(ac2, to_b), hn::Mul(across, to_c));
@@ -100,8 +100,8 @@ HWY_INLINE Vector nearest_point(const TriangleLanes& t) {
   return select(inside, middle, best);
 }
 
-/// Returns the triangles that are surely outside the ball: beyond the plane across `direction`
-/// through the corner that is nearest along it.
+/// Returns the triangles that are surely outside the ball: beyond the plane that is perpendicular
+/// to `direction`, through the corner that is nearest along it.
 HWY_INLINE M surely_out(const TriangleLanes& t, const Vector& direction, V outside2_and_band) {
   const FloatTag d;
   const V along = min(dot(direction, t.a), dot(direction, t.b), dot(direction, t.c));
@@ -111,8 +111,8 @@ HWY_INLINE M surely_out(const TriangleLanes& t, const Vector& direction, V outsi
                  hn::Gt(length2, hn::Set(d, 1e-25f)));
 }
 
-/// Finds, of the triangles from lane `first` on, those that surely touch the ball, and those about
-/// which the exact kernel must decide.
+/// Tests the triangles from lane `first` on. Finds those that surely touch the ball, and those that
+/// the exact kernel must decide.
 HWY_INLINE void compare(const LeafBlock& leaf, std::size_t first, const BallScreen& ball, M& in,
                         M& in_doubt) {
   const FloatTag d;
@@ -127,7 +127,7 @@ HWY_INLINE void compare(const LeafBlock& leaf, std::size_t first, const BallScre
   const V spread = hn::Mul(band, hn::Add(farthest2, outside2));
   const V beyond2 = hn::Add(outside2, spread);
 
-  // A corner within the ball, or all of them beyond a plane before it, settle nearly all.
+  // A corner within the ball, or a plane with all corners beyond, settles most triangles.
   in = hn::Le(hn::Add(min(a2, b2, c2), spread), inside2);
   const M out = surely_out(t, t.a + t.b + t.c, beyond2);
   in_doubt = hn::Not(hn::Or(in, out));
@@ -139,7 +139,7 @@ HWY_INLINE void compare(const LeafBlock& leaf, std::size_t first, const BallScre
   in_doubt = hn::AndNot(hn::Or(in, surely_out(t, nearest, beyond2)), in_doubt);
 }
 
-/// Appends those of a block's ids whose lanes are chosen.
+/// Appends the ids of a block's chosen lanes.
 HWY_INLINE void append(hn::Vec<Ids> source, M chosen, TriangleBuffer& out) {
   const Ids ids;
   const auto used = hn::Ne(source, hn::Set(ids, no_triangle));
@@ -202,18 +202,18 @@ HWY_INLINE void append_touching(const LeafBlock& leaf, const BallScreen& ball, c
   }
 }
 
-/// A leaf as traversals name it: its number, and whether all of it is in the ball.
+/// A leaf in a traversal's list: its number, and a bit if all of it is in the ball.
 constexpr std::uint32_t whole_leaf = std::uint32_t{1} << 30;
 constexpr std::uint32_t leaf_number = whole_leaf - 1;
 
-/// Leaves to look at, gathered first so that their memory is on its way when their turn comes.
+/// Leaves to visit. They are listed first, so that their memory is fetched before their turn.
 class LeafList {
  public:
   std::uint32_t* end() { return leaves_ + size_; }
   void grow(std::size_t count) { size_ += count; }
   std::size_t room() const { return capacity - size_; }
 
-  /// Has the visitor look at them, and forgets them.
+  /// Shows the leaves to the visitor, and clears the list.
   template <class Visitor>
   HWY_INLINE void show(const Visitor& visitor) {
     visitor.look(leaves_, size_);
@@ -222,13 +222,13 @@ class LeafList {
 
  private:
   static constexpr std::size_t capacity = 128;
-  std::uint32_t leaves_[capacity + LeafBlock::lanes];  // stores may go beyond what they add
+  std::uint32_t leaves_[capacity + LeafBlock::lanes];  // stores may write beyond the end
   std::size_t size_ = 0;
 };
 
-/// Appends what touches the ball. Once the kernel has been asked about more triangles than there is
-/// room for, it gives up as if there were no room: else a ball that all but touches a whole mesh
-/// would take as long as that is large.
+/// Appends the triangles that touch the ball. Reports an overflow if the kernel has examined more
+/// triangles than the capacity. Otherwise a ball that almost touches a whole mesh would take a time
+/// that grows with the mesh.
 template <bool counting>
 struct TouchingTriangles {
   const LeafBlock* leaves;
@@ -237,9 +237,9 @@ struct TouchingTriangles {
   TriangleBuffer& out;
   QueryCounts* counts;
 
-  mutable std::size_t asked = 0;  // triangles, of the exact kernel
+  mutable std::size_t asked = 0;  // number of triangles examined by the exact kernel
 
-  static constexpr bool wants_whole_leaves = true;  // marked as such
+  static constexpr bool wants_whole_leaves = true;  // marked as whole
 
   HWY_INLINE void look(const std::uint32_t* found, std::size_t count) const {
     constexpr std::size_t ahead = 8;
@@ -273,7 +273,7 @@ struct TouchingTriangles {
   }
 };
 
-/// Appends the numbers of the leaves.
+/// Appends the numbers of the leaves that the ball touches.
 struct TouchedLeaves {
   LeafBuffer& out;
 

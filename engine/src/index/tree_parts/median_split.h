@@ -14,35 +14,36 @@
 
 namespace keepout {
 
-/// Where a triangle is, for the building of a tree: it decides how good the tree is, and never
-/// whether its answers are right.
+/// The position of a triangle, for building a tree. It affects the speed of the tree, and never its
+/// answers.
 struct Center {
   std::array<float, 3> position;  // from the middle of the mesh's bounds [length]
   TriangleId triangle;
 };
 
-/// The middle of each triangle's bounds, in the order of the triangles.
+/// Returns the middle of each triangle's bounds, in the order of the triangles.
 BlockVector<Center> centers_of(const Mesh& mesh, unsigned threads);
 
-/// The middle of the triangles, from the middle of the mesh, and how they spread.
+/// The mean of the triangles' centers, relative to the middle of the mesh, and their spread.
 struct Spread {
   Vec3 mean;                   // [length]
-  Eigen::Matrix3d covariance;  // times their number [length^2]
+  Eigen::Matrix3d covariance;  // times the number of triangles [length^2]
 };
 
-/// Of one triangle or more. In one pass, from the first of them: what is subtracted in the end is
-/// of the size of the rest.
+/// Returns the spread of at least one triangle, in one pass. Coordinates are relative to the first
+/// triangle, so the final subtraction loses few digits.
 Spread spread_of(std::span<const Center> centers) noexcept;
 
-/// Orthonormal rows, the direction of largest spread first. The eigenvectors only choose the frame;
-/// the cross products make it orthonormal to rounding, which the box tests rely on.
+/// Returns orthonormal rows, the direction of the largest spread first. The eigenvectors only
+/// choose the frame. The cross products make it orthonormal up to rounding, which the box tests
+/// need.
 Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& covariance) noexcept;
 
-/// Moves the centers to `to`, the `middle` ones with the smallest keys to its front. Ties go by
-/// triangle, so that each half is a set that nothing but the mesh decides.
+/// Moves the centers to `to`, the `middle` ones with the smallest keys to its front. The number of
+/// the triangle decides ties, so each half depends only on the mesh.
 ///
-/// A histogram of the keys, which are in low .. high, tells in which bin the middle is: the other
-/// bins go where they belong in one pass, without a branch that the processor could not foresee.
+/// A histogram of the keys, which are in low .. high, gives the bin of the middle. One pass moves
+/// the centers of the other bins to their half, without branches that a processor cannot predict.
 template <class Key>
 void split_at(std::span<const Center> from, std::span<Center> to, std::size_t middle, float low,
               float high, const Key& key) noexcept {

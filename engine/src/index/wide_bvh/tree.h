@@ -11,36 +11,36 @@
 
 namespace keepout {
 
-/// Sixteen cylinders, coordinate by coordinate, around the triangles of a node's boxes. A sheet
-/// that is not along the axes fills its box badly, and its cylinder well.
+/// Sixteen cylinders, coordinate by coordinate, around the triangles of a node's boxes. A cylinder
+/// encloses an inclined sheet much more closely than a box along the axes.
 struct alignas(64) CylinderBlock {
-  /// In a block.
+  /// The number of cylinders in a block.
   static constexpr std::size_t lanes = 16;
 
   float middle[3][lanes];    // [axis][lane] [length]
-  float axis[3][lanes];      // of unit length, but for its rounding
+  float axis[3][lanes];      // of unit length, up to rounding
   float half_height[lanes];  // along the axis, to either side of the middle [length]
   float radius[lanes];       // [length]
 };
 
-/// Sixteen boxes, coordinate by coordinate, and what is in them.
+/// Sixteen boxes, coordinate by coordinate, and their children.
 struct alignas(64) NodeBlock {
-  /// In a block.
+  /// The number of boxes in a block.
   static constexpr std::size_t lanes = 16;
-  /// The bit of `child` that tells a leaf from a node.
+  /// The bit of `child` that marks a leaf.
   static constexpr std::uint32_t leaf_bit = std::uint32_t{1} << 31;
 
-  /// Hold their triangles, as the mesh has them, rounded outward; from the origin of the tree's
-  /// frame. Unused lanes, which are the last ones, hold a box at infinity that nothing reaches.
-  /// [length]
+  /// The corners of the boxes, relative to the origin of the tree's frame. Each box contains the
+  /// mesh's triangles, rounded outward. Unused lanes come last, and have a box at infinity that no
+  /// query reaches. [length]
   float low[3][lanes];   // [axis][lane]
   float high[3][lanes];  // [axis][lane]
 
-  /// The number of a node; or of a leaf block, with leaf_bit set. Of an unused lane: 0, which is
-  /// the root and nobody's child.
+  /// The number of a node, or of a leaf block with leaf_bit set. An unused lane has 0, the root,
+  /// which is no child.
   std::uint32_t child[lanes];
 
-  /// Whether there is a box in a lane.
+  /// Returns true if a lane has a box.
   bool is_used(std::size_t lane) const noexcept { return child[lane] != 0; }
 };
 
@@ -57,31 +57,31 @@ class LeafFill;
 /// The nodes and leaves of a WideBvh.
 class WideBvh::Tree final : public TriangleBlocks {
  public:
-  /// Allocates the blocks, whose places follow from the number of triangles. Throws Error if there
-  /// are more than most_triangles.
+  /// Allocates the blocks, whose places follow from the number of triangles. Throws Error for more
+  /// than most_triangles.
   explicit Tree(const WideBvh& index);
 
   /// Distributes the triangles to the leaves.
   void divide(unsigned threads);
-  /// Distributes them in a given order. Precondition: it names each triangle once.
+  /// Distributes the triangles in a given order. Precondition: it names each triangle once.
   void divide(std::span<const TriangleId> order) noexcept;
   /// Writes the corners to the leaves, and encloses them in boxes and cylinders.
   void fit(const LeafFill& fill, unsigned threads);
 
-  /// The mesh of the index.
+  /// Returns the mesh of the index.
   const Mesh& mesh() const noexcept { return index_.mesh(); }
 
-  /// A parent stands before its children; the first is the root.
+  /// Returns the nodes: a parent comes before its children, and the root is first.
   std::span<const NodeBlock> nodes() const noexcept { return nodes_; }
-  /// As the nodes number them.
+  /// Returns the leaves, as the nodes number them.
   std::span<const LeafBlock> leaves() const noexcept override { return leaves_; }
-  /// Of each node: around what its boxes are around, as its leaves have it.
+  /// Returns the cylinders of each node, around the same triangles as its boxes.
   std::span<const CylinderBlock> cylinders() const noexcept { return cylinders_; }
 
   const LeafFrame& frame() const noexcept override { return frame_; }
   void collect_leaves(const Ball& ball, LeafBuffer& found) const noexcept override;
 
-  /// Memory of the blocks. [bytes]
+  /// Returns the memory of the blocks. [bytes]
   std::size_t memory() const noexcept;
 
  private:
@@ -91,7 +91,7 @@ class WideBvh::Tree final : public TriangleBlocks {
   const WideBvh& index_;
   BlockVector<NodeBlock> nodes_;          // level by level, the root first
   BlockVector<LeafBlock> leaves_;         // neighbors near each other
-  BlockVector<CylinderBlock> cylinders_;  // as nodes_
+  BlockVector<CylinderBlock> cylinders_;  // in the order of nodes_
   LeafFrame frame_;
 };
 

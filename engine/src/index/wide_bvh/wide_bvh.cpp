@@ -38,10 +38,9 @@ WideBvh::WideBvh(std::shared_ptr<const Mesh> mesh, std::span<const TriangleId> o
       }
     }
   });
-  // As many as there are, and none that is missing: so none is there twice.
+  // The order has the right length and names every triangle, so it names none twice.
   if (!known || std::ranges::find(named, 0) != named.end()) {
-    throw Error(
-        "the order of a wide_bvh names each triangle of the mesh once, and this one does not");
+    throw Error("the order of a wide_bvh must name each triangle of the mesh exactly once");
   }
   tree_ = std::make_unique<Tree>(*this);
   tree_->divide(order);
@@ -67,7 +66,7 @@ std::unique_ptr<SpatialIndex> WideBvh::refitted(std::shared_ptr<const Mesh> move
 }
 
 void WideBvh::require_same_triangles(const Mesh* moved, unsigned threads) const {
-  if (moved == nullptr) throw Error("a refit is to a mesh: none was given");
+  if (moved == nullptr) throw Error("a refit needs a mesh, but it is null");
   const auto corners = mesh().triangles();
   const auto others = moved->triangles();
   std::atomic<bool> same =
@@ -76,7 +75,7 @@ void WideBvh::require_same_triangles(const Mesh* moved, unsigned threads) const 
     const std::size_t bytes = (end - begin) * sizeof(Corners);
     if (std::memcmp(&corners[begin], &others[begin], bytes) != 0) same = false;
   });
-  if (!same) throw Error("a refit is for moved vertices: the triangles are to be the same");
+  if (!same) throw Error("a refit is for moved vertices: the triangles must be the same");
 }
 
 void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {

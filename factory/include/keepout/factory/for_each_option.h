@@ -9,7 +9,7 @@
 namespace keepout {
 
 /// Calls `visit(option, struct)` for each option of the settings of a constraint, with the struct
-/// that the option is a member of: its own settings, then options, then capacity.
+/// that has the option. The order is: settings, options, capacity.
 template <class Settings, class Visit>
 void for_each_option(Settings& settings, const Visit& visit) {
   for (const auto& option : table_of(settings)) visit(option, settings);
@@ -17,7 +17,7 @@ void for_each_option(Settings& settings, const Visit& visit) {
   for (const auto& option : table_of(settings.capacity)) visit(option, settings.capacity);
 }
 
-/// Returns the settings themselves, their options or their capacity, whichever is of that type.
+/// Returns the settings, their options or their capacity: the one of type `Options`.
 template <class Options, class Settings>
 const Options& part_of(const Settings& settings) {
   if constexpr (std::same_as<Options, Settings>) {

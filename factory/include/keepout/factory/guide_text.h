@@ -17,11 +17,12 @@ inline constexpr std::string_view guide_forms =
     "point:LINK:X,Y,Z:REGION or axis:LINK:AXIS:DIRECTION:ANGLE or "
     "remote_center:LINK:X,Y,Z:LINK:X,Y,Z:CENTER:TOLERANCE";
 
-/// Returns the guide that a text describes, [NAME=]FORM, where FORM is REGION for a tip, such as
-/// "corridor=slab:0,0,50:1,0,0:1", or one of `guide_forms` for an instrument: see Region and Guide.
-/// Regions are in the frame and unit of the mesh; directions are three numbers of any length. LINK
-/// is a link's number, 0 the base; its points are in its frame [length], angles in radians. The
-/// name is the form's if none is given. Throws Error, which names what is wrong and the forms.
+/// Returns the guide that a text [NAME=]FORM describes: see Region and Guide. For a tip, FORM is
+/// one of `region_forms`, as in "corridor=slab:0,0,50:1,0,0:1"; for an instrument, one of
+/// `guide_forms`. Regions are in the frame and unit of the mesh; directions are three numbers of
+/// any length. LINK is the number of a link, 0 for the base; points are in the frame of their link
+/// [length], angles in radians. The default name is that of the form. Throws Error, which names the
+/// fault and the forms.
 Guide guide_of_text(std::string_view text);
 
 }  // namespace keepout

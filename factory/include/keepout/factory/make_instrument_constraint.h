@@ -11,16 +11,16 @@
 
 namespace keepout {
 
-/// Parts of an instrument constraint, by name, and its options.
+/// The names of the parts of an instrument constraint, and its options.
 struct InstrumentConstraintSettings {
   std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
-  /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
+  /// The directory of saved indices; only wide_bvh is saved. Empty: indices are not saved.
   std::filesystem::path index_cache = {};
   std::string solver = "active_set";  // see solver_backends()
-  InstrumentOptions options = {};     // that stay the same from cycle to cycle
+  InstrumentOptions options = {};     // the same in all cycles
   InstrumentCapacity capacity = {};   // for the largest cycle
-  /// Called while building with what does no harm but should be known: the index could not be kept,
-  /// or the mesh is so large beside the margin that steps are slow. May be empty.
+  /// Called with harmless warnings while building: the index could not be saved, or the mesh is so
+  /// large relative to the margin that steps are slow. May be empty.
   std::function<void(const std::string&)> warn = {};
 };
 
@@ -31,14 +31,14 @@ inline constexpr std::array instrument_settings{option<&InstrumentConstraintSett
 /// See table_of(const StepOptions&).
 constexpr const auto& table_of(const InstrumentConstraintSettings&) { return instrument_settings; }
 
-/// Builds the parts and puts them together. Throws Error, listing what exists, for a name that does
-/// not, and for settings out of range.
+/// Builds the parts and combines them. Throws Error for an unknown name, with a list of the known
+/// names, and for settings out of range.
 InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh,
                                                 Instrument instrument,
                                                 const InstrumentConstraintSettings& settings);
 
-/// The same on an index that is there already, built on this mesh: settings.index and index_cache
-/// are not looked at. Constraints of many threads may share it, as they share the mesh.
+/// Like the function above, but on an existing index of this mesh: ignores settings.index and
+/// index_cache. Constraints of several threads may share mesh and index.
 InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh,
                                                 std::shared_ptr<const SpatialIndex> index,
                                                 Instrument instrument,

@@ -14,25 +14,24 @@
 
 namespace keepout {
 
-/// Parts of a motion constraint, by name, and its options.
+/// The names of the parts of a motion constraint, and its options.
 struct MotionConstraintSettings {
   std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
-  /// The folder where built indices are kept; only wide_bvh is. Empty: none is kept.
+  /// The directory of saved indices; only wide_bvh is saved. Empty: indices are not saved.
   std::filesystem::path index_cache = {};
-  /// Told while building of what does no harm but should be known: that an index could not be kept,
-  /// or that the mesh is so large beside the distance kept that steps are slow. Empty: nobody is
-  /// told.
+  /// Called with harmless warnings while building: the index could not be saved, or the mesh is so
+  /// large relative to the required clearance that steps are slow. May be empty.
   std::function<void(const std::string&)> warn = {};
   std::string activation = "certified";  // see activation_rules()
   std::string solver = "active_set";     // see solver_backends()
-  StepOptions options = {};              // that stay the same from step to step
-  /// Tool that must not touch the mesh, in place of the ball of options.tool_radius; tool_of_text()
-  /// reads one from a text. ConvexToolRule guards it: activation stays "certified" and tool_radius
-  /// 0; inside, refinements and nodes have no effect. Empty: the ball.
+  StepOptions options = {};              // the same in all steps
+  /// The tool that must not touch the mesh, instead of the ball of options.tool_radius; see
+  /// tool_of_text(). ConvexToolRule guards it: `activation` must be "certified" and tool_radius 0;
+  /// `inside`, refinements and nodes have no effect. Empty: the ball.
   std::optional<ConvexTool> tool = {};
   std::string narrow_phase = "exact";  // of a tool; see narrow_phase_backends()
-  /// What becomes of a tip that starts inside; of a ball, under the rule certified. The constructor
-  /// of MotionConstraint takes any rule: its default is Inside::taken_as_is.
+  /// The treatment of a tip that starts inside, for a ball with the certified rule. (The
+  /// constructor of MotionConstraint accepts any rule, so its default is Inside::taken_as_is.)
   Inside inside = Inside::escape;
   Capacity capacity = {};  // for the largest step
 };
@@ -47,24 +46,25 @@ inline constexpr std::array motion_settings{
         "narrow_phase", "Proposer of the planes of a convex tool: see narrow_phase_backends()."),
     option<&MotionConstraintSettings::inside, inside_names>(
         "inside",
-        "Treatment of a tip that starts on the forbidden side: it is led out, or its side is not "
+        "Treatment of a tip that starts on the forbidden side: it escapes, or its side is not "
         "checked.")};
 
 /// See table_of(const StepOptions&).
 constexpr const auto& table_of(const MotionConstraintSettings&) { return motion_settings; }
 
-/// The index that the settings name, from index_cache where it is kept there: for constraints that
-/// share it. Throws Error for a name that does not exist.
+/// Returns the index that the settings name, loaded from index_cache if it is saved there. For
+/// constraints that share an index. Throws Error for an unknown name.
 std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mesh> mesh,
                                                        const MotionConstraintSettings& settings);
 
-/// Builds the parts and puts them together. Throws Error, listing what exists, for a name that does
-/// not, and for settings out of range, or that contradict each other, as a tool and a tool_radius.
+/// Builds the parts and combines them. Throws Error for an unknown name, with a list of the known
+/// names. Also throws Error for settings out of range or that contradict each other, such as a tool
+/// and a tool_radius.
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings);
 
-/// The same on an index that is there already, built on this mesh: settings.index and index_cache
-/// are not looked at. Constraints of many threads may share it, as they share the mesh.
+/// Like the function above, but on an existing index of this mesh: ignores settings.index and
+/// index_cache. Constraints of several threads may share mesh and index.
 MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         std::shared_ptr<const SpatialIndex> index,
                                         const MotionConstraintSettings& settings);

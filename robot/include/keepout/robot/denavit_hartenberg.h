@@ -9,11 +9,11 @@
 
 namespace keepout {
 
-/// One row of a table after Denavit and Hartenberg. The joint's position is added to `theta` where
-/// it is revolute, to `d` where it is prismatic.
+/// One row of a table of Denavit and Hartenberg. The position of a revolute joint is added to
+/// `theta`, that of a prismatic joint to `d`.
 struct DenavitHartenberg {
   std::string name = {};                 // of the joint, for messages
-  JointKind kind = JointKind::revolute;  // how the joint moves what is beyond it
+  JointKind kind = JointKind::revolute;  // how the joint moves the links beyond it
   double a = 0.0;                        // along x [length]
   double alpha = 0.0;                    // about x [rad]
   double d = 0.0;                        // along z, at position 0 [length]
@@ -21,20 +21,20 @@ struct DenavitHartenberg {
   JointLimits limits = {};               // of the position that is added
 };
 
-/// In which order the four motions of a row follow one another.
+/// The order of the four transforms of a row.
 enum class DhConvention : std::uint8_t {
   modified,  // Craig: about x, along x, about z, along z; the joint's axis is its own frame's z
-  standard   // about z, along z, along x, about x; the joint's axis is the z of the frame before
+  standard   // about z, along z, along x, about x; the joint's axis is the z of the previous frame
 };
 
-/// The joints and the flange of a table. Under the standard convention the last row's a and alpha
-/// lead to the flange; under the modified one it is the last link's frame.
+/// The joints and the flange of a table. In the standard convention the last row's a and alpha
+/// define the flange; in the modified convention the flange is the last link's frame.
 struct DhChain {
   std::vector<Joint> joints;  // in the order of the rows
   Pose flange;                // in the frame of the last link
 };
 
-/// See DhChain. Throws Error for a number that is not finite.
+/// Returns the joints and the flange of a table. Throws Error for a number that is not finite.
 DhChain joints_of(std::span<const DenavitHartenberg> table, DhConvention convention);
 
 }  // namespace keepout

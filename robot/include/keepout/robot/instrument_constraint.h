@@ -18,45 +18,47 @@
 namespace keepout {
 
 /// Keeps a whole instrument out of meshes, in joint space. A step returns the joint increment
-/// nearest to the commanded one that is proved to keep each body clear, on the motion that the
-/// joints really make.
+/// nearest to the commanded one that is proved to keep each body clear. The proof covers the motion
+/// that the joints really make.
 ///
-/// Only the certificate is trusted: planes, solver and linearization propose a motion; the true
-/// motion q + s dq, s in [0, 1], is then proved, or cut to the part that is proved.
+/// Only the certificate is trusted. Planes, solver and linearization propose a motion. The true
+/// motion q + s dq, s in [0, 1], is then proved, or truncated to the part that is proved.
 ///
-/// Guarantee (docs/joint-space-step.md, Theorem 1, with its assumptions): if each body is at least
-/// radius + F from the mesh at the start, it is at least radius + F - 3 tolerance away for all s,
-/// and joint limits hold. F is the certified clearance of the pair of body and mesh: margin - band,
-/// or what is left of it if the body is closer already.
+/// Guarantee (docs/joint-space-step.md, Theorem 1, with its assumptions): joint limits hold. If
+/// each body is at least radius + F from the mesh at the start, it is at least radius + F - 3
+/// tolerance away for all s. F is the certified clearance of the pair of body and mesh: margin -
+/// band, or less if the body is already closer.
 ///
-/// If a mesh moves in the cycle as `place` says, this holds for its pose at each s, and only if all
-/// of the increment is carried out: a part of it is not proved. A pair in InstrumentStep::degraded
-/// maintains that fraction of F, or no clearance if it is not certified; all other pairs maintain
-/// F.
+/// If a mesh moves in the cycle (see place), this holds for its pose at each s. It then holds only
+/// if the whole increment is executed: a part of it is not proved. A pair in
+/// InstrumentStep::degraded maintains that fraction of F, or no clearance if it is not certified;
+/// all other pairs maintain F.
 ///
 /// Not thread-safe: make one for each control loop. Mesh and index may be shared.
 class InstrumentConstraint {
  public:
-  /// The index must be built on `mesh`. Allocates all memory. Throws Error if a part is missing, if
-  /// the index is of another mesh, or if an option or a capacity is out of range.
+  /// Combines the parts, and allocates all memory. The index must be built on `mesh`. Throws Error
+  /// if a part is missing, if the index is for another mesh, or if an option or a capacity is out
+  /// of range.
   InstrumentConstraint(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        Instrument instrument, std::unique_ptr<Solver> solver,
                        const InstrumentOptions& options, const InstrumentCapacity& capacity = {});
-  /// Like the constructor above, but without a mesh: until one is added, only limits of joints and
-  /// guides hold.
+  /// Like the constructor above, but without a mesh. Until a mesh is added, only limits of joints
+  /// and guides apply.
   InstrumentConstraint(Instrument instrument, std::unique_ptr<Solver> solver,
                        const InstrumentOptions& options, const InstrumentCapacity& capacity = {});
   /// Moves. The source may only be destroyed or assigned to.
   InstrumentConstraint(InstrumentConstraint&&) noexcept;
-  /// Like the constructor.
+  /// Like the move constructor.
   InstrumentConstraint& operator=(InstrumentConstraint&&) noexcept;
   ~InstrumentConstraint();
 
-  /// Returns the increment that moves the flange most nearly by `displacement`: not a velocity, but
-  /// what it is to move by in this cycle [length], [rad]. `q`: the positions (n) of the joints [rad
-  /// or length]; revolute joints within 100 rad of 0, prismatic ones within 100 times the size of
-  /// instrument and meshes. Any failure returns an empty increment and a status that names the
-  /// cause; meshes with a velocity move on by one period all the same. Does not allocate or throw.
+  /// Runs one control cycle: returns the increment that moves the flange most nearly by
+  /// `displacement`, the motion of this cycle (not a velocity) [length], [rad].
+  /// `q`: the positions (n) of the joints [rad or length]. Revolute joints must be within 100 rad
+  /// of 0, prismatic ones within 100 times the size of instrument and meshes. On failure the
+  /// increment is empty and the status gives the cause; meshes with a velocity still move by one
+  /// period. Does not allocate or throw.
   InstrumentStep step(std::span<const double> q, const Twist& displacement) noexcept;
 
   /// Like step(q, const Twist&), but returns the increment nearest to `desired`, dq (n), with
@@ -64,58 +66,61 @@ class InstrumentConstraint {
   InstrumentStep step(std::span<const double> q, std::span<const double> desired,
                       std::span<const double> weights = {}) noexcept;
 
-  /// Adds a mesh from the next step on, and returns its number; the first has 0.
-  /// `margin`: beside this mesh, above the band; 0: that of the options [length]. Forgets the last
-  /// cycle, like forget(). All meshes share the work budget of a cycle, which is by default that of
-  /// the slowest index: see InstrumentCapacity::work_units. Throws Error, and changes nothing, for
-  /// more meshes than InstrumentCapacity::most_meshes and like the constructor. Allocates: not for
-  /// the control path.
+  /// Adds a mesh from the next step on, and returns its number; the first has 0. `margin`: for this
+  /// mesh, above the band; 0: the margin of the options [length]. Forgets the last cycle, like
+  /// forget(). All meshes share the work budget of a cycle, which is by default that of the slowest
+  /// index: see InstrumentCapacity::work_units. Throws Error, and changes nothing, for more meshes
+  /// than InstrumentCapacity::most_meshes and like the constructor. Allocates: not for the control
+  /// path.
   std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        double margin = 0.0);
 
-  /// Sets the pose of a mesh at the start of the next cycle, and its velocity: of its frame's
-  /// origin [length/s], and of its rotation about that origin [rad/s]. Rebuilds nothing. A mesh
-  /// with a velocity moves on with every step until it is placed again, so a loop should place it
-  /// in each cycle, as measured. The margin must cover the error of this prediction within a cycle.
+  /// Sets the pose of a mesh at the start of the next cycle, and its velocity. The velocity is that
+  /// of its frame's origin [length/s], and of its rotation about that origin [rad/s]. Rebuilds
+  /// nothing. A mesh with a velocity moves in every step until it is placed again, so a loop should
+  /// place it in each cycle, as measured. The margin must cover the error of this prediction within
+  /// a cycle.
   ///
   /// The rotation must be orthonormal to 1e-6 in each element of R^T R; it is made exact. The
-  /// position must be within 100 times the lengths of instrument and meshes, each component of the
-  /// velocity below 1e9. Returns free if the pose is accepted. Otherwise returns invalid_input: the
-  /// mesh keeps its last pose and velocity, and step() returns invalid_input until a valid pose is
-  /// set. A number that no mesh has is invalid_input and changes nothing.
+  /// position must be within 100 times the lengths of instrument and meshes. Each component of the
+  /// velocity must be below 1e9. Returns free if the pose is accepted. Otherwise returns
+  /// invalid_input: the mesh keeps its last pose and velocity, and step() returns invalid_input
+  /// until a valid pose is set. For a number that no mesh has, returns invalid_input and changes
+  /// nothing.
   ///
   /// step() returns invalid_input while a mesh turns by more than a radian in a cycle, or moves by
-  /// more than 100 times the lengths of instrument and meshes, and
-  /// margin_too_small while it is so far away that rounding hides the margin or a band. prove()
-  /// takes meshes to stand still. Does not allocate or throw.
+  /// more than 100 times the lengths of instrument and meshes. It returns margin_too_small while a
+  /// mesh is so far away that rounding hides the margin or a band. prove() ignores the velocities
+  /// of meshes. Does not allocate or throw.
   Status place(std::size_t number, const Pose& pose, const Twist& velocity = {}) noexcept;
 
   /// Returns the pose of a mesh at the start of the next cycle. Precondition: there is such a mesh.
   const Pose& place_of(std::size_t number) const noexcept;
 
-  /// Returns how much of a motion is clear, and does not look for a better one: for planners. An
-  /// increment of 0 tests a configuration. `increment`: dq (n), of any size; long ones are proved
-  /// in up to 64 parts, each with the work budget of a cycle, up to the first part that starts too
-  /// close. Ignores joint limits, and the side that the last step was on. Use a constraint of the
-  /// planner's own: the next step starts without the rows of the last one, and classifies its side.
+  /// Returns the part of a motion that is clear, without a search for a better motion: for
+  /// planners. An increment of 0 tests a configuration. `increment`: dq (n), of any size. Long
+  /// motions are proved in up to 64 parts, each with the work budget of a cycle. The proof ends at
+  /// a part that starts too close. Ignores joint limits, and the side that the last step was on.
+  /// Use a separate constraint for planning: the next step after prove() starts without the rows of
+  /// the last step, and classifies its side.
   MotionProof prove(std::span<const double> q, std::span<const double> increment) noexcept;
 
-  /// Forgets the last cycle: for motions that do not continue each other.
+  /// Forgets the last cycle. For motions that do not continue each other.
   void forget() noexcept;
 
   /// Replaces the guides from the next step on: see Guide. A guided point outside its region may
   /// move farther out by one band again. Throws Error, and changes nothing, for more guides than
-  /// Guide::most, a link that the chain does not have or that no joint moves (0), or a band that is
-  /// lost in rounding. Allocates: not for the control path.
+  /// Guide::most, for link 0 or a link that the chain does not have, or if rounding hides a band.
+  /// Allocates: not for the control path.
   void set_guides(std::vector<Guide> guides);
 
-  /// Follows anatomy that has deformed: continues with a mesh and an index of it, which may be the
-  /// present index after a refit, or one that was built elsewhere in the meantime. All bodies are
-  /// classified again: a body that the surface came too close to recovers; a body inside is
-  /// reported (Status::inside) if the mesh is watertight. After a refit every step is mesh_changed
-  /// until this is called. `number`: of the mesh, whose pose stays. Throws Error, and changes
-  /// nothing, if the index is of another mesh, if there is no such mesh, or if rounding hides the
-  /// margin beside a mesh of this size. Allocates: not for the control path.
+  /// Follows anatomy that has deformed: continues with a mesh and its index. The index may be the
+  /// present one after a refit, or one built elsewhere meanwhile. All bodies are classified again.
+  /// A body that is now too close recovers. A body inside a watertight mesh is reported
+  /// (Status::inside). After a refit, step() returns mesh_changed until this is called. `number`:
+  /// of the mesh, whose pose stays. Throws Error, and changes nothing, if the index is for another
+  /// mesh, if no mesh has the number, or if rounding hides the margin for a mesh of this size.
+  /// Allocates: not for the control path.
   void follow(std::shared_ptr<const Mesh> moved, std::shared_ptr<const SpatialIndex> index,
               std::size_t number = 0);
 
@@ -127,12 +132,12 @@ class InstrumentConstraint {
   const Mesh& mesh(std::size_t number = 0) const noexcept;
   /// Returns the options.
   const InstrumentOptions& options() const noexcept;
-  /// Sets the options from the next step on. Bodies that a raised margin finds too close recover.
+  /// Sets the options from the next step on. Bodies that are too close for a larger margin recover.
   /// Throws Error, and changes nothing, for options that the constructor would refuse.
   void set_options(const InstrumentOptions& options);
 
-  /// Returns the tolerance, within which distances are equal: some 1e-12 of the size of instrument
-  /// and meshes. [length]
+  /// Returns the tolerance, within which distances count as equal: about 1e-12 of the size of
+  /// instrument and meshes. [length]
   double tolerance() const noexcept;
   /// Returns the work units that the last step spent: see Budget.
   std::size_t work_units() const noexcept;

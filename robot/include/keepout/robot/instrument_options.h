@@ -12,19 +12,18 @@
 
 namespace keepout {
 
-/// On which motion the certificate is taken.
+/// The motion that is certified.
 enum class CertifiedMotion : std::uint8_t {
-  actual,      // the one that the joints make
-  linearized,  // of points on straight lines, p + s J dq: what others do. Unsafe; for comparison
-               // only
+  actual,      // the motion that the joints really make
+  linearized,  // points on straight lines, p + s J dq, as in other methods: unsafe, for comparison
   linearised [[deprecated("use linearized")]] = linearized
 };
 
 /// The names of CertifiedMotion.
 inline constexpr std::array<std::string_view, 2> certified_motion_names{"actual", "linearized"};
 
-/// Options of an instrument constraint that stay the same from cycle to cycle. The table below says
-/// what each means, and its range.
+/// Options of an instrument constraint that stay the same from cycle to cycle. The table below has
+/// their meanings and ranges.
 struct InstrumentOptions {
   double margin = 0.2;                                  // [length]
   double band = 0.002;                                  // [length]
@@ -43,7 +42,7 @@ struct InstrumentOptions {
 inline constexpr std::array instrument_options{
     option<&InstrumentOptions::margin>(
         "margin", "length", positive_length,
-        "Clearance to keep beyond each body's radius, from meshes without a margin of their own."),
+        "Required clearance beyond each body's radius, for meshes without their own margin."),
     option<&InstrumentOptions::band>("band", "length", above_zero(longest_length),
                                      "Curvature allowance: part of the margin that curved motions "
                                      "may use, so that the certified clearance is margin - band. A "
@@ -62,18 +61,19 @@ inline constexpr std::array instrument_options{
         "Time constant of that approach: a cycle uses up at most period / slowing_time of the "
         "distance left to the margin."),
     option<&InstrumentOptions::damping>("damping", "length^2", not_negative,
-                                        "Weight of |dq|^2 beside the task of the flange, for "
+                                        "Weight of |dq|^2 in the objective of the flange, for "
                                         "singular poses. A prismatic joint counts as a radian if "
                                         "it moves by orientation_weight, or by 1 if that is 0."),
     option<&InstrumentOptions::orientation_weight>(
         "orientation_weight", "length/rad", not_negative,
-        "Weight of a turn of the flange beside its displacement; 0: only its origin is steered."),
+        "Weight of the rotation of the flange relative to its displacement; 0: only its origin is "
+        "steered."),
     option<&InstrumentOptions::refinements>(
         "refinements", "", {0, 2147483647.0},
-        "How often the planes of rows are turned towards a better motion."),
+        "Most re-linearizations of the planes of rows for a better motion."),
     option<&InstrumentOptions::check_sides>(
         "check_sides",
-        "True if bodies that no step has led to where they are must be on the free side of a "
+        "True if bodies that no step has moved to their position must be on the free side of a "
         "watertight mesh."),
     option<&InstrumentOptions::certified, certified_motion_names>(
         "certified",
@@ -83,17 +83,15 @@ inline constexpr std::array instrument_options{
 /// See table_of(const StepOptions&).
 constexpr const auto& table_of(const InstrumentOptions&) { return instrument_options; }
 
-/// Capacity of the largest cycle. The table below says what each member means.
+/// Capacity for the largest cycle. The table below has the meanings of the members.
 struct InstrumentCapacity {
-  static constexpr std::size_t most_meshes = 8;  // beside one instrument
+  static constexpr std::size_t most_meshes = 8;  // of one constraint
 
-  std::size_t triangles = std::size_t{1} << 14;  // near one body
+  std::size_t triangles = std::size_t{1} << 14;  // of one mesh near one body
   std::size_t planes = 128;                      // rows of a cycle
   /// Work units of a cycle, for all meshes; 0: the largest of the defaults of their indices.
-  union {
-    std::size_t work_units = 0;
-    [[deprecated("use work_units")]] std::size_t looks;
-  };
+  std::size_t work_units = 0;
+  [[deprecated("use work_units")]] std::size_t looks = 0;  // its former name
 };
 
 /// The table of these options.
@@ -112,7 +110,7 @@ constexpr const auto& table_of(const InstrumentCapacity&) { return instrument_ca
 
 /// Returns a band that absorbs the curvature of every motion that the joint limits admit in a cycle
 /// of `period` > 0 seconds: an eighth of the largest second-derivative bound of any body's point,
-/// at least `least`. Infinite without limits. [length]
+/// at least `least`. Infinite without limits. Throws Error for numbers out of range. [length]
 double recommended_band(const Instrument& instrument, double period, double least = 0.002);
 
 }  // namespace keepout

@@ -16,10 +16,7 @@ struct DegradedClearance {
   int body = -1;  // the number of the body
   int mesh = -1;  // the number of the mesh
   /// The fraction of the certified clearance that the body maintains, below 1.
-  union {
-    double fraction = 0.0;
-    [[deprecated("use fraction")]] double level;
-  };
+  double fraction = 0.0;
   bool is_certified = true;  // false: no clearance is certified, and the fraction is 0
 };
 
@@ -27,57 +24,52 @@ struct DegradedClearance {
 struct InstrumentStep {
   Status status = Status::invalid_input;   // the outcome of the cycle
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
-  /// The fraction of the motion found that `increment` is. With status truncated that motion may be
-  /// for a part of the command only, and 1 means all of that part.
-  union {
-    double fraction = 0.0;
-    [[deprecated("use fraction")]] double share;
-  };
-  int rounds = 0;             // how many solved trial motions were judged
+  /// The fraction of the solved motion that `increment` is. With status truncated, the solved
+  /// motion may be for a part of the command only; 1 then means all of that part.
+  double fraction = 0.0;
+  [[deprecated("use fraction")]] double share = 0.0;  // its former name
+  int rounds = 0;             // number of trial motions that were solved and judged
   std::size_t rows = 0;       // constraints that limit the motion, joint limits apart
-  std::size_t triangles = 0;  // in reach of one body and one trial motion, at the most
+  std::size_t triangles = 0;  // largest number in reach of one body and one trial motion
   /// The distance of the nearest body from a mesh at the start of the cycle; below 0 if the body
   /// reaches through the surface. Empty if no body is within margin + max(band, slowing_within), or
   /// if the work budget ended first. [length]
   std::optional<double> distance = std::nullopt;
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // the number of the mesh
-  /// The least clearance fraction of all pairs of a body and a mesh: 1 if each maintains its
-  /// certified clearance (InstrumentConstraint: F), below 1 if a mesh approaches faster than a body
-  /// can retreat, and 0 if no clearance could be certified for a body, or if a mesh moves and there
-  /// is no motion. Without a motion beside still meshes it says nothing, and may be 1.
-  union {
-    double clearance_fraction = 1.0;
-    [[deprecated("use clearance_fraction")]] double level;
-  };
+  /// The least clearance fraction of all pairs of a body and a mesh. It is 1 if each pair maintains
+  /// its certified clearance (InstrumentConstraint: F), and below 1 if a mesh approaches faster
+  /// than a body can retreat. It is 0 if no clearance could be certified for a body, or if a mesh
+  /// moves and there is no motion. It is meaningless if there is no motion and no mesh moves.
+  double clearance_fraction = 1.0;
+  [[deprecated("use clearance_fraction")]] double level = 1.0;  // its former name
   /// The pairs of a body and a mesh whose clearance fraction is below 1; empty if the cycle did not
   /// start.
   std::span<const DegradedClearance> degraded = {};
   std::span<const GuideState> guides = {};   // the state of each guide, in the order given
   Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
-  /// The causes that kept the motion from being the commanded one. With a motion: all constraints
-  /// that limit or shorten it; a refinement that runs out of budget or capacity does neither.
-  /// Without: the constraints for which no motion could be proved. joints_outside is reported with
-  /// any status, singularity only if nothing else limits the motion.
+  /// The limits that make the motion differ from the commanded one. With a motion, these are all
+  /// constraints that limit or shorten it (not a refinement that exceeds budget or capacity).
+  /// Without a motion, these are the constraints for which no motion could be proved.
+  /// joints_outside is reported with any status, singularity only without another limit.
   Limits limits = {};
 
   /// Returns true if the increment may be executed; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it. It also says if a joint of a free
-  /// motion starts outside its position limits.
+  /// Returns one line on what happened and what to do about it. It also reports a joint of a free
+  /// motion that starts outside its position limits.
   std::string_view reason() const noexcept;
 };
 
 /// The part of a motion that is proved clear.
 struct MotionProof {
-  /// free: all of the motion is proved; limited: a part of it; recovering: a body is too close at
-  /// the start, and no body comes closer by more than the band. Otherwise why the proof ended.
+  /// free: the whole motion is proved. limited: a part of it. recovering: a body is too close at
+  /// the start, and no body comes closer by more than the band. Any other status is the cause of
+  /// the end of the proof.
   Status status = Status::invalid_input;
-  /// The motion q + s dq is proved for s in [0, fraction], whatever the status.
-  union {
-    double fraction = 0.0;
-    [[deprecated("use fraction")]] double share;
-  };
+  /// The motion q + s dq is proved for s in [0, fraction], with any status.
+  double fraction = 0.0;
+  [[deprecated("use fraction")]] double share = 0.0;  // its former name
   std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
   /// Returns one line on what happened and what to do about it.

@@ -8,7 +8,8 @@
 namespace keepout {
 
 /// Bounds of the motion of a point while the joints move on a straight line, q + s dq, s in [0, 1].
-/// They are built joint by joint, from the point to the base (docs/joint-space-step.md, Lemma 2).
+/// They are computed joint by joint, from the point to the base (docs/joint-space-step.md, Lemma
+/// 2).
 struct MotionBounds {
   double path = 0.0;  // of the arc length, and of |dp/ds| [length]
   double bend = 0.0;  // of |d^2 p / ds^2| [length]
@@ -24,8 +25,8 @@ struct MotionBounds {
   }
 };
 
-/// Returns the bounds for a point of link `link` that is at `at` when the chain is in `state`,
-/// s = 0. `increment`: dq (n). [rad or length]
+/// Returns the bounds for a point of link `link` that is at `at` in `state`, where s is 0.
+/// `increment`: dq (n). [rad or length]
 MotionBounds motion_bounds(const ChainState& state, std::span<const double> increment, int link,
                            const Vec3& at) noexcept;
 

@@ -7,16 +7,18 @@
 
 namespace keepout {
 
-/// The dual active-set method for strictly convex quadratic programs: starts from the
-/// unconstrained minimum and adds the most violated row until none is left, so that its work is
-/// that of the rows which matter and an infeasible problem is recognized, not guessed.
+/// The dual active-set method for strictly convex quadratic programs. It starts from the
+/// unconstrained minimum and adds the most violated row until all rows are satisfied. Its work
+/// therefore depends mainly on the active rows, and it proves infeasibility.
 ///
-/// Bounds must be finite (leave out a row that asks for nothing) and all numbers below 1e70. A row
-/// of zeros is satisfied if its bound is at most 0, and infeasible otherwise. Equal rows: the
-/// lowest index is the active one. "optimal" satisfies each row to some 1e-13 of the length of the
-/// motion, or in a vertex of nearly parallel planes to 1e-11; "infeasible" rules out every motion
-/// up to 1000 times the length of those tried; where rounding decides between the two, the answer
-/// is "iteration_limit". How: see active_set_tolerances.h.
+/// Bounds must be finite (omit rows without a bound) and all numbers below 1e70. A row of zeros is
+/// satisfied if its bound is at most 0, and infeasible otherwise. Among equal rows, the one with
+/// the lowest index is active.
+///
+/// Status `optimal` satisfies each row to about 1e-13 of the length of the motion, or to 1e-11 at a
+/// vertex of nearly parallel planes. Status `infeasible` excludes every motion up to 1000 times the
+/// length of those tried. If rounding decides between the two, the status is `iteration_limit`.
+/// Details: active_set_tolerances.h.
 ///
 /// Source: Goldfarb, Idnani, "A numerically stable dual method for solving strictly convex
 /// quadratic programs", Mathematical Programming 27, 1983.

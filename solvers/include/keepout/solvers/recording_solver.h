@@ -9,20 +9,20 @@
 
 namespace keepout {
 
-/// A step problem that owns its numbers. Its memory is the standard library's, not aligned as Eigen
-/// does for the machine compiled for: it is made here and may be let go by a program for another.
+/// A step problem that owns its numbers. It does not use Eigen's alignment, which depends on
+/// compiler flags: a program compiled with other flags may free the memory.
 struct RecordedProblem {
-  static constexpr int dynamic = Eigen::Dynamic;  // as many as the problem has
+  static constexpr int dynamic = Eigen::Dynamic;  // a size set by the problem
   /// Column by column.
   using Matrix = Eigen::Matrix<double, dynamic, dynamic, Eigen::DontAlign>;
   /// Row by row.
   using RowMatrix = Eigen::Matrix<double, dynamic, dynamic, Eigen::RowMajor | Eigen::DontAlign>;
   using Vector = Eigen::Matrix<double, dynamic, 1, Eigen::DontAlign>;  // of any length
 
-  /// Copies all its numbers. Precondition: its rows are written, those of planes as well.
+  /// Copies a problem. Precondition: all rows are written, including those of planes.
   explicit RecordedProblem(const StepProblem& problem);
 
-  /// The problem again. Valid as long as this lives, and stays where it is.
+  /// Returns a view of the problem. Valid until this object is moved or destroyed.
   StepProblem view() const noexcept;
 
   Matrix jacobian;     // J (k, n)
@@ -32,11 +32,11 @@ struct RecordedProblem {
   double damping = 0;  // weight of |u|^2
 };
 
-/// Passes every problem on to another solver, and keeps a copy of it: to pose the problems of real
-/// steps again, to other solvers. Allocates; a problem that there is no memory for is not kept.
+/// Passes each problem to another solver and stores a copy of it, so that other solvers can solve
+/// the problems of real steps. Allocates. A problem is not stored if memory is exhausted.
 class RecordingSolver final : public Solver {
  public:
-  /// `record` must outlive the solver.
+  /// Makes a solver that appends to `record`, which must outlive it.
   RecordingSolver(std::unique_ptr<Solver> solver, std::vector<RecordedProblem>& record);
 
   void reserve(int variables, int rows) override;

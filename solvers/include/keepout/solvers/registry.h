@@ -12,31 +12,32 @@
 
 namespace keepout {
 
-/// One way to solve the step problem, by name.
+/// A solver of the step problem, to be made by its name.
 struct SolverBackend {
-  std::string_view name;         // to ask for it by
+  std::string_view name;         // for make_solver
   std::string_view description;  // one line, for lists
-  /// A new one; as make_solver.
+  /// Makes a new solver, like make_solver.
   std::unique_ptr<Solver> (*make)();
-  Allocation allocation;  // whether it takes memory while it solves
-  /// How far an `optimal` answer may be from the best one, and from satisfying the KKT conditions:
-  /// relative, as KktResidual is.
+  Allocation allocation;  // use of heap memory while it solves
+  /// The largest distance of an `optimal` solution from the best one, and its largest KKT residual:
+  /// relative, like KktResidual.
   double accuracy;
-  std::string (*library)();  // name and version of the library behind it; null for our own
+  std::string (*library)();  // name and version of the underlying library; null for keepout's own
 };
 
-/// Returns all solvers, our own first. Loads the module of NLopt's (see keepout/module.h).
+/// Returns all solvers, keepout's own first. Loads the module of the NLopt solvers (see
+/// keepout/module.h).
 Registry<SolverBackend> solver_backends();
 
-/// Returns the names of the solvers that can be had. Loads no module.
+/// Returns the names of the available solvers. Loads no module.
 std::vector<std::string> solver_names();
 
-/// Returns a new solver, without room yet: see Solver::reserve. Loads at most the module that
-/// brings it. Throws Error for an unknown name.
+/// Returns a new solver without reserved memory: see Solver::reserve. Loads at most the module with
+/// the solver. Throws Error for an unknown name.
 std::unique_ptr<Solver> make_solver(std::string_view name);
 
 }  // namespace keepout
 
-/// The table of a module that brings solvers.
+/// The table of the solvers of a module.
 extern "C" [[gnu::visibility("default")]] const std::span<const keepout::SolverBackend>
     keepout_solvers;

@@ -15,41 +15,41 @@
 
 namespace keepout {
 
-/// Lends constraints to the threads of a planner. A constraint is for one thread at a time, while
-/// OMPL asks that validators can be called from many: each call borrows one, and the pool makes
-/// another when all are out. There is one of MotionConstraint and one of InstrumentConstraint.
+/// A pool of constraints for the threads of a planner. A constraint is for one thread at a time,
+/// but OMPL calls validators from several threads. So each call borrows a constraint, and the pool
+/// makes another one if all are in use. Guard is MotionConstraint or InstrumentConstraint.
 template <class Guard>
 class GuardPoolOf {
  public:
-  /// What the constraints keep to.
+  /// The options of a constraint.
   using Options = std::remove_cvref_t<decltype(std::declval<const Guard&>().options())>;
 
-  /// `make`: builds a constraint, each time the same, on a mesh and an index that all share
-  /// (make_motion_constraint, make_instrument_constraint). `most`: how many are made at most;
-  /// threads beyond it wait. One is made at once, so that what is wrong with the settings is thrown
-  /// here. Throws Error as well when `make` is empty or `most` is 0. Whatever `make` throws later
-  /// makes a thread wait for a constraint that is there.
+  /// Makes a pool with one constraint. `make`: builds equal constraints on a shared mesh and index
+  /// (make_motion_constraint, make_instrument_constraint). `most`: the largest number of
+  /// constraints; further threads wait. Passes on the Error of `make` for wrong settings. Also
+  /// throws Error if `make` is empty or `most` is 0. If `make` throws later, the thread waits for
+  /// an existing constraint.
   explicit GuardPoolOf(std::function<Guard()> make, std::size_t most = cores());
 
   GuardPoolOf(const GuardPoolOf&) = delete;
   GuardPoolOf& operator=(const GuardPoolOf&) = delete;
 
-  /// Gives a constraint back to the pool that it is of.
+  /// Returns a constraint to its pool when a loan ends.
   struct GiveBack {
-    GuardPoolOf* pool;  // where it belongs
-    /// To the pool it goes.
+    GuardPoolOf* pool;  // the pool of the constraint
+    /// Returns the constraint to the pool.
     void operator()(Guard* guard) const noexcept;
   };
-  /// A constraint for as long as this lives. It must not outlive the pool.
+  /// A borrowed constraint. It must not outlive the pool.
   using Loan = std::unique_ptr<Guard, GiveBack>;
 
-  /// Waits while `most` are out. A thread that borrows a second one before it has given back the
-  /// first may wait for ever.
+  /// Returns a borrowed constraint; waits while `most` are in use. A thread that borrows a second
+  /// constraint before it returns the first may wait forever.
   Loan borrow();
 
-  /// What the constraints keep to.
+  /// Returns the options of the constraints.
   const Options& options() const noexcept { return options_; }
-  /// How many have been made so far, lent or not.
+  /// Returns the number of constraints made so far.
   std::size_t made() const;
 
  private:
@@ -65,9 +65,9 @@ class GuardPoolOf {
   std::size_t made_ = 0;
 };
 
-/// For planning with a tip.
+/// The pool for planning with a tip.
 using GuardPool = GuardPoolOf<MotionConstraint>;
-/// For planning with a whole instrument.
+/// The pool for planning with a whole instrument.
 using InstrumentPool = GuardPoolOf<InstrumentConstraint>;
 
 extern template class GuardPoolOf<MotionConstraint>;

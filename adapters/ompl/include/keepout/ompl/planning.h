@@ -6,7 +6,7 @@
 #include "keepout/ompl/guard_pool.h"
 #include "keepout/ompl/projecting_steer.h"
 
-// Of the Open Motion Planning Library, by name only: who plans includes its headers.
+// Forward declarations of the Open Motion Planning Library: callers include its headers.
 namespace ompl::base {
 class MotionValidator;
 class Planner;
@@ -16,30 +16,30 @@ class StateValidityChecker;
 
 namespace keepout {
 
-// All of these plan for a tip: the state space is a RealVectorStateSpace of three dimensions, in
-// the frame and the unit of the mesh, whose bounds are set. They throw Error, which says what to
-// do, for any other. What they return holds on to the pool, and may be called from any thread.
+// The functions below plan for a tip. The state space is a RealVectorStateSpace of three dimensions
+// with bounds, in the frame and the unit of the mesh. The functions throw Error, with a remedy, for
+// any other space. The returned objects share the pool, and may be called from any thread.
 
-/// Says of a state whether it may be stood on: within the space's bounds, and the guard keeps its
-/// margin there (keeps_margin).
+/// Returns a checker of states. A state is valid if it is within the space's bounds and maintains
+/// the required clearance (keeps_margin).
 std::shared_ptr<ompl::base::StateValidityChecker> make_state_validity_checker(
     const std::shared_ptr<ompl::base::SpaceInformation>& space, std::shared_ptr<GuardPool> guards);
 
-/// Says of a straight motion between two states whether it is valid: only if the certified rule
-/// proves the whole of it (proves), and its end is within the space's bounds. The last valid state
-/// of one that is not is the end of what is proven; of one that leaves the bounds, its start. The
-/// space's longest valid segment has no part in it.
+/// Returns a validator of straight motions. A motion is valid only if the certified rule proves the
+/// whole motion (proves), and its end is within the space's bounds. The last valid state of an
+/// invalid motion is the end of the proved part; if the motion leaves the bounds, it is the start.
+/// The space's longest valid segment is not used.
 std::shared_ptr<ompl::base::MotionValidator> make_motion_validator(
     const std::shared_ptr<ompl::base::SpaceInformation>& space, std::shared_ptr<GuardPool> guards);
 
-/// Gives the space both of the above.
+/// Sets both of the above in the space.
 void set_certified_checkers(const std::shared_ptr<ompl::base::SpaceInformation>& space,
                             const std::shared_ptr<GuardPool>& guards);
 
-/// A planner that grows two trees, as RRT-Connect does, but by ProjectingSteer: where a straight
-/// motion would be refused, it slides along the anatomy. So all of its path is made of proven
-/// steps. Parameters, by their OMPL names: `range`, the longest way towards a sample (0: a fifth of
-/// the space's extent). One planner for each thread.
+/// Returns a planner that grows two trees like RRT-Connect, but with ProjectingSteer. If a straight
+/// motion is invalid, it slides along the anatomy. So its whole path consists of proved steps. OMPL
+/// parameter: `range`, the longest path towards a sample (0: a fifth of the space's extent). Make
+/// one planner for each thread.
 ///
 /// Source of the two trees: Kuffner and LaValle, "RRT-Connect: an efficient approach to
 /// single-query path planning", ICRA 2000.

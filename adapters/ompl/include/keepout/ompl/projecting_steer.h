@@ -12,51 +12,51 @@
 
 namespace keepout {
 
-/// How a way is led along the anatomy.
+/// The options of ProjectingSteer.
 struct SteerOptions {
-  /// The longest step on a way that is held back. Short ones follow the surface closely, long ones
-  /// are few. 0: an eighth of the motion sphere's radius. [length]
+  /// The longest step while sliding along the anatomy. Short steps follow the surface closely; long
+  /// steps are fewer. 0: an eighth of the motion sphere's radius. [length]
   double sliding_step = 0.0;
-  /// A step that brings the tip nearer to the target by less than this fraction of its length ends
-  /// the way: it slides along, but leads nowhere. In [0, 1).
+  /// The path ends at a step that reduces the distance to the target by less than this fraction of
+  /// its length. In [0, 1).
   double least_gain = 0.05;
-  std::size_t most_steps = 1000;  // of one way
+  std::size_t most_steps = 1000;  // of one path
 };
 
-/// A steering function for any planner: leads a tip from a place towards another by certified
-/// steps, which slide along the anatomy where it is in the way. Each straight piece of the way is a
-/// step that the rule has proven, so the whole way keeps the margin as docs/certified-step.md
-/// promises; and each comes nearer to the target, so the way ends.
+/// A steering function for any planner: moves a tip from a point towards another by certified
+/// steps, which slide along the anatomy in between. Each straight piece of the path is a step that
+/// the rule has proved, so the whole path maintains the required clearance
+/// (docs/certified-step.md). Each step reduces the distance to the target, so the path ends.
 ///
-/// Not thread-safe, as the guard is not. The same ways whatever was asked before, as long as
-/// the guard is asked for nothing else in between where it asks about sides.
+/// Not thread-safe, like the guard. Paths do not depend on earlier calls. If the guard classifies
+/// tips, this requires that no other code uses the guard in between.
 class ProjectingSteer {
  public:
-  /// The guard must outlive this. Throws Error for options out of range.
+  /// Makes a steering function; the guard must outlive it. Throws Error for options out of range.
   explicit ProjectingSteer(MotionConstraint& guard, const SteerOptions& options = {});
 
-  /// Why a way ends where it does.
+  /// The cause of the end of a path.
   enum class Ending : std::uint8_t {
-    arrived,    // the last way point is the target, to the last bit
-    length,     // as long as asked for
-    stuck,      // nothing leads nearer: a wall, or a hollow
-    steps,      // the budget of steps is spent
-    not_free,   // the tip may not be where the way starts: see keeps_margin
-    unbounded,  // the way left the bounds, and was cut off before
+    arrived,    // the last point is exactly the target
+    length,     // the path has the longest length
+    stuck,      // no step leads nearer: a wall, or a hollow
+    steps,      // the path has the most steps
+    not_free,   // the start is not free or out of bounds, or the target is not finite
+    unbounded,  // the next step would leave the bounds
   };
 
-  /// What a call of steer came to.
+  /// The path of a call of steer.
   struct Way {
-    Ending ending = Ending::not_free;  // why there is no more of it
-    /// The start first. The straight pieces between neighbors are proven. Valid until the next
-    /// call. [length]
+    Ending ending = Ending::not_free;  // the cause of its end
+    /// The points from the start on. The straight pieces between them are proved. Valid until the
+    /// next call. [length]
     std::span<const Vec3> points;
     double length = 0.0;  // of all pieces [length]
   };
 
-  /// A way towards a target. `longest` bounds its length; the last step is cut to it. [length]
-  /// `bounds`: the way ends before the first step that leads out of this box. It is convex, so all
-  /// of the way is in it. The target need not be.
+  /// Returns a path towards a target. `longest`: the largest length of the path, which shortens the
+  /// last step [length]. `bounds`: the path ends before the first step that leaves this box. The
+  /// box is convex, so it contains the whole path. The target may be outside.
   Way steer(const Vec3& from, const Vec3& towards, double longest = infinity,
             const Box& bounds = {Vec3::Constant(-infinity), Vec3::Constant(infinity)});
 

@@ -6,40 +6,38 @@
 
 namespace keepout {
 
-/// Whether a tip may be there: standing still is a certified step, and no recovery. So the point
-/// keeps the margin to within 2.75 tau (docs/certified-step.md) and, where the guard asks about
-/// sides, is on the free one. A point that is no number may not.
+/// Returns true if a tip may be at the point: zero motion is a certified step, and not a recovery.
+/// The point then maintains the required clearance to within 2.75 tau (docs/certified-step.md). If
+/// the guard classifies tips, it is on the free side. Returns false for a point that is not finite.
 bool keeps_margin(MotionConstraint& guard, const Vec3& point) noexcept;
 
-/// The part of a straight way that is proven, from its start on.
+/// The part of a straight motion that is proved, from its start on.
 struct ProvenPrefix {
   /// The fraction of the segment that is proved; 1: all of it, with its end.
-  union {
-    double fraction = 0.0;
-    [[deprecated("use fraction")]] double share;
-  };
-  Vec3 end;  // from + fraction (to - from); `from` itself when nothing is proven [length]
-  bool may_start = false;  // `from` may be stood on
+  double fraction = 0.0;
+  Vec3 end;                // from + fraction (to - from); `from` if no part is proved [length]
+  bool may_start = false;  // true if the tip may be at `from`
 
-  /// Whether all of the way is proven, both ends included.
+  /// Returns true if the whole motion is proved, including both ends.
   bool whole() const noexcept { return may_start && fraction == 1.0; }
 };
 
-/// Whether the certified rule proves the whole straight way: from its start to its end, both
-/// included, it keeps the margin - 3 tau from the mesh. A way longer than the motion sphere is
-/// proven in pieces. What the rule would not prove within its budget is not proven.
+/// Returns true if the certified rule proves the whole straight motion: including both ends, it
+/// maintains the required clearance - 3 tau. A motion longer than the radius of the motion sphere
+/// is proved in pieces. Returns false if the work budget ends first.
 ///
-/// Precondition: the rule proves what it lets pass, as `certified` does; the solver's answer is
-/// exact where no plane holds it, as the active set's is: from others more may be left unproven.
+/// Precondition: the rule proves each motion that it accepts, like `certified`. With a solver that
+/// is not exact if no plane limits the motion (the active-set solver is exact), fewer motions are
+/// proved.
 bool proves(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept;
 
-/// The same, and how far it is proven if not to the end: to within 2^-8 of a piece.
+/// Returns the part of a straight motion that is proved, to within 2^-8 of a piece; otherwise like
+/// proves.
 ProvenPrefix proven_prefix(MotionConstraint& guard, const Vec3& from, const Vec3& to) noexcept;
 
-/// A solver for a guard that only validates: it gives up on every problem. A motion that nothing
-/// holds back needs no solver; one that something does is refused at the first contact, without a
-/// search for the best motion in its place. With the certified rule, what is proven is the same;
-/// such a guard is of no use to steer.
+/// A solver for a guard that only validates: it fails on every problem. A free motion needs no
+/// solver. Any other motion is rejected at the first contact, without a search for the best motion.
+/// With the certified rule, the same motions are proved. Such a guard cannot steer.
 class StraightOnly final : public Solver {
  public:
   void reserve(int, int) override {}

@@ -10,29 +10,33 @@
 
 namespace keepout {
 
-/// A serial chain out of a robot's description: joints and flange are what Chain takes. Fixed
-/// joints are part of the ways between those that move.
+/// A serial chain from a robot description: joints and flange are arguments of Chain. Fixed joints
+/// are part of the transforms between moving joints.
 struct UrdfChain {
-  std::string robot;               // its name in the file
-  std::vector<Joint> joints;       // those that move, from the base on
-  Pose flange;                     // the tip, in the frame of the last link that moves
+  std::string robot;               // the robot's name in the file
+  std::vector<Joint> joints;       // the moving joints, from the base on
+  Pose flange;                     // the tip, in the frame of the last moving link
   std::vector<std::string> links;  // [k]: the link that joint k moves; [0]: the base
 };
 
-/// Reads the chain from link `base` to link `tip`. An empty `base` is the root; an empty `tip` the
-/// only leaf below the base. `scale`: a meter in the mesh's unit, 1000 for mm; multiplies lengths,
-/// and limits of prismatic joints.
+/// Reads the chain from link `base` to link `tip`. An empty `base` means the root; an empty `tip`
+/// means the only leaf below the base. `scale`: a meter in the mesh's unit, 1000 for mm. It
+/// multiplies lengths and limits of prismatic joints.
 ///
-/// Throws Error, naming file and joint, for what is unreadable or no URDF, links that are not there
-/// or not below the base, more than one leaf, two parents, a loop; and on the way to the tip for
-/// axes that are zero or not unit to three digits, limits that are missing, empty or not finite,
-/// velocities not above zero, joints that float, are planar or mimic, what is there twice, none or
-/// more than Chain::most_joints that move. Looks at no effort and no safety_controller. Allocates.
-/// urdfdom prints nothing meanwhile; other threads' messages through console_bridge are lost.
+/// Throws Error, which names file and joint, for a file that cannot be read or is not a URDF. Also
+/// for a link that does not exist or is not below the base, several leaves, two parents, or a loop.
+/// Between base and tip, throws Error for these faults:
+/// 1. Axes that are zero, or not unit vectors to three digits.
+/// 2. Limits that are missing, empty or not finite, and velocities not above 0.
+/// 3. Floating, planar and mimic joints, and duplicate elements.
+/// 4. No moving joint, or more than Chain::most_joints.
+///
+/// Ignores effort and safety_controller. Allocates. Suppresses messages of urdfdom; messages of
+/// other threads through console_bridge are lost meanwhile.
 UrdfChain read_chain(const std::filesystem::path& file, std::string_view base, std::string_view tip,
                      double scale = 1000.0);
 
-/// The same, of a text; `name` is what messages call it.
+/// Like read_chain, for a text. `name`: the name of the text in messages.
 UrdfChain parse_chain(std::string_view text, std::string_view name, std::string_view base,
                       std::string_view tip, double scale = 1000.0);
 

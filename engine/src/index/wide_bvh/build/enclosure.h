@@ -10,15 +10,16 @@ namespace keepout {
 
 using SixteenLeaves = std::array<const LeafBlock*, NodeBlock::lanes>;
 
-/// Puts boxes and cylinders around the leaves' floats, in all lanes. The axis of a cylinder is the
-/// mean normal of the triangles.
+/// Computes boxes and cylinders around the floats of leaves, in all lanes. The axis of a cylinder
+/// is the mean normal of the triangles.
 void enclose(const SixteenLeaves& leaves, NodeBlock& boxes, CylinderBlock& cylinders) noexcept;
 
-/// Puts a box and a cylinder around a node's boxes and cylinders in a lane of the blocks above it.
+/// Computes a box and a cylinder around a node's boxes and cylinders, in a lane of the blocks above
+/// it.
 void enclose(const NodeBlock& node, const CylinderBlock& of_node, NodeBlock& boxes,
              CylinderBlock& cylinders, std::size_t lane) noexcept;
 
-/// Leaves no numbers in an unused lane that arithmetic would stumble over.
+/// Sets an unused lane to numbers that are safe in arithmetic.
 void close_lane(CylinderBlock& cylinders, std::size_t lane) noexcept;
 
 }  // namespace keepout

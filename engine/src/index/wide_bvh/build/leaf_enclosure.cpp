@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/build/leaf_enclosure.cpp"
 #include <hwy/foreach_target.h>
-// After it, for it tells for whom to compile.
+// After foreach_target.h, which sets the target to compile for.
 #include "../../../lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -13,7 +13,7 @@ namespace keepout::HWY_NAMESPACE {
 constexpr std::size_t width = hn::MaxLanes(FloatTag());
 constexpr std::size_t leaf_count = NodeBlock::lanes;
 
-/// A vector a leaf: what is still to be put together, lane by lane, to a number a leaf.
+/// A vector for each leaf, whose lanes are later reduced to one number for each leaf.
 struct alignas(64) Rows {
   float row[leaf_count][width];
 };
@@ -28,12 +28,12 @@ HWY_INLINE void store(FloatTag d, const Vector& v, std::size_t leaf, VectorRows&
   hn::Store(v.z, d, to.z.row[leaf]);
 }
 
-/// Puts together the lanes of each of `Count` rows: two rows become one in each round, so that the
-/// results come to stand side by side, and the work is a quarter of that of row by row.
+/// Reduces the lanes of each of `Count` rows to one number. Each round makes one row of two, so the
+/// results are side by side. The work is a quarter of that of row by row.
 template <std::size_t Count, class Operation>
 HWY_INLINE V put_together(FloatTag d, const float (*rows)[width],
                           [[maybe_unused]] const Operation& operation) {
-#if HWY_TARGET != HWY_SCALAR  // which has one lane, and no halves of it
+#if HWY_TARGET != HWY_SCALAR  // the scalar target has one lane and cannot halve it
   if constexpr (Count > 1) {
     const V front = put_together<Count / 2>(d, rows, operation);
     const V back = put_together<Count / 2>(d, rows + Count / 2, operation);
@@ -47,7 +47,7 @@ constexpr auto sum = [](V a, V b) HWY_ATTR { return hn::Add(a, b); };
 constexpr auto least_of = [](V a, V b) HWY_ATTR { return hn::Min(a, b); };
 constexpr auto most_of = [](V a, V b) HWY_ATTR { return hn::Max(a, b); };
 
-/// A number a leaf, of the leaves from `first` on.
+/// Returns a number for each leaf, from leaf `first` on.
 template <class Operation>
 HWY_INLINE V of_leaves(FloatTag d, const Rows& rows, std::size_t first,
                        const Operation& operation) {
@@ -61,8 +61,8 @@ HWY_INLINE Vector of_leaves(FloatTag d, const VectorRows& rows, std::size_t firs
           of_leaves(d, rows.z, first, operation)};
 }
 
-/// The sum of the triangles' normals, as long as twice their areas and on the side that their
-/// winding tells; and the leaf's box.
+/// Computes the sum of the triangles' normals, each twice as long as the area and on the side given
+/// by the winding. Also computes the leaf's box.
 HWY_INLINE void look_at(FloatTag d, const LeafBlock& leaf, std::size_t row, VectorRows& normals,
                         VectorRows& lows, VectorRows& highs) {
   const hn::RebindToUnsigned<FloatTag> unsigned_lanes;
@@ -81,7 +81,7 @@ HWY_INLINE void look_at(FloatTag d, const LeafBlock& leaf, std::size_t row, Vect
             hn::Max(high.z, hn::Max(a.z, hn::Max(b.z, c.z)))};
     const Vector ab = b - a;
     const Vector ac = c - a;
-    // The bit `odd` is where a float has its sign.
+    // The bit `odd` is at the place of a float's sign.
     const V sign = hn::BitCast(d, hn::And(hn::Load(unsigned_lanes, leaf.tagged_triangle + lane),
                                           hn::Set(unsigned_lanes, LeafBlock::odd)));
     const auto turned = [&](V p, V q, V r, V s) HWY_ATTR {
@@ -95,7 +95,7 @@ HWY_INLINE void look_at(FloatTag d, const LeafBlock& leaf, std::size_t row, Vect
   store(d, high, row, highs);
 }
 
-/// Sets of each leaf the axis of its cylinder and, as the middle, that of its box.
+/// Sets the axes of the cylinders of the leaves, and the middles of their boxes as middles.
 HWY_INLINE void set_axes(FloatTag d, const VectorRows& normals, const NodeBlock& boxes,
                          CylinderBlock& cylinders) {
   const V zero = hn::Zero(d);
@@ -114,7 +114,7 @@ HWY_INLINE void set_axes(FloatTag d, const VectorRows& normals, const NodeBlock&
   }
 }
 
-/// Measures a leaf from the middle of its box, along the cylinder's axis and across.
+/// Measures a leaf from the middle of its box, along the cylinder's axis and across it.
 HWY_INLINE void measure(FloatTag d, const LeafBlock& leaf, std::size_t row,
                         const CylinderBlock& cylinders, Rows& bottoms, Rows& tops, Rows& radii2) {
   const auto vector_of = [&](const float(&from)[3][leaf_count]) HWY_ATTR -> Vector {
@@ -150,18 +150,18 @@ HWY_INLINE void set_sizes(FloatTag d, const Rows& bottoms, const Rows& tops, con
     const Vector axis = load(d, cylinders.axis, first);
     const Vector box_middle = load(d, cylinders.middle, first);
     const Vector middle = box_middle + hn::Mul(hn::Set(d, 0.5f), hn::Add(bottom, top)) * axis;
-    // Rounding takes it elsewhere, and off the line that was measured from.
+    // Rounding moves it further, and off the line of the measurement.
     const Vector moved = middle - box_middle;
     const V along = dot(axis, moved);
     const Vector off = moved - along * axis;
 
-    // No corner is farther from the middle of the box than that.
+    // The greatest distance of a corner from the middle of the box.
     const V far = norm1(load(d, boxes.high, first) - load(d, boxes.low, first));
-    // What rounding may add to a length, as a share of the sum of the coordinates' sizes: 32 u,
-    // where a dozen operations and the length of the axis make less than 24 u.
+    // The most that rounding adds to a length, as a fraction of the sum of the coordinates' sizes:
+    // 32 u. A dozen operations and the length of the axis add up to less than 24 u.
     constexpr float outward = 2e-6f;
     const V rounding = hn::Mul(hn::Set(d, outward), hn::Add(far, norm1(moved)));
-    // Squares of what is very small or very large are lost.
+    // Squares of very small or very large numbers are lost.
     const M is_known =
         hn::And(hn::Gt(radius2, hn::Set(d, 1e-30f)), hn::Lt(radius2, hn::Set(d, 1e30f)));
     const V radius = hn::IfThenElse(is_known, hn::Sqrt(radius2), far);

@@ -7,14 +7,14 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/build/node_enclosure.cpp"
 #include <hwy/foreach_target.h>
-// After it, for it tells for whom to compile.
+// After foreach_target.h, which sets the target to compile for.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A node is enclosed in double, so that rounding does not add up from level to level.
+// Nodes are enclosed in double, so that rounding does not add up from level to level.
 
 using Double = hn::CappedTag<double, NodeBlock::lanes>;
 using Half = hn::Rebind<float, Double>;
@@ -37,7 +37,7 @@ HWY_INLINE hn::Vec<Double> inner(const DoubleVector& a, const DoubleVector& b) {
 
 HWY_INLINE hn::Vec<Double> norm(const DoubleVector& a) { return hn::Sqrt(inner(a, a)); }
 
-/// `a` less that much of `b`.
+/// Returns a - much * b.
 HWY_INLINE DoubleVector less(const DoubleVector& a, hn::Vec<Double> much, const DoubleVector& b) {
   return {hn::Sub(a.x, hn::Mul(much, b.x)), hn::Sub(a.y, hn::Mul(much, b.y)),
           hn::Sub(a.z, hn::Mul(much, b.z))};
@@ -48,7 +48,7 @@ HWY_INLINE DoubleVector all_double(const double (&v)[3]) {
   return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
 }
 
-/// Of some cylinders, beside each other: how far they reach along an axis and away from it.
+/// The reaches of some cylinders along an axis and away from it, one in each lane.
 struct Reaches {
   hn::Vec<Double> at, along, away, far;
 };
@@ -90,7 +90,7 @@ void EncloseNode(const NodeBlock& node, const CylinderBlock& of_node, NodeBlock&
     for_each_lane([&](std::size_t first, hn::Mask<Double> is_used) HWY_ATTR {
       const auto middle = promoted(of_node.middle[i] + first);
       const auto below = hn::Neg(infinite);
-      low = hn::Min(low, promoted(node.low[i] + first));  // of unused lanes: infinite
+      low = hn::Min(low, promoted(node.low[i] + first));  // unused lanes have infinity
       high = hn::Max(high, hn::IfThenElse(is_used, promoted(node.high[i] + first), below));
       middle_low = hn::Min(middle_low, hn::IfThenElse(is_used, middle, infinite));
       middle_high = hn::Max(middle_high, hn::IfThenElse(is_used, middle, below));
@@ -138,7 +138,7 @@ void EncloseNode(const NodeBlock& node, const CylinderBlock& of_node, NodeBlock&
     radius = hn::Max(radius, hn::IfThenElseZero(is_used, its.away));
     far = hn::Max(far, hn::IfThenElseZero(is_used, its.far));
   });
-  constexpr double outward = 2e-6;  // the axes' lengths, and the rounding to float
+  constexpr double outward = 2e-6;  // for the lengths of axes and the rounding to float
   const double rounding = outward * hn::GetLane(hn::MaxOfLanes(d, far));
   above.half_height[lane] =
       static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, half_height)) + rounding);

@@ -23,9 +23,9 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 constexpr std::size_t rounded_up_quotient(std::size_t a, std::size_t b) { return (a + b - 1) / b; }
 
-/// How many triangles a node, each of its children and so on down to the leaves may hold: all of a
-/// level the same, so that all leaves but the last are full, and what is where follows from the
-/// triangle's rank alone.
+/// Returns the capacities of the levels in triangles: of the root, of its children and so on down
+/// to the leaves. All nodes of a level have the same capacity. So all leaves but the last are full,
+/// and the rank of a triangle alone determines its place.
 std::vector<std::size_t> capacities(std::size_t count) {
   std::vector<std::size_t> all{LeafBlock::lanes};
   do {
@@ -35,8 +35,8 @@ std::vector<std::size_t> capacities(std::size_t count) {
   return all;
 }
 
-/// Brings triangles into the order of the leaves, by splitting them at the median along the axis of
-/// their largest spread, again and again.
+/// Brings triangles into the order of the leaves. It splits them repeatedly at the median along the
+/// axis of their largest spread.
 class Division {
  public:
   Division(const Mesh& mesh, unsigned threads, std::span<LeafBlock> leaves)
@@ -47,8 +47,8 @@ class Division {
  private:
   using Centers = std::span<Center>;
 
-  /// Leaves the triangles of rank `begin` on in leaves. `capacity`: of the child of a node to be
-  /// filled; `spare` has room for the centers and is overwritten.
+  /// Distributes the triangles of rank `begin` and above to leaves. `capacity`: of a child of the
+  /// node that is filled. `spare` has capacity for the centers, and is overwritten.
   void divide(Centers centers, Centers spare, std::size_t begin, std::size_t capacity,
               unsigned threads) {
     while (capacity > LeafBlock::lanes && centers.size() <= capacity) capacity /= NodeBlock::lanes;
@@ -91,7 +91,7 @@ class Division {
   BlockVector<Center> spare_;
 };
 
-/// The greatest float below.
+/// Returns the greatest float below x.
 float previous(float x) noexcept {
   if (x == 0.0f) return -std::numeric_limits<float>::denorm_min();
   const auto bits = std::bit_cast<std::uint32_t>(x);
@@ -101,8 +101,9 @@ float previous(float x) noexcept {
 
 float next(float x) noexcept { return -previous(-x); }
 
-/// Makes boxes around floats hold the mesh, whose coordinates are off them: rounding keeps the
-/// order, so the mesh's extreme is within one float of the floats' extreme.
+/// Enlarges boxes around floats so that they contain the mesh, whose coordinates differ from the
+/// floats. Rounding keeps the order, so the mesh's extreme is within one float of the floats'
+/// extreme.
 void widen(NodeBlock& node) noexcept {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (float& low : node.low[axis]) low = previous(low);
@@ -110,7 +111,7 @@ void widen(NodeBlock& node) noexcept {
   }
 }
 
-/// Puts boxes at infinity, which nothing reaches, in the lanes from the first unused one on.
+/// Fills the lanes from the first unused one on with boxes at infinity, which no query reaches.
 void close_lanes(NodeBlock& node, CylinderBlock& cylinders, std::size_t first) noexcept {
   for (std::size_t lane = first; lane < NodeBlock::lanes; ++lane) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -150,12 +151,12 @@ void WideBvh::Tree::divide(std::span<const TriangleId> order) noexcept {
 void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
   frame_ = fill.frame();
 
-  // Each level stands behind the one above it: the lowest is the last.
+  // Each level comes after the one above it, so the lowest level is last.
   std::size_t size = rounded_up_quotient(leaves_.size(), NodeBlock::lanes);
   std::size_t begin = nodes_.size() - size;
   constexpr std::size_t share = 128;  // nodes, worked on at a time
   share_ranges(size, threads, share, [&](std::size_t from, std::size_t to) {
-    // What is behind them is another thread's.
+    // The leaves after these belong to another thread.
     const std::span shared =
         std::span(leaves_).first(std::min(to * NodeBlock::lanes, leaves_.size()));
     for (std::size_t i = from; i < to; ++i) {

@@ -12,8 +12,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// The children of a node that the ball reaches, if wanted marked where they are all within it.
-/// Returns how many, and writes them, and some more, to `reached`.
+/// Finds the children of a node that the ball reaches. If `marking`, marks those that are entirely
+/// within the ball. Writes them, and some more, to `reached`, and returns their number.
 template <bool marking>
 HWY_INLINE std::size_t children_in_reach(const NodeBlock& node, const BallScreen& ball,
                                          std::uint32_t* reached) {
@@ -45,7 +45,7 @@ HWY_INLINE std::size_t children_in_reach(const NodeBlock& node, const BallScreen
   return count;
 }
 
-/// All children of a node, marked as within the ball.
+/// Writes all children of a node, marked as within the ball. Returns their number.
 HWY_INLINE std::size_t all_children(const NodeBlock& node, std::uint32_t* children) {
   const Ids ids;
   std::size_t count = 0;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is near a capsule. A box grown by the radius and a segment are apart if one of six planes is
-// between them: across the box's axes, or along one of these and the segment (Ericson, "Real-Time
-// Collision Detection", 2005, 5.3.3); or if the ball around the box, which knows nothing of the
-// grown box's corners, is. Rounding is a share of the coordinates, by which the box is grown as
-// well.
+// Finds the triangles near a capsule. A box grown by the radius and a segment are apart if one of
+// six planes is between them. The planes are across the box's axes, or along one of these and the
+// segment. Source: Ericson, "Real-Time Collision Detection", 2005, 5.3.3. They are also apart if
+// the segment is farther than the radius from the ball around the box. This test excludes the
+// corners of the grown box, which reach too far. Rounding is proportional to the coordinates, and
+// the box is also grown by it.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -22,15 +23,15 @@
 #define KEEPOUT_INDEX_CAPSULE_SCREEN
 namespace keepout {
 
-/// A capsule as floats see it, from the origin of a tree's frame, its numbers twice as large.
+/// A capsule in floats, relative to the origin of a tree's frame, with all lengths doubled.
 struct CapsuleScreen {
-  float middle[3];    // the sum of its segment's ends
-  float along[3];     // from the one to the other
-  float length[3];    // the sizes of that
+  float middle[3];    // the sum of the segment's ends
+  float along[3];     // from one end to the other
+  float length[3];    // absolute values of along
   float length2;      // |along|^2
-  float inverse2;     // its inverse; 0 for a point
-  float thickness;    // twice the radius, and what rounding may take
-  bool fits = false;  // false where a float would overflow: then nothing else is to be used
+  float inverse2;     // 1 / |along|^2; 0 for a point
+  float thickness;    // twice the radius, plus rounding
+  bool fits = false;  // false if a float would overflow; then the other members are invalid
 
   CapsuleScreen(const Capsule& capsule, const Box& bounds, const LeafFrame& frame) noexcept {
     const Vec3 from = capsule.from - frame.origin;
@@ -41,13 +42,13 @@ struct CapsuleScreen {
     // Below 1e-12 the inverse of a square may overflow. Rejects NaN as well.
     if (!(size > 1e-12 && size < 1e17 && capsule.radius >= 0.0)) return;
     fits = true;
-    // Each sum and product below rounds by 2^-24 of at most four times the size: a handful of them.
+    // Each sum and product below, a handful, rounds by 2^-24 of at most four times the size.
     constexpr double rounding = 0x1p-17;
     thickness = static_cast<float>(2.0 * (capsule.radius + frame.error) + rounding * size);
     const double way2 = (to - from).squaredNorm();
     length2 = static_cast<float>(way2);
-    // A segment that is shorter than what rounding may take is a point: its middle is as near as
-    // the rounding added to the thickness says.
+    // A segment shorter than the rounding counts as a point: the rounding in the thickness covers
+    // the distance to its middle.
     const bool is_point = way2 <= rounding * rounding * size * size / 64.0;
     inverse2 = is_point ? 0.0f : static_cast<float>(1.0 / way2);
     for (int axis = 0; axis < 3; ++axis) {
@@ -64,7 +65,7 @@ struct CapsuleScreen {
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// Which of sixteen boxes come near the capsule: a bit for each.
+/// Returns the boxes of sixteen that come near the capsule, one bit each.
 HWY_NOINLINE std::uint32_t boxes_nearby(const float (&low)[3][NodeBlock::lanes],
                                         const float (&high)[3][NodeBlock::lanes],
                                         const CapsuleScreen& capsule) {
@@ -106,7 +107,7 @@ HWY_NOINLINE std::uint32_t boxes_nearby(const float (&low)[3][NodeBlock::lanes],
   return nearby;
 }
 
-/// Appends the triangles of a leaf whose boxes come near.
+/// Appends the triangles of a leaf whose boxes come near the capsule.
 HWY_INLINE void append_near(const LeafBlock& leaf, const CapsuleScreen& capsule,
                             TriangleBuffer& out) {
   const FloatTag d;

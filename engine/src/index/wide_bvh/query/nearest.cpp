@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The nearest triangle by branch and bound: the nearest boxes first, and none that is farther away
-// than a triangle that was found. Single precision excludes what is surely farther, as in a query
-// with a ball up to the nearest triangle so far (bounds: ball_screen.cpp). The exact kernel decides
-// about the rest, ties included, so the answer is that of the kernel on all triangles.
+// Finds the nearest triangle by branch and bound: the nearest boxes first, and no box that is
+// farther away than a triangle already found. Single precision excludes triangles that are surely
+// farther, as in a query with a ball up to the nearest triangle so far (bounds: ball_screen.cpp).
+// The exact kernel decides about the others, including ties. So the answer is that of the kernel on
+// all triangles.
 #include <array>
 #include <limits>
 
@@ -19,10 +20,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-/// The nearest triangle so far, and the ball up to it, which excludes what is surely farther.
+/// The nearest triangle so far, and the ball up to it, which excludes triangles that are surely
+/// farther.
 struct Best {
   TriangleId triangle;
-  BallScreen screen;  // of the ball whose surface it touches
+  BallScreen screen;  // of the ball whose surface the triangle touches
 };
 
 /// Fills `distance2` with the squared distances of a node's boxes from the center, rounded down.
@@ -33,7 +35,7 @@ HWY_INLINE void measure_boxes(const NodeBlock& node, const BallScreen& ball, flo
   }
 }
 
-/// Returns the triangles of a leaf that are not surely farther than the best: a bit for each.
+/// Returns the triangles of a leaf that are not surely farther than the best, one bit each.
 /// `likely`: the one that is nearest in single precision.
 HWY_INLINE std::uint32_t no_farther(const LeafBlock& leaf, const BallScreen& ball,
                                     std::size_t& likely) {
@@ -63,8 +65,8 @@ HWY_INLINE std::uint32_t no_farther(const LeafBlock& leaf, const BallScreen& bal
   return left;
 }
 
-/// Compares a triangle with the best by the exact kernel. If the tree has the mesh's own
-/// coordinates, the leaf holds the corners in the order that the kernel needs.
+/// Compares a triangle with the best one by the exact kernel. If the tree has the mesh's own
+/// coordinates, the leaf has the corners in the order that the kernel needs.
 HWY_INLINE void decide(const LeafBlock& leaf, std::size_t lane, const WideBvh::Tree& tree,
                        Best& best) {
   if (!leaf.is_used(lane)) return;
@@ -89,8 +91,8 @@ HWY_INLINE void decide(const LeafBlock& leaf, std::size_t lane, const WideBvh::T
 constexpr std::size_t work_of_box = 3;
 constexpr std::size_t work_of_decision = 3;
 
-/// Compares the triangles of a leaf with the best: first the likely nearest, which leaves few
-/// others to decide about.
+/// Compares the triangles of a leaf with the best one. The likely nearest comes first, so that few
+/// others need a decision.
 HWY_INLINE void search_leaf(const LeafBlock& leaf, const WideBvh::Tree& tree, Budget& budget,
                             Best& best) {
   std::size_t likely = 0;
@@ -116,8 +118,8 @@ HWY_INLINE void prefetch_child(const WideBvh::Tree& tree, std::uint32_t what) {
   }
 }
 
-/// Opens boxes, the nearest first, except those that `is_beyond`. `measure` fills in lower bounds
-/// of the distances of a node's boxes. Returns false if the budget was spent first.
+/// Opens boxes, the nearest first, except those that `is_beyond`. `measure` computes lower bounds
+/// of the distances of a node's boxes. Returns false if the budget ended first.
 template <class Distance, class IsBeyond, class Measure, class SearchLeaf>
 HWY_INLINE bool search_boxes(const WideBvh::Tree& tree, Budget& budget, const IsBeyond& is_beyond,
                              const Measure& measure, const SearchLeaf& search_leaf) {
@@ -125,7 +127,7 @@ HWY_INLINE bool search_boxes(const WideBvh::Tree& tree, Budget& budget, const Is
     Distance distance;
     std::uint32_t what;  // as NodeBlock::child
   };
-  // The boxes of each level but the one that was opened, and those of the last.
+  // The boxes of each level except the opened one, and all those of the last level.
   std::array<Waiting, WideBvh::most_levels * NodeBlock::lanes> stack;
   std::size_t waiting = 0;
   stack[waiting++] = {0, 0};
@@ -141,7 +143,7 @@ HWY_INLINE bool search_boxes(const WideBvh::Tree& tree, Budget& budget, const Is
     const NodeBlock& node = tree.nodes()[next.what];
     HWY_ALIGN Distance distance[NodeBlock::lanes];
     measure(node, distance);
-    // The nearest on top.
+    // Insert so that the nearest is on top.
     const std::size_t bottom = waiting;
     for (std::size_t lane = 0; lane < NodeBlock::lanes && node.is_used(lane); ++lane) {
       if (is_beyond(distance[lane])) continue;
@@ -170,8 +172,8 @@ TriangleId nearest_in_floats(const WideBvh::Tree& tree, const BallScreen& around
   return is_found ? best.triangle : no_triangle;
 }
 
-/// Like nearest_in_floats, for a point so far off that floats cannot tell one box from the next: in
-/// double, a box and a triangle at a time.
+/// Like nearest_in_floats(), for a point so far away that floats cannot distinguish boxes. Works in
+/// double, on one box or triangle at a time.
 TriangleId nearest_from_afar(const WideBvh::Tree& tree, const Vec3& point, Budget& budget) {
   TriangleId best = no_triangle;
   double least = std::numeric_limits<double>::infinity();

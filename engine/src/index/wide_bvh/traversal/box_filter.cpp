@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/traversal/box_filter.cpp"
 #include <hwy/foreach_target.h>
-// After it: it sets the target.
+// After foreach_target.h, which sets the target to compile for.
 #include "filters.h"
 #include "proof_lanes-inl.h"
 
@@ -66,8 +66,8 @@ void EnterBoxes(const NodeBlock& node, const FloatTip& tip, const float* motion,
                 const FloatLevels& levels, BoxEntries& entries) {
   const FloatTag d;
   const V beyond = hn::Set(d, levels.box_level);
-  // If the motion stands still along an axis, it is within or outside the box along it all the
-  // time.
+  // If the motion does not move along an axis, it is always within or always outside the box's
+  // extent along that axis.
   V inverse[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     constexpr float least_motion = 1e-30f;
@@ -106,7 +106,7 @@ void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float
   std::uint32_t clear = 0;
   for (std::size_t lane = 0; lane < CylinderBlock::lanes; lane += hn::Lanes(d)) {
     const Cylinders its = cylinders_at(d, block, tip, lane);
-    // To where the motion comes nearest to the cylinder, or nearly.
+    // The direction to about the point where the motion is nearest to the cylinder.
     const Vector near = nearest(d, its, nearest_of_motion(its.middle));
     const Proof proof = proof_along(d, its, nearest_of_motion(near) - near, levels);
     const V along = dot(proof.n, z);

@@ -17,7 +17,7 @@ struct FloatTip {
   float low[3];
 };
 
-/// Splits a tip, given from the origin of the tree's frame. [length]
+/// Splits a tip, given relative to the origin of the tree's frame. [length]
 inline FloatTip float_tip(const Vec3& tip) noexcept {
   FloatTip split;
   for (int axis = 0; axis < 3; ++axis) {
@@ -27,27 +27,27 @@ inline FloatTip float_tip(const Vec3& tip) noexcept {
   return split;
 }
 
-/// The level of a traversal in single precision, and what rounding adds to it. All are rounded up.
+/// The level of a traversal in single precision, and the rounding to add to it. All are rounded up.
 struct FloatLevels {
   float level;  // distance within which a motion comes near: MotionTraversal::Start::level [length]
-  float relative;   // rounding adds so much of |v - tip| of the farthest corner v ...
-  float slack;      // ... and this [length]
+  float relative;   // rounding, as a fraction of |v - tip| of the farthest corner v ...
+  float slack;      // ... plus this [length]
   float box_level;  // level and rounding, for boxes [length]
 };
 
-// What single precision adds to the level of a traversal, as a fraction of the level and of the
-// longest motion. Both are larger than the rounding of the lanes, below 1e-6 of these lengths, and
-// others rely on the rest: known_distance() of the certified rule needs more than 5e-7 of the
+// The excess of a traversal's level in single precision, as fractions of the level and of the
+// longest motion. Both exceed the rounding of the lanes, which is below 1e-6 of these lengths. The
+// rest is needed elsewhere: known_distance() of the certified rule needs more than 5e-7 of the
 // level, and MotionTraversal::traversal() more than `alike` of the motion.
 constexpr double slack_of_level = 2e-6;
 constexpr double slack_of_motion = 3e-6;
 static_assert(slack_of_level >= 1e-6 + 5e-7 && slack_of_motion >= 1e-6 + MotionTraversal::alike);
 
-/// Returns the levels of a traversal. `longest`: no motion is longer. `tip`: from the origin of the
-/// tree's frame. `error`: of the coordinates in leaves. [length]
+/// Returns the levels of a traversal. `longest`: no motion is longer. `tip`: relative to the origin
+/// of the tree's frame. `error`: of the coordinates in leaves. [length]
 inline FloatLevels float_levels(double level, double longest, const Vec3& tip,
                                 double error) noexcept {
-  // The rest that the two floats of the tip leave, and the error of the leaf's coordinates.
+  // The part of the tip beyond its two floats, and the error of the leaf's coordinates.
   const double fixed = 1e-13 * tip.lpNorm<1>() + 4.0 * error;
   const double slack = slack_of_level * level + slack_of_motion * longest + fixed;
   const double box_level = level * (1.0 + 2e-6) + 4e-6 * longest + fixed;
@@ -56,20 +56,20 @@ inline FloatLevels float_levels(double level, double longest, const Vec3& tip,
           static_cast<float>(box_level * up)};
 }
 
-/// Proofs for sixteen triangles (or boxes) while the tip stays where it is: unit vectors, and the
-/// clearance that each proves. Any unit vector may stand here: its clearance is computed from the
+/// Proofs for sixteen triangles (or boxes) while the tip does not move: unit vectors, and the
+/// clearance that each proves. Any unit vector is valid, because its clearance is computed from the
 /// triangle itself.
 struct ProofBlock {
   static constexpr std::size_t lanes = 16;
 
   alignas(64) float n[3][lanes];  // [axis][lane]
-  /// Proven distance of the tip less the level and rounding. [length]
+  /// The proven distance of the tip, minus level and rounding. [length]
   alignas(64) float clear[lanes];
 };
 
 /// The time at which a motion may first come within the level of the triangles in each of sixteen
-/// boxes: a fraction of the motion, never late; 0 if it begins there. Without a meaning for boxes
-/// that are not reached.
+/// boxes. It is a fraction of the motion, never late, and 0 if the motion begins there. It has no
+/// meaning for boxes that are not reached.
 struct BoxEntries {
   alignas(64) float time[NodeBlock::lanes];
   std::uint32_t reached;  // a bit for each box that is reached
@@ -80,12 +80,12 @@ struct BoxEntries {
 void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motion,
                  const FloatLevels& levels, BoxEntries& entries) noexcept;
 
-/// Sharpens the entries of the boxes that are reached: by the directions from their cylinders to
-/// the points of the motion that are nearest to them.
+/// Improves the entries of the boxes that are reached, with the directions from their cylinders to
+/// the nearest points of the motion.
 void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
                      const FloatLevels& levels, BoxEntries& entries) noexcept;
 
-/// Returns the boxes within `radius` of the center: a bit for each, and perhaps some others.
+/// Returns the boxes within `radius` of the center, one bit each. Some others may be included.
 std::uint32_t boxes_near(const NodeBlock& boxes, const FloatTip& center, float radius) noexcept;
 
 /// Returns the distance of the nearest box from the center, or a little less. [length]
@@ -94,16 +94,16 @@ float distance_to_boxes(const NodeBlock& boxes, const FloatTip& center) noexcept
 /// Proofs for the sixteen triangles of a leaf.
 struct LeafFilter {
   ProofBlock at_tip;  // along the shortest segments to the tip
-  ProofBlock last;    // the last ones that were better for some motion
+  ProofBlock last;    // the last proof that was better for some motion
 };
 
 /// Fills the filter of a leaf for this tip.
 void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatLevels& levels,
                  LeafFilter& filter) noexcept;
 
-/// Triangles that a motion is not proved to stay clear of: a bit for each, and the time at which
-/// the motion may meet them, never late: a fraction of the motion, or -1e30 if they may be too
-/// close already.
+/// The triangles that a motion is not proved to stay clear of, one bit each. `time` is when the
+/// motion may meet them, never late: a fraction of the motion, or -1e30 if they may be too close
+/// already.
 struct Suspects {
   alignas(64) float time[LeafBlock::lanes];
   std::uint32_t mask;
@@ -112,14 +112,14 @@ struct Suspects {
 /// Finds the suspects among the triangles of a leaf. `motion`: three coordinates. [length]
 void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept;
 
-/// Searches for better proofs for the suspects, which removes some and makes the others later.
-/// Costs more than find_suspects. Suspects later than `latest`, a fraction of the motion, may stay
-/// as they are.
+/// Searches for better proofs for the suspects, which removes some and delays the others. Costs
+/// more than find_suspects. Suspects later than `latest`, a fraction of the motion, may remain
+/// unchanged.
 void sharpen_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                       const FloatLevels& levels, float latest, LeafFilter& filter,
                       Suspects& suspects) noexcept;
 
-/// Makes the suspects later by a Newton step towards the times when they are met, up to `latest`.
+/// Delays the suspects by a Newton step towards the times of their contacts, up to `latest`.
 void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                     const FloatLevels& levels, float latest, Suspects& suspects) noexcept;
 

@@ -2,7 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/traversal/leaf_filter.cpp"
 #include <hwy/foreach_target.h>
-// After it: it sets the target.
+// After foreach_target.h, which sets the target to compile for.
 #include "filters.h"
 #include "proof_lanes-inl.h"
 
@@ -16,9 +16,9 @@ HWY_INLINE TriangleLanes corners(FloatTag d, const LeafBlock& leaf, const FloatT
           relative(d, leaf.corner[2], lane, tip)};
 }
 
-/// Returns approximately the point of each triangle that is nearest to p. (Not nearest_point() of
-/// leaf_test-inl.h, whose band of error is proved: here any point gives a valid proof.)
-/// Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+/// Returns approximately the point of each triangle that is nearest to p. (Differs from
+/// nearest_point() of leaf_test-inl.h, which has a proved error: here any point gives a valid
+/// proof.) Source: Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
 HWY_INLINE Vector nearest(FloatTag d, const TriangleLanes& t, const Vector& p) {
   const V zero = hn::Zero(d);
   const Vector ab = t.b - t.a;
@@ -35,7 +35,7 @@ HWY_INLINE Vector nearest(FloatTag d, const TriangleLanes& t, const Vector& p) {
   const V along_bc = hn::Sub(d4, d3);
   const V along_cb = hn::Sub(d5, d6);
 
-  // v and w of a + v ab + w ac, each over `whole`; the last that applies counts.
+  // v and w of a + v ab + w ac, each times `whole`; the last condition that is true decides.
   V v = vb, w = vc, whole = hn::Add(hn::Add(va, vb), vc);
   const auto take = [&](M where, V new_v, V new_w, V new_whole) {
     v = hn::IfThenElse(where, new_v, v);
@@ -97,14 +97,15 @@ void FindSuspects(const LeafFilter& filter, const float* motion, Suspects& suspe
   }
 }
 
-/// Returns the lanes whose bits are set, at their place in the block.
+/// Returns the lanes of a vector at `lane` of the block whose bits are set in `mask`.
 HWY_INLINE M lanes_of(FloatTag d, std::uint32_t mask, std::size_t lane) {
   const hn::RebindToUnsigned<FloatTag> du;
   const auto bit = hn::Shl(hn::Set(du, 1u), hn::Iota(du, static_cast<std::uint32_t>(lane)));
   return hn::RebindMask(d, hn::TestBit(hn::Set(du, mask), bit));
 }
 
-/// Returns the suspects of a vector that may be met in time: sharpening the others is not worth it.
+/// Returns the suspects of a vector with a time up to `latest`; the others are not worth
+/// sharpening.
 HWY_INLINE M in_time(FloatTag d, const Suspects& suspects, V time, float latest, std::size_t lane) {
   return hn::And(lanes_of(d, suspects.mask, lane), hn::Le(time, hn::Set(d, latest)));
 }
@@ -136,12 +137,13 @@ void SharpenSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mo
     Proof right = proof_at(d, t, z, levels);
     V rise = dot(right.n, z);
     consider(right, rise);
-    // There is no proof for a motion that ends too close.
+    // A motion that ends too close has no proof.
     asked = hn::AndNot(hn::Lt(hn::Add(right.clear, rise), zero), asked);
     for (int cut = 0; cut < cuts; ++cut) {
       asked = hn::AndNot(hn::Or(clear, hn::Gt(time, hn::Set(d, latest))), asked);
       if (hn::AllFalse(d, asked)) break;
-      // The blend that is level along the motion, and the normal where the two lines cross.
+      // The blend that is level along the motion, and the normal at the time when the two lines
+      // cross.
       const Proof blend = proof_along(d, t, rise * left.n - fall * right.n, levels);
       consider(blend, dot(blend.n, z));
       const V crossing = hn::Div(hn::Sub(left.clear, right.clear), hn::Sub(rise, fall));

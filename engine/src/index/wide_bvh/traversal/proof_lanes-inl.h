@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Proofs, by a direction, that a motion stays clear: sixteen lanes at a time.
+// Proofs that a motion stays clear, each by a direction: sixteen lanes at a time.
 //
-// Rounding. In units of u = 2^-24: a coordinate relative to the tip is off by less than 3 u of
-// itself, and by the error of the leaf's own; a product n . v of three terms by 5 u |n| |v|; the
-// length of a unit vector by 3 u. Together they stay below 16 u = 1e-6 of |v|, of the level and of
-// the length of the motion; FloatLevels takes half as much again, or more.
+// Rounding, in units of u = 2^-24. A coordinate relative to the tip is off by less than 3 u of
+// itself, plus the error of the leaf's coordinate. A product n . v of three terms is off by 5 u |n|
+// |v|, and the length of a unit vector by 3 u. The sum is below 16 u = 1e-6 of |v|, of the level
+// and of the length of the motion. FloatLevels allows at least half as much again.
 #if defined(KEEPOUT_PROOF_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef KEEPOUT_PROOF_LANES_INL_H
 #undef KEEPOUT_PROOF_LANES_INL_H
@@ -29,32 +29,31 @@ HWY_INLINE Vector relative(FloatTag d, const float (&from)[3][Lanes], std::size_
 /// A unit vector for each lane, and the distance of the tip beyond the level that it proves.
 struct Proof {
   Vector n;
-  V clear;  // distance of the tip less the level and rounding [length]
+  V clear;  // distance of the tip, minus level and rounding [length]
 };
 
-/// Returns a proof in the lanes whose direction is a unit vector; in the others, one that proves
-/// nothing.
+/// Returns a proof in the lanes whose direction is a unit vector. The other lanes prove nothing.
 HWY_INLINE Proof proof_if(FloatTag d, M is_unit, const Vector& n, V clear) {
   const V zero = hn::Zero(d);
   return {select(is_unit, n, {zero, zero, zero}),
           hn::IfThenElse(is_unit, clear, hn::Set(d, -1e30f))};
 }
 
-/// Returns true if a vector of this squared length can be normalized: below, and above, squares
+/// Returns true if a vector of this squared length can be normalized. Smaller and larger squares
 /// have lost their digits.
 HWY_INLINE M has_direction(FloatTag d, V length2) {
   return hn::And(hn::Gt(length2, hn::Set(d, 1e-30f)), hn::Lt(length2, hn::Set(d, 1e30f)));
 }
 
-/// Returns the clearance that a unit vector proves of shapes with this support along it, no point
-/// of which is farther from the tip than `far`.
+/// Returns the clearance that a unit vector proves for shapes with this support along it. `far`: no
+/// point of a shape is farther from the tip.
 HWY_INLINE V clear_of(FloatTag d, V support, V far, const FloatLevels& levels) {
   const V rounding = hn::Add(hn::Mul(far, hn::Set(d, levels.relative)), hn::Set(d, levels.slack));
   return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, levels.level)), rounding);
 }
 
-/// Returns the proof by the direction of `way`; one that proves nothing if `way` has none.
-/// `clear_along(d, shapes, n, levels)` returns the clearance that a unit vector proves.
+/// Returns the proof by the direction of `way`, or one that proves nothing if `way` has no
+/// direction. `clear_along(d, shapes, n, levels)` returns the clearance that a unit vector proves.
 template <class Shapes>
 HWY_INLINE Proof proof_along(FloatTag d, const Shapes& shapes, const Vector& way,
                              const FloatLevels& levels) {
@@ -85,8 +84,9 @@ HWY_INLINE M holds(FloatTag d, const Proof& proof, V along) {
 // Makes a time early by more than the rounding of its quotient.
 constexpr float never_late = 0.999999f;
 
-/// Returns the time at which a motion that comes nearer along the normal may reach the level; -1e30
-/// if the tip may be within it, or if the motion does not come nearer. `along`: n . z.
+/// Returns the time at which a motion that comes nearer along the normal may reach the level.
+/// Returns -1e30 if the tip may be within the level, or if the motion does not come nearer.
+/// `along`: n . z.
 HWY_INLINE V entry(FloatTag d, const Proof& proof, V along) {
   const V zero = hn::Zero(d);
   const V time = hn::Mul(hn::Div(proof.clear, hn::Neg(along)), hn::Set(d, never_late));

@@ -81,7 +81,7 @@ void TraversalCache::cover(const WideBvh::Tree& tree, const Ball& ball) noexcept
   };
   open(0);
   while (first < last) {
-    // Sixteen more boxes fit here, and in blocks_ together with all that wait.
+    // Sixteen more boxes fit in waiting, and in blocks_ together with all waiting boxes.
     const bool fits = size_ + (last - first) + NodeBlock::lanes <= most_boxes &&
                       last + NodeBlock::lanes <= waiting.size() && opened < most_opened;
     const Place box = waiting[first++];

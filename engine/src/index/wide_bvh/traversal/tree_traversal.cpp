@@ -8,17 +8,17 @@ namespace keepout {
 namespace {
 
 constexpr std::size_t most_waiting = 4096;
-constexpr std::size_t most_deferred = 1024;  // numbers below suspects_bit, as those of nodes are
+constexpr std::size_t most_deferred = 1024;  // below suspects_bit, like the numbers of nodes
 
-// In work units, about as long as each takes: see Budget.
+// In work units, in proportion to their times: see Budget.
 constexpr std::size_t work_of_boxes = 1;
 constexpr std::size_t work_of_cylinders = 2;
 constexpr std::size_t work_of_leaf = 4;
 constexpr std::size_t work_of_suspects = 1;
 constexpr std::size_t work_of_sharpening = 4;
 
-/// Returns true if more than `count` bits are set. Not every processor that this is compiled for
-/// has an instruction that counts bits.
+/// Returns true if more than `count` bits are set. Some of the targets have no instruction to count
+/// bits.
 bool are_more(std::uint32_t bits, int count) noexcept {
   for (; count > 0; --count) bits &= bits - 1;
   return bits != 0;
@@ -55,24 +55,23 @@ void TreeTraversal::begin_again(double level) noexcept {
   const LeafFrame& frame = tree_.frame();
   levels_ = float_levels(level, longest_, tip_ - frame.origin, frame.error);
   is_long_ = longest_ > level;
-  if (++generation_ == 0) {  // the counter overflowed: forget all leaves
+  if (++generation_ == 0) {  // the counter overflowed, so all leaves count as new
     for (SeenLeaf& each : leaves_) each.filled_in = 0;
     generation_ = 1;
   }
 }
 
-/// Makes the traversal cache cover the region of the cycle, grown by a padding if that is likely to
-/// serve the cycles to come: while the padding is longer than the motions, and the tip moves on
-/// without a jump. The padding adapts to the number of boxes of a cover; its factors are tuned by
-/// experience:
+/// Makes the traversal cache cover the region of the cycle. Adds a padding if it is likely to serve
+/// later cycles: if it is longer than the motions, and the tip moves without a jump. The padding
+/// adapts to the number of boxes of a cover. Its factors were tuned by experiment:
 ///
-///     boxes left unopened   a quarter, and a new cover
-///     no boxes              double, and a motion more
-///     fewer than 12         half as much again, and a tenth of a motion more
-///     12 to 24              as before
-///     more than 24          0.7 of it
+///     Boxes left unopened   times 0.25, and a new cover.
+///     No boxes              times 2, plus one motion.
+///     Fewer than 12         times 1.5, plus a tenth of a motion.
+///     12 to 24              unchanged.
+///     More than 24          times 0.7.
 ///
-/// Steps are the same whatever the padding is, unless the work budget ends first.
+/// Steps are the same for every padding, unless the work budget ends first.
 void TreeTraversal::locate(const Start& start) noexcept {
   if (cache_.covers(start.region)) return;
   const double longest = start.longest;
@@ -84,12 +83,12 @@ void TreeTraversal::locate(const Start& start) noexcept {
   };
   cover(serves_more ? padding_ : 0.0);
   if (serves_more && !cache_.is_opened()) {
-    // Large boxes are left unopened, which every cycle to come would have to open.
+    // Every later cycle would have to open the large boxes.
     padding_ *= 0.25;
     cover(padding_ > longest ? padding_ : 0.0);
     return;
   }
-  if (padding_ > longest && !serves_more) return;  // no experience with this padding
+  if (padding_ > longest && !serves_more) return;  // this padding was not tried
   constexpr std::size_t few = 12;
   constexpr std::size_t many = 24;
   if (cache_.size() == 0) {
@@ -122,7 +121,7 @@ bool TreeTraversal::traversal(const Vec3& motion, TriangleVisitor& visitor) noex
     if (waiting_size_ == 0) return meets_nothing_;
     if (comes_too_late(waiting_[0].time)) return false;
     const std::uint32_t what = pop_earliest().what;
-    // Leaf numbers have 31 bits, so suspects_bit counts only without leaf_bit.
+    // Leaf numbers have 31 bits, so suspects_bit has its meaning only without leaf_bit.
     if ((what & NodeBlock::leaf_bit) == 0 && (what & suspects_bit) != 0) {
       resume(what & ~suspects_bit);
     } else {
@@ -141,14 +140,14 @@ void TreeTraversal::descend(std::uint32_t box) noexcept {
   }
 }
 
-/// Finds the boxes of a node that the motion reaches, and when: each is opened now or waits.
-/// `cylinders()` returns those of the boxes; called only if needed.
+/// Finds the boxes of a node that the motion reaches, and their times. Opens each box now or lets
+/// it wait. `cylinders()` returns the cylinders of the boxes; it is called only if needed.
 template <class Cylinders>
 void TreeTraversal::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   BoxEntries entries;
   budget_.spend(work_of_boxes);
   enter_boxes(node, float_tip_, motion_.data(), levels_, entries);
-  // Cylinders are cheaper than to open more boxes than this.
+  // Cylinders cost less than opening more boxes than this.
   if (are_more(entries.reached, is_long_ ? 1 : 4)) {
     budget_.spend(work_of_cylinders);
     enter_cylinders(cylinders(), float_tip_, motion_.data(), levels_, entries);
@@ -156,12 +155,11 @@ void TreeTraversal::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
     const auto lane = static_cast<std::size_t>(std::countr_zero(reached));
     const std::uint32_t child = node.child[lane];
-    if (!node.is_used(lane))
-      break;  // child 0 would be the root again, and the traversal without end
+    if (!node.is_used(lane)) break;  // child 0 is the root, so the traversal would never end
     if ((child & NodeBlock::leaf_bit) != 0) prefetch_leaf(child & ~NodeBlock::leaf_bit);
     const float time = entries.time[lane];
-    // If the motion begins in a box, the tip may be too close already: it is opened now, however
-    // early the first contact so far is, and also if there is no room to wait.
+    // If the motion begins in a box, the tip may be too close already. So the box is opened now,
+    // even if there is an early contact. So is a box that cannot wait because the heap is full.
     if (time > 0.0f) {
       if (comes_too_late(time)) {
         meets_nothing_ = false;
@@ -173,7 +171,7 @@ void TreeTraversal::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept
   }
 }
 
-/// Finds the suspects of a leaf; visits or defers them.
+/// Finds the suspects of a leaf, and visits or defers them.
 void TreeTraversal::inspect(std::uint32_t number) noexcept {
   SeenLeaf& seen = filled_leaf(number);
   Deferred& found = deferred_[deferred_size_];
@@ -185,8 +183,8 @@ void TreeTraversal::inspect(std::uint32_t number) noexcept {
   if (mask == 0) return;
   meets_nothing_ = false;
 
-  // Suspects that the motion may meet at time 0 or before, as the tip is too close already, are
-  // visited now; and all, if there is no room to defer them.
+  // Suspects at time 0 or before are visited now, because the tip may be too close already. If the
+  // memory for deferred suspects is full, all are visited now.
   const bool has_room = deferred_size_ + 1 < deferred_.size();
   std::uint32_t later = 0;
   for (std::uint32_t lanes = mask; lanes != 0; lanes &= lanes - 1) {
@@ -208,7 +206,7 @@ void TreeTraversal::inspect(std::uint32_t number) noexcept {
   if (!wait(found.suspects.time[found.earliest()], deferred | suspects_bit)) resume(deferred);
 }
 
-/// Visits suspects of a leaf, the earliest first, until one that waits is earlier.
+/// Visits suspects of a leaf, the earliest first, until a waiting one is earlier.
 void TreeTraversal::resume(std::uint32_t number) noexcept {
   Deferred& deferred = deferred_[number];
   while (deferred.suspects.mask != 0) {
@@ -224,13 +222,13 @@ void TreeTraversal::resume(std::uint32_t number) noexcept {
   }
 }
 
-/// Sharpens the suspects that may be met before it is too late: the first time of a long motion by
-/// better proofs, else by a Newton step.
+/// Sharpens the suspects that may be met before `latest_`. The first time on a long motion it
+/// searches for better proofs; otherwise it makes a Newton step.
 void TreeTraversal::sharpen(Deferred& deferred) noexcept {
   const LeafBlock& block = tree_.leaves()[deferred.leaf_number];
-  const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // not before it, when rounded
+  const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // rounds to no earlier
   budget_.spend(work_of_sharpening);
-  // Starts at most_sharpenings for long motions only.
+  // Only long motions start at most_sharpenings.
   static_assert(most_sharpenings > 1);
   const bool is_first_of_long_motion = deferred.sharpenings_left == most_sharpenings;
   --deferred.sharpenings_left;
@@ -268,8 +266,8 @@ Triangle TreeTraversal::corners(std::uint32_t number, std::size_t lane) const no
   return corners;
 }
 
-/// Returns a leaf with its filter and notes. At its first call in a generation, fills them in the
-/// place of another leaf, whose notes are forgotten, and spends the work.
+/// Returns a leaf with its filter and notes. The first call in a generation fills them, and spends
+/// work. They replace another leaf, whose notes are lost.
 TreeTraversal::SeenLeaf& TreeTraversal::filled_leaf(std::uint32_t number) noexcept {
   SeenLeaf& seen = leaves_[number % most_leaves];
   if (seen.number == number && seen.filled_in == generation_) return seen;
@@ -283,13 +281,13 @@ TreeTraversal::SeenLeaf& TreeTraversal::filled_leaf(std::uint32_t number) noexce
   return seen;
 }
 
-/// Prefetches a leaf that is likely to be needed soon, unless it is filled already.
+/// Prefetches a leaf that is likely to be needed soon, unless it is filled.
 void TreeTraversal::prefetch_leaf(std::uint32_t number) const noexcept {
   const SeenLeaf& seen = leaves_[number % most_leaves];
   if (seen.number != number || seen.filled_in != generation_) prefetch(tree_.leaves()[number]);
 }
 
-/// Adds a box or suspects to the heap. Returns false if there is no room.
+/// Adds a box or suspects to the heap. Returns false if the heap is full.
 bool TreeTraversal::wait(float time, std::uint32_t what) noexcept {
   if (waiting_size_ == waiting_.size()) return false;
   waiting_[waiting_size_++] = {time, what};
@@ -298,7 +296,7 @@ bool TreeTraversal::wait(float time, std::uint32_t what) noexcept {
   return true;
 }
 
-/// Takes the earliest from the heap. Precondition: the heap is not empty.
+/// Removes the earliest entry from the heap and returns it. Precondition: the heap is not empty.
 TreeTraversal::Waiting TreeTraversal::pop_earliest() noexcept {
   std::pop_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
                 is_later);

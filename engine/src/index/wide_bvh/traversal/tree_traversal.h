@@ -14,24 +14,26 @@
 
 namespace keepout {
 
-/// The traversal of a WideBvh: through the boxes along a motion, to the triangles that it is not
-/// proved to stay clear of, the earliest first, until the visitor has met one. Filters in single
-/// precision leave out triangles that are surely clear. The traversal remembers boxes and proofs
-/// from motion to motion and from cycle to cycle, which saves time; steps are the same without
-/// them, unless the work budget ends first.
+/// The traversal of a WideBvh: through the boxes along a motion, to the triangles that the motion
+/// is not proved to stay clear of. The earliest come first, and the traversal ends when the visitor
+/// has met one. Filters in single precision skip triangles that are surely clear. Boxes and proofs
+/// are remembered from motion to motion and from cycle to cycle, which saves time. Steps are the
+/// same without this memory, unless the work budget ends first.
 ///
-/// Its words, in the order in which a motion meets them:
+/// The terms, in the order in which a motion meets them:
 ///
-///     traversal cache    the boxes at which the motions of some cycles begin, within a padded
-///     region entries     when the motion enters the boxes of a node begun       boxes in which the
-///     motion starts, opened at once waiting     boxes and deferred suspects that it may meet
-///     later, the earliest first suspects    triangles of a leaf that it is not proved to stay
-///     clear of deferred    suspects that are still to be visited sharpen     find better proofs,
-///     which make suspects clear or later; delay: only later visit       show a triangle to the
-///     visitor, whose number for it is the note
+///     Traversal cache  the boxes at which motions begin, within a padded region.
+///     Entries          the times when the motion enters the boxes of a node.
+///     Begun            boxes in which the motion starts, opened at once.
+///     Waiting          boxes and deferred suspects that may be met later, the earliest first.
+///     Suspects         triangles of a leaf that the motion is not proved to stay clear of.
+///     Deferred         suspects that are not visited yet.
+///     Sharpen          find better proofs, which clear or delay suspects.
+///     Delay            find later times for suspects.
+///     Visit            show a triangle to the visitor, whose number for it is the note.
 class TreeTraversal final : public MotionTraversal {
  public:
-  /// Both must outlive this. Precondition: the tree is not refit.
+  /// Both arguments must outlive this object. Precondition: the tree is not refit.
   TreeTraversal(const WideBvh::Tree& tree, Budget& budget);
 
   bool begin(const Start& start) noexcept override;
@@ -44,16 +46,16 @@ class TreeTraversal final : public MotionTraversal {
   const TraversalCache& cache() const noexcept { return cache_; }
 
  private:
-  // The capacity for leaves with filters and notes, a power of 2; a cycle in contact needs a dozen.
-  // A leaf takes the place of another whose number has the same remainder.
+  // The capacity for leaves with filters and notes, a power of 2. A cycle in contact needs a dozen.
+  // A leaf replaces another one whose number has the same remainder.
   static constexpr std::size_t most_leaves = 256;
 
-  /// A leaf as it is seen from the tip.
+  /// A leaf relative to the tip.
   struct SeenLeaf {
     LeafFilter filter;
     std::array<std::uint32_t, LeafBlock::lanes> note;
     std::uint32_t number = 0;
-    std::uint32_t filled_in = 0;  // generation in which it was last filled; 0: none yet
+    std::uint32_t filled_in = 0;  // generation of the last filling; 0: not filled
     std::uint32_t used = 0;       // a bit for each lane
   };
 
@@ -68,12 +70,12 @@ class TreeTraversal final : public MotionTraversal {
   };
   static constexpr std::uint32_t suspects_bit = std::uint32_t{1} << 30;
 
-  /// How often suspects are sharpened before they are visited, if motions are long: many that come
-  /// late turn out not to be met, or not first. If motions are short, one Newton step is enough,
+  /// The number of times that suspects are sharpened before a visit if motions are long. Many late
+  /// suspects are then not met, or not met first. If motions are short, one Newton step is enough,
   /// and only if there are many suspects.
   static constexpr int most_sharpenings = 3;
 
-  /// Suspects of a leaf that are still to be visited.
+  /// Suspects of a leaf that are not visited yet.
   struct Deferred {
     Suspects suspects;
     std::uint32_t leaf_number;
@@ -100,31 +102,32 @@ class TreeTraversal final : public MotionTraversal {
   const WideBvh::Tree& tree_;
   Budget& budget_;
   TraversalCache cache_;
-  double padding_ = 0.0;  // covered beyond the region, for cycles to come [length]
+  double padding_ = 0.0;  // of the cover beyond the region, for later cycles [length]
 
-  // Of this cycle.
+  // The state of the present cycle.
   Vec3 tip_ = Vec3::Zero();
   double longest_ = 0.0;
   FloatTip float_tip_{};
   FloatLevels levels_{};
   bool region_is_empty_ = false;
   bool is_long_ = false;          // motions may be longer than the level
-  std::uint32_t generation_ = 0;  // counts beginnings; leaves filled in earlier ones are forgotten
+  std::uint32_t generation_ = 0;  // counts calls of begin_again(); leaves filled in earlier
+                                  // generations are invalid
   std::vector<SeenLeaf> leaves_;
 
-  // Of this motion.
+  // The state of the present motion.
   TriangleVisitor* visitor_ = nullptr;
   double latest_ = 0.0;  // contacts after this fraction of the motion do not matter
   std::array<float, 3> motion_{};
-  // Boxes that it begins in, to be opened now, the last one first: those of the traversal cache,
-  // and fifteen more a level.
+  // Boxes in which the motion begins, to be opened now, the last one first. There are those of the
+  // traversal cache, and fifteen more for each level.
   std::array<std::uint32_t, 16 * NodeBlock::lanes> begun_{};
   static_assert(std::tuple_size_v<decltype(begun_)> >=
                 TraversalCache::most_boxes + (NodeBlock::lanes - 1) * WideBvh::most_levels);
   std::size_t begun_size_ = 0;
   std::vector<Waiting> waiting_;  // a heap, the earliest first
   std::size_t waiting_size_ = 0;
-  std::vector<Deferred> deferred_;  // the place after the last one is for inspect() to write in
+  std::vector<Deferred> deferred_;  // inspect() writes to the place after the last one
   std::size_t deferred_size_ = 0;
   bool meets_nothing_ = false;
 };

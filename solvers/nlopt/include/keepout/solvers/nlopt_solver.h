@@ -10,61 +10,61 @@
 
 namespace keepout {
 
-/// Which of NLopt's local methods for inequality constraints.
+/// The local methods of NLopt for inequality constraints.
 enum class NloptMethod : std::uint8_t {
   slsqp,   // sequential least squares (Kraft 1994)
   cobyla,  // linear models, without derivatives (Powell 1994)
   mma      // moving asymptotes, globally convergent (Svanberg 2002)
 };
 
-/// What our check of its answer found.
+/// The result of keepout's check of an answer of NLopt.
 enum class NloptFinding : std::uint8_t {
-  refused,      // NLopt was not asked: the problem is invalid, ill-posed or too large
-  optimal,      // feasible, and within the accuracy of the best
-  not_optimal,  // feasible, and worse
+  refused,      // NLopt was not called: the problem is invalid, ill-posed or too large
+  optimal,      // feasible, and within `accuracy` of the best
+  not_optimal,  // feasible, but worse
   not_feasible,
   not_finite,
-  infeasible  // no answer exists: proven by weights on the rows, whatever NLopt said
+  infeasible  // no solution exists: proved by multipliers of the rows, independently of NLopt
 };
 
-/// The name as it stands in the enumeration.
+/// Returns the name of the enumerator.
 std::string_view name(NloptFinding finding) noexcept;
 
-/// What NLopt said of a problem, and what was found.
+/// The report of NLopt on a problem, and the result of the check.
 struct NloptReport {
-  std::string_view claim = "not asked";          // how it ended, as NLopt spells it
-  NloptFinding finding = NloptFinding::refused;  // that of our check
+  std::string_view claim = "not asked";          // the result of NLopt, in its spelling
+  NloptFinding finding = NloptFinding::refused;  // the result of the check
 };
 
-/// A method of NLopt, of which nothing is believed: an answer counts as optimal only when it is as
-/// near as `accuracy` to the one that ActiveSet has found. What ActiveSet refuses is refused, and
-/// what it has proven to be infeasible is. Anything else is `iteration_limit`.
+/// A solver that uses a method of NLopt and trusts no answer of it. An answer is `optimal` only if
+/// it is within `accuracy` of the solution of ActiveSet. A problem that ActiveSet rejects, or
+/// proves infeasible, returns the same status. All other answers return `iteration_limit`.
 ///
-/// "optimal" satisfies each row to 1e-11 of the motion at most, and the conditions of optimality
-/// (KktResidual) to `accuracy`; it is nearer than that to the best in task space, |R (u - u*)| with
-/// J^T J + damping I = R^T R, relative to the larger of |R u*| and |d| / sqrt(n). It is NLopt's own
-/// point, but for the last digits that put it onto the rows which it violates. The same problem
-/// always gives the same answer: the work is limited by a number of evaluations and never by time.
-/// It allocates while it solves.
+/// "optimal" satisfies each row to 1e-11 of the motion, and the conditions of optimality
+/// (KktResidual) to `accuracy`. Its distance from the best u* in task space, |R (u - u*)| with J^T
+/// J + damping I = R^T R, is also below `accuracy`. That distance is relative to the larger of |R
+/// u*| and |d| / sqrt(n). It is NLopt's own point, except for the last digits, which move it onto
+/// rows that it violates. Results are reproducible: the work is limited by a number of evaluations,
+/// never by time. Allocates while it solves.
 class NloptSolver final : public Solver {
  public:
-  /// Without room yet: see reserve.
+  /// Makes a solver without reserved memory: see reserve.
   explicit NloptSolver(NloptMethod method);
   ~NloptSolver() override;
 
-  /// What each reaches on most well-conditioned problems; the check sees to it that no answer is
-  /// worse. MMA converges too slowly for more.
+  /// Returns the accuracy that a method reaches on most well-conditioned problems. The check
+  /// rejects answers that are worse. MMA converges too slowly for a better accuracy.
   static constexpr double accuracy(NloptMethod method) noexcept {
     return method == NloptMethod::mma ? 1e-5 : 1e-6;
   }
 
-  /// "NLopt 2.7.1"
+  /// Returns name and version, such as "NLopt 2.7.1".
   static std::string library();
 
   void reserve(int variables, int rows) override;
   SolveStatus solve(const StepProblem& problem, Solution& solution) noexcept override;
 
-  /// Of the last solve: so that the failures of NLopt can be counted.
+  /// Returns the report of the last solve, to count the failures of NLopt.
   NloptReport last_report() const noexcept;
 
  private:
