@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# keepout_compile_options(TARGET): what every target of ours is compiled with. Nothing is global, so
-# that a project that embeds keepout keeps its own flags.
+# keepout_compile_options(TARGET): sets the compile options of a target of keepout. Nothing is
+# global, so a project that embeds keepout keeps its own flags.
 
 option(KEEPOUT_WARNINGS_AS_ERRORS "Treat our own warnings as errors" OFF)
 set(KEEPOUT_SANITIZE "" CACHE STRING "Sanitizers to compile with, as -fsanitize= takes them")
@@ -10,21 +10,22 @@ if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYP
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release, RelWithDebInfo" FORCE)
 endif()
 
-# So that headers are read once and not for each source: those that most sources include are compiled
-# before, and sources of tests and command several at a time, which instantiate once what all of them
-# use. Off where nobody asks for it, which is how others compile the library: there each source must
-# name what it needs (`./test --long` builds the preset bench so).
+# Saves build time: precompiles the headers that most sources include, and compiles several sources
+# of tests and command as one. Off by default, as others compile the library. Each source must then
+# include the headers that it needs: `./test --long` checks that with the preset bench.
 option(KEEPOUT_SHARE_HEADERS "Precompile headers; compile several sources of tests and command as one" OFF)
 
-# keepout_precompile_headers(TARGET OWNER [HEADERS...]): those of the standard library, Eigen's, and
-# HEADERS. Once for all targets that name the same OWNER, which is the first of them: their flags must
-# agree. Not with ccache, which finds again what was compiled in another folder only without.
+# keepout_precompile_headers(TARGET OWNER [HEADERS...]): precompiles headers of the standard
+# library, Eigen's, and HEADERS. All targets with the same OWNER, which is the first of them, share
+# the result: their flags must agree. Not with ccache, which reuses results from another folder only
+# without precompiled headers.
 function(keepout_precompile_headers target owner)
   if(NOT KEEPOUT_SHARE_HEADERS OR CMAKE_CXX_COMPILER_LAUNCHER MATCHES ccache)
     return()
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-    # std::string again, as of -Wrestrict below. The preset bench, without such headers, has them.
+    # False warnings for std::string, like -Wrestrict below. The preset bench, without such headers,
+    # enables these warnings.
     target_compile_options(${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow
                                              -Wno-stringop-overread)
   endif()
@@ -38,7 +39,7 @@ function(keepout_precompile_headers target owner)
     <Eigen/Dense> ${ARGN})
 endfunction()
 
-# keepout_share_headers(TARGET COUNT): compiles so many sources of the target as one. For tests and for
+# keepout_share_headers(TARGET COUNT): compiles COUNT sources of the target as one. For tests and
 # the command; each source of the library compiles alone.
 function(keepout_share_headers target count)
   if(KEEPOUT_SHARE_HEADERS)
@@ -49,13 +50,13 @@ endfunction()
 function(keepout_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
-  # A fused multiply-add rounds differently from one machine to the next; our decisions must not.
+  # No fused multiply-add: it rounds differently on different machines, but decisions must be equal.
   target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
                                            -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # GCC 12 takes a double that goes to float and back for the double itself where it packs two
-    # such: x - double(float(x)) is 0 then, and what was rounded outward is not. A test stands guard
-    # (tests/engine/geometry/float_rounding_test.cpp).
+    # GCC 12 omits the conversion of a double to float and back if it vectorizes two of them. Then x
+    # - double(float(x)) is 0, and values are not rounded outward. Tested by
+    # tests/engine/geometry/float_rounding_test.cpp.
     target_compile_options(${target} PRIVATE -fno-tree-slp-vectorize)
   endif()
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
@@ -65,29 +66,29 @@ function(keepout_compile_options target)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(KEEPOUT_SHARE_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # The compiler collects no garbage below 2 GB: it takes 6 % less time, and a third more memory.
+    # No garbage collection in the compiler below 2 GB: 6 % less time, and a third more memory.
     target_compile_options(${target} PRIVATE "SHELL:--param ggc-min-heapsize=2000000")
   endif()
   if(KEEPOUT_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=${KEEPOUT_SANITIZE}
                                              -fno-sanitize-recover=all -fno-omit-frame-pointer)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      # Registers are found in half the time for the long functions that checks make of short ones.
+      # Sanitizer checks make functions long; this halves the time of register allocation.
       target_compile_options(${target} PRIVATE -fira-region=one)
     endif()
-    # Both have vectors of the length that SSE2 has, and so run the same lines.
+    # Both have the vector length of SSE2, and so run the same lines.
     target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4)")
     target_link_options(${target} PUBLIC -fsanitize=${KEEPOUT_SANITIZE})
   endif()
-  # Position-independent all of them, which programs are in another way.
+  # Libraries only: they are position-independent, and programs use other flags for that.
   get_target_property(type ${target} TYPE)
   if(type MATCHES "LIBRARY" AND NOT type STREQUAL "MODULE_LIBRARY")
     keepout_precompile_headers(${target} keepout_headers)
   endif()
 endfunction()
 
-# The precompiled headers of the libraries: a target without definitions of its own, which would have
-# to be those of all.
+# The precompiled headers of the libraries: a target without definitions, because all targets would
+# need the same ones.
 if(KEEPOUT_SHARE_HEADERS)
   find_package(Eigen3 3.4 REQUIRED)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/headers.cpp CONTENT "")

@@ -1,23 +1,25 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# What `cmake --install` and the Debian packages contain.
+# The contents of `cmake --install` and of the Debian packages.
 #
 # keepout_install(TARGET COMPONENT [NOT_PACKAGED] [PUBLIC_PACKAGES ...] [PRIVATE_PACKAGES ...]
 #                 [FIND_SCRIPT file])
-#   installs a library of ours, exported as keepout::COMPONENT for find_package(keepout COMPONENTS
-#   COMPONENT) and as keepout-COMPONENT.pc, with its headers. Call it last in a room's
-#   CMakeLists.txt. Which of our other libraries it needs is read from what it links; its headers are
-#   all that is in its public include directories.
+#   installs a library of keepout, exported as keepout::COMPONENT for find_package(keepout COMPONENTS
+#   COMPONENT) and as keepout-COMPONENT.pc, with its headers. Call it last in a folder's
+#   CMakeLists.txt. Its linked libraries give its dependencies. Its headers are all files in its
+#   public include directories.
 #
-#   PUBLIC_PACKAGES:  what a consumer must find, as "EIGEN@DEBIAN@PC": the arguments of find_package,
+#   PUBLIC_PACKAGES:  packages that a consumer needs, as "EIGEN@DEBIAN@PC": arguments of find_package,
 #                     the Debian package, the module of pkg-config.
-#   PRIVATE_PACKAGES: what a consumer must find only if our library is static, as "FCL@DEBIAN@FLAGS":
-#                     the arguments of find_package, or "-lNAME" for a library without one; the Debian
+#
+#   PRIVATE_PACKAGES: packages that a consumer needs only if the library is static, as
+#                     "FCL@DEBIAN@FLAGS": the arguments of find_package, or "-lNAME"; the Debian
 #                     package; the linker's flags.
-#   FIND_SCRIPT:      is included by a consumer before the target, to make targets of other libraries
-#                     that it links and that no package makes. Appends to _keepout_missing what to do
-#                     if it cannot.
-#   NOT_PACKAGED:     left out of the Debian packages.
+#
+#   FIND_SCRIPT:      a consumer includes it before the target. It makes targets of other libraries
+#                     that no package makes. If it fails, it appends advice to _keepout_missing.
+#
+#   NOT_PACKAGED:     not in the Debian packages.
 #
 # keepout_install_config() installs keepout-config.cmake for all of them; call it once, after them.
 
@@ -34,13 +36,13 @@ endif()
 option(KEEPOUT_PACKAGES "Link what the Debian packages hold; target `packages` makes them"
        ${KEEPOUT_PACKAGES_DEFAULT})
 
-# Before 1.0 a minor version may break what an older one promised: the symbols carry it, so that a
-# program built with another one is refused by the loader instead of going wrong.
+# Before 1.0 a minor version may break compatibility. The symbols contain the version, so the loader
+# rejects a program that was built with another one.
 set(KEEPOUT_SOVERSION ${PROJECT_VERSION_MAJOR})
 set(KEEPOUT_SYMBOLS ${PROJECT_BINARY_DIR}/exported_symbols.map)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/exported_symbols.map.in ${KEEPOUT_SYMBOLS} @ONLY)
 
-# Where the package manager of Debian wants libraries.
+# The folder of libraries in Debian packages.
 set(KEEPOUT_PACKAGE_LIBDIR lib)
 if(CMAKE_LIBRARY_ARCHITECTURE)
   set(KEEPOUT_PACKAGE_LIBDIR lib/${CMAKE_LIBRARY_ARCHITECTURE})
@@ -56,8 +58,8 @@ function(keepout_shared_library target)
   endif()
 endfunction()
 
-# The shared form of a library that was compiled for a static one: of the same objects, which are
-# position-independent, so that packages cost a link and not a build.
+# Makes the shared form of a static library, from the same position-independent objects. So packages
+# need another link, but no build.
 function(keepout_packaged_library target)
   set(twin ${target}_packaged)
   get_target_property(type ${target} TYPE)
@@ -92,14 +94,15 @@ function(keepout_packaged_library target)
   endforeach()
 endfunction()
 
-# The file of pkg-config for a component. `form`: linked, the way the libraries were built, or packaged.
+# Writes the pkg-config file of a component. `form`: linked (as the libraries were built) or
+# packaged.
 function(keepout_pkg_config component form libdir name requires link private file)
   set(KEEPOUT_PC_COMPONENT ${component})
   string(JOIN " " KEEPOUT_PC_REQUIRES ${requires})
   set(KEEPOUT_PC_LIBS "${link}")
   string(JOIN " " KEEPOUT_PC_LIBS_PRIVATE ${private})
   set(KEEPOUT_PC_LIBDIR ${libdir})
-  # From where the file is to the prefix, so that the whole may be moved.
+  # The path from the file to the prefix, so that the installation can be moved.
   file(RELATIVE_PATH KEEPOUT_PC_PREFIX /prefix/${libdir}/pkgconfig /prefix)
   string(REGEX REPLACE "/$" "" KEEPOUT_PC_PREFIX ${KEEPOUT_PC_PREFIX})
   set(path ${PROJECT_BINARY_DIR}/${form}/${name}.pc)
@@ -125,7 +128,7 @@ function(keepout_install target component)
     keepout_shared_library(${target})
     set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN")
   endif()
-  # Paths of this machine stay here.
+  # Paths of this machine are not installed.
   get_target_property(headers ${target} INTERFACE_INCLUDE_DIRECTORIES)
   list(JOIN headers "$<SEMICOLON>" directories)
   set_target_properties(${target} PROPERTIES
@@ -168,7 +171,7 @@ function(keepout_install target component)
     set(name keepout)
   endif()
 
-  # As it was built.
+  # The form as built.
   set(private_packages ${arg_PRIVATE_PACKAGES})
   if(NOT type STREQUAL "STATIC_LIBRARY")
     set(private_packages)
@@ -199,7 +202,7 @@ function(keepout_install target component)
             RENAME keepout-${component}-find.cmake COMPONENT keepout_development)
   endif()
 
-  # As it is packaged.
+  # The packaged form.
   if(NOT KEEPOUT_PACKAGES OR arg_NOT_PACKAGED)
     return()
   endif()
@@ -232,7 +235,7 @@ function(keepout_install target component)
   endif()
 endfunction()
 
-# What keepout-config.cmake is to know of the components of a form, in the order of their needs.
+# Writes the table of a form's components for keepout-config.cmake, each after its dependencies.
 function(keepout_write_config form version_file config_file)
   get_property(KEEPOUT_CONFIG_COMPONENTS GLOBAL PROPERTY KEEPOUT_${form}_COMPONENTS)
   set(KEEPOUT_CONFIG_TABLE)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Libraries that keepout does without: what they bring is left out, and said to be.
+# Optional libraries: without one of them its parts are omitted, with a message.
 
 option(KEEPOUT_WITH_ASSIMP "Time assimp beside our readers: keepout bench --speed" ON)
 option(KEEPOUT_WITH_FCL "Indices and narrow phase of FCL" ON)
@@ -10,11 +10,12 @@ option(KEEPOUT_WITH_CCD "Narrow phase of libccd" ON)
 option(KEEPOUT_WITH_NLOPT "Solvers of NLopt" ON)
 option(KEEPOUT_WITH_OMPL "Validators and a planner for OMPL" ON)
 option(KEEPOUT_WITH_URDF "Reader of robots in URDF" ON)
-# GPL-3: what is linked with it may only be passed on under the GPL. Never in the library.
+# GPL-3: programs that link it may be distributed only under the GPL. Never in the library.
 option(KEEPOUT_WITH_CGAL "Index of CGAL, for tests and benchmarks" OFF)
 
-# keepout_optional(NAME PACKAGE FOUND BRINGS): sets KEEPOUT_HAS_NAME to whether the library is wanted
-# and was found, and says what is missing without it. Call it after looking for the library.
+# keepout_optional(NAME PACKAGE FOUND BRINGS): sets KEEPOUT_HAS_NAME to true if the library is
+# enabled and was found. Otherwise prints the missing parts. Call it after find_package or
+# find_library.
 function(keepout_optional name package found brings)
   set(has OFF)
   if(KEEPOUT_WITH_${name} AND ${found})
@@ -28,9 +29,9 @@ function(keepout_optional name package found brings)
   set(KEEPOUT_HAS_${name} ${has} PARENT_SCOPE)
 endfunction()
 
-# keepout_module(NAME SOURCES... [NOT_INSTALLED] LINKS LIBRARIES...): the shared object that brings parts
-# of another library, and that alone links it: see engine/include/keepout/module.h. Target
-# keepout_modules builds all of them.
+# keepout_module(NAME SOURCES... [NOT_INSTALLED] LINKS LIBRARIES...): makes the shared object with
+# the parts of another library. Only this object links that library: see
+# engine/include/keepout/module.h. The target keepout_modules builds all modules.
 add_custom_target(keepout_modules)
 function(keepout_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "NOT_INSTALLED" "" "LINKS")

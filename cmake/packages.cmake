@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # The Debian packages, by CPack: `cmake --build --preset package` puts them into
-# build/release/packages. They are linked of the objects that were compiled anyway: install.cmake.
+# build/release/packages. They link objects that were compiled already: see install.cmake.
 
 set(library libkeepout${KEEPOUT_SOVERSION})
 set(CPACK_GENERATOR DEB)
@@ -63,7 +63,7 @@ if(BUILD_SHARED_LIBS)
   set(CPACK_DEBIAN_KEEPOUT_PACKAGE_DEPENDS "${library} (= ${full_version})")
 endif()
 
-# Debian's policy wants both files in every package.
+# Debian's policy requires both files in every package.
 find_program(KEEPOUT_GZIP gzip REQUIRED)
 mark_as_advanced(KEEPOUT_GZIP)
 configure_file(${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_BINARY_DIR}/packaged/changelog COPYONLY)

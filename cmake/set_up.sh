@@ -1,7 +1,7 @@
 # Sourced by ./run and ./test: installs what is missing, configures and builds.
 # SPDX-License-Identifier: BSD-3-Clause
 
-# KEEPOUT_QUIET: no notices, only errors.
+# If KEEPOUT_QUIET is set: no notices, only errors.
 say() {
   [ -z "${KEEPOUT_QUIET:-}" ] || return 0
   if [ -t 2 ] && [ -z "${NO_COLOR:-}" ]; then
@@ -12,7 +12,7 @@ say() {
 }
 fail() { printf 'keepout: %s\n' "$*" >&2; exit 1; }
 
-# What another user has built, fetched or written here cannot be gone on with.
+# require_own_checkout: fails if files that another user has built, fetched or written here are not writable.
 require_own_checkout() {
   local path blocked
   blocked=$(
@@ -32,7 +32,7 @@ Otherwise work in a copy of the sources of your own:
 
 # install_packages [LIST [PURPOSE]]: installs the missing Debian packages of cmake/LIST, by default
 # debian_packages.txt. Skips packages for another purpose; for the purpose `first`, all that are not marked so.
-# Needs no network if none is missing. without_asking: fails instead of asking for a password.
+# Needs no network if all are installed. If without_asking is set, fails instead of asking for a password.
 install_packages() {
   local list=${1:-debian_packages.txt} purpose=${2:-}
   command -v apt-get >/dev/null || fail "this needs Debian 12 (apt-get); on another system install

@@ -124,7 +124,7 @@ Registration Registration::mesh_from_robot(const Eigen::Matrix4d& matrix,
     throw Error("registration: the translation is " +
                 text_of(translation.norm() * transform / 1000.0) +
                 " m long, and no robot is so far from what it works on; is its unit " +
-                (units.transform == LengthUnit::metre ? "millimetres?" : "micrometres?"));
+                (units.transform == LengthUnit::metre ? "millimeters?" : "micrometers?"));
   }
   return {rotation, translation * (transform / mesh), robot / mesh};
 }

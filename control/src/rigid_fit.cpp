@@ -148,8 +148,8 @@ RigidFit fit_rigid(std::span<const Vec3> measured, std::span<const Vec3> model,
   }
   if (count < 3) {
     refuse(
-        "a registration needs at least three pairs of points, not in a line, and five or more tell "
-        "how good it is; there are " +
+        "a registration needs at least three pairs of points, not in a line, and five or more "
+        "show how good it is; there are " +
         std::to_string(count));
   }
   check_points(measured, "measured");

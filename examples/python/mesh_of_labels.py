@@ -130,7 +130,7 @@ def read_nrrd(path):
 
 
 def chosen_label(labels, label):
-    """Returns the label to take: the only one that there is, unless it is given."""
+    """Returns the requested label, or the only label of the image."""
     if labels.dtype.kind not in "iuf" or not np.isfinite(labels).all():
         raise Unreadable(f"has voxels that are no labels ({labels.dtype.name}, or NaN)")
     present = np.unique(labels[labels != 0])
@@ -154,7 +154,7 @@ def surface_of(labels, matrix, label, smooth):
     at = [np.flatnonzero(inside.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
     low = np.array([indices[0] for indices in at])
     box = inside[tuple(slice(indices[0], indices[-1] + 1) for indices in at)]
-    border = 2 + int(np.ceil(4 * smooth))  # closes the surface where the label ends with the image
+    border = 2 + int(np.ceil(4 * smooth))  # closes the surface at the border of the image
     values = np.pad(box, border).astype(np.float32)
     if smooth > 0:
         values = gaussian_filter(values, smooth)
@@ -186,11 +186,11 @@ def write_ply(path, vertices, triangles, comments):
 def main():
     parser = argparse.ArgumentParser(description="Makes a mesh of a label map: the surface of one label, in mm.")
     parser.add_argument("labels", type=Path, help="label map, NIfTI (.nii, .nii.gz) or NRRD (.nrrd)")
-    parser.add_argument("mesh", type=Path, help="where to write the mesh, a .ply file")
-    parser.add_argument("--label", type=int, help="the label to take, if there are several")
+    parser.add_argument("mesh", type=Path, help="the mesh file to write (.ply)")
+    parser.add_argument("--label", type=int, help="the label to extract, if there are several")
     parser.add_argument("--space", choices=sorted(SPACES), default="LPS", help="space of the mesh (default LPS)")
     parser.add_argument("--smooth", type=float, default=0.7, metavar="VOXELS",
-                        help="standard deviation of a Gauss filter, which rounds the steps between voxels and moves "
+                        help="standard deviation of a Gaussian filter, which rounds the steps between voxels and moves "
                         "the surface; 0 for none (default 0.7)")  # fmt: skip
     given = parser.parse_args()
     if not 0 <= given.smooth <= 10:

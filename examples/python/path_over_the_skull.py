@@ -65,10 +65,11 @@ print(f"hand inside, tip outside: {np.linalg.norm(hands - ran.tips[:, 1:], axis=
 
 
 # %% A shaded picture of the surface
-# matplotlib has no depth buffer, and would take minutes for half a million triangles. Here is one:
-# each triangle is drawn as points, half a pixel apart, of which the nearest ones stay.
+#
+# matplotlib has no depth buffer, and would take minutes for half a million triangles. This is a
+# simple depth buffer: it draws each triangle as points half a pixel apart, and keeps the nearest.
 def camera(azimuth, elevation):
-    """Rows: right, up and towards the viewer, for an eye that looks at the centre."""
+    """Returns the rows right, up and towards the viewer, for an eye that looks at the center."""
     a, e = np.radians([azimuth, elevation])
     towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
     right = np.array([-np.sin(a), np.cos(a), 0.0])
@@ -76,7 +77,7 @@ def camera(azimuth, elevation):
 
 
 def pixels(points, view, scale, width):
-    """Column, row and depth of points as they are seen, without perspective."""
+    """Returns column, row and depth of points in the picture, without perspective."""
     seen = (points - centre) @ view.T
     return (
         np.round(width / 2 + scale * seen[:, 0]).astype(int),
@@ -86,7 +87,7 @@ def pixels(points, view, scale, width):
 
 
 def samples(scale):
-    """Points spread over the triangles, no farther than half a pixel apart, and whose they are."""
+    """Returns points on the triangles, at most half a pixel apart, and the triangle of each point."""
     corners = mesh.vertices[mesh.triangles]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     parts = np.maximum(1, np.ceil(2.0 * scale * longest)).astype(int)
@@ -101,14 +102,14 @@ def samples(scale):
 
 
 def render(view, scale, width):
-    """Depth and shade of what is in front: (width, width) each; -inf and nan where nothing is."""
+    """Returns depth and shade of the nearest points, (width, width) each; -inf and nan for empty pixels."""
     depth = np.full(width * width, -np.inf)
     front = np.full(width * width, -1)
     for points, triangles in samples(scale):
         column, row, z = pixels(points, view, scale, width)
         inside = (column >= 0) & (column < width) & (row >= 0) & (row < width)
         at, z, triangles = (row * width + column)[inside], z[inside], triangles[inside]
-        order = np.argsort(z)  # of those on one pixel, the last one written is the nearest
+        order = np.argsort(z)  # the last point written on a pixel is the nearest
         at, z, triangles = at[order], z[order], triangles[order]
         nearer = z > depth[at]
         depth[at[nearer]], front[at[nearer]] = z[nearer], triangles[nearer]
@@ -121,7 +122,7 @@ def render(view, scale, width):
     return image, shade
 
 
-# %% The picture: bone, paths in front of it, and below, how far the tips are from the bone
+# %% The picture: bone, paths in front of it, and below, the distance of the tips from the bone
 width = options.size // 2
 scale = 0.90 * width / np.linalg.norm(size) * 1.15
 bone = np.array([0.96, 0.92, 0.84])
@@ -138,12 +139,12 @@ for place, (title, azimuth, elevation) in enumerate(
     seen = np.isfinite(depth)
     picture[seen] = np.clip(bone * shade[seen][:, None], 0, 1)
     axes.imshow(picture, interpolation="bilinear")
-    # The lines and their cut: what is behind the bone is not drawn.
+    # Draws the lines, except the parts behind the bone.
     for loop, colour in enumerate(colours):
         column, row, z = pixels(ran.tips[loop], view, scale, width)
         within = (column >= 0) & (column < width) & (row >= 0) & (row < width)
         behind = np.ones(len(z), bool)
-        # In front of the bone, or no deeper than a pixel's slope makes of it.
+        # In front of the bone, with a tolerance for the slope within a pixel.
         known = depth[row[within], column[within]]
         behind[within] = z[within] < np.nan_to_num(known, nan=-np.inf) - 1.0
         line = np.stack([column, row], axis=1).astype(float)

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The report of a joint cycle: the limits and guides that kept a motion from being the commanded
-// one.
+// The report of a joint cycle: why a motion is not the commanded one, by limits and guides.
 #include "joint_cycle.h"
 
 namespace keepout {
@@ -63,7 +62,7 @@ void JointCycle::report_guides(const Trial& best, bool is_cut, InstrumentStep& r
   }
 }
 
-/// Reports the limits that kept the motion from being the commanded one. `is_cut`: as above.
+/// Reports the limits: the causes why the motion is not the commanded one. `is_cut`: as above.
 void JointCycle::report_limits(const Trial& best, bool is_cut, InstrumentStep& result) noexcept {
   const Status status = result.status;
   if (status == Status::free) return;

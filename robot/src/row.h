@@ -27,9 +27,8 @@ struct CorePoint {
   Vec3 on_link = Vec3::Zero();  // of a blade: in the link's frame [length]
 };
 
-/// A linear constraint on the joints' increment that limits a point of a body by a plane with one
-/// triangle behind it, or a guide by a plane that touches its region. It
-/// demands
+/// A linear constraint on the joints' increment. It limits a point of a body by a plane with one
+/// triangle behind it, or a guide by a plane that touches its region. It demands
 ///
 ///     gradient . dq >= bound + correction - drift,
 ///
