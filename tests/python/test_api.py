@@ -356,3 +356,14 @@ def test_what_a_file_has_to_say_is_a_warning(tmp_path):
         with pytest.raises(UserWarning):
             keepout.load_mesh(path)
         assert keepout.load_mesh(path, space="LPS").warnings == []
+
+
+def test_former_names_warn_and_have_the_same_value(mesh):
+    guard = keepout.InstrumentGuard(mesh, keepout.free_ball(0.1), margin=0.2)
+    proof = guard.prove([0.0, 0.0, 15.0], [0.1, 0.0, 0.0])
+    with pytest.warns(DeprecationWarning, match="MotionProof.share is now fraction"):
+        assert proof.share == proof.fraction
+    with pytest.warns(DeprecationWarning, match="max_looks is now max_work_units"):
+        limited = keepout.InstrumentGuard(guard.index, keepout.free_ball(0.1), max_looks=1000)
+    assert limited.max_work_units == 1000
+    assert Status["fallback"] is Status.truncated and Status["yielding"] is Status.degraded
