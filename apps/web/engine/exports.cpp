@@ -155,9 +155,9 @@ val drawn(const keepout::Guide& guide) {
                 "direction", list(region.direction()), "radius", region.radius());
 }
 
-/// Returns the constant properties of a tool: the count of numbers of a position, the curvature
-/// allowance [mm], the period of a cycle [s], and name and radius [mm] of each body. Also returns
-/// the link of the last body's end and its position in the link's frame, and the guides.
+/// Returns the constant properties of a tool. They are the count of numbers of a position, the
+/// curvature allowance [mm], the period of a cycle [s], and names and radii of bodies [mm]. Also
+/// returns the link of the last body's end and its position in the link's frame, and the guides.
 val facts(const Tool& tool) {
   const auto body = [](const keepout::Body& each) {
     return object("name", each.name, "radius", each.radius);
