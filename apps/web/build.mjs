@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Bundles the pages of keepout, each into one file, all but what the command puts in: the anatomy of
- * `keepout live`, and the records of reports. apps/web/build calls it. From the environment:
- *   KEEPOUT_PAGES  the folder to write to
- *   KEEPOUT_WASM   the folder with keepout.mjs and keepout.wasm, of the CMake preset wasm; without
- *                  it only the reports are made, which have no engine in them
+ * Bundles each page of keepout into one file. Only the data of the command is missing: the anatomy
+ * of `keepout live`, and the records of reports. apps/web/build calls this script. Environment:
+ *   KEEPOUT_PAGES  the directory to write to
+ *   KEEPOUT_WASM   the directory with keepout.mjs and keepout.wasm, of the CMake preset wasm; if
+ *   unset, only the reports are made, which contain no engine
  */
 import { readFile, writeFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
@@ -19,7 +19,7 @@ if (!pages) {
 }
 const here = fileURLToPath(new URL(".", import.meta.url));
 
-/** What esbuild makes of an entry: the text of the bundle, and the packages that are in it. */
+/** Returns the text of esbuild's bundle of an entry, and the packages in it. */
 async function bundle(entry, modules = {}) {
   const { outputFiles, metafile } = await build({
     entryPoints: [join(here, "src", entry)],
@@ -44,13 +44,16 @@ async function bundle(entry, modules = {}) {
   return { text: outputFiles[0].text, packages };
 }
 
-/** A script element; nothing in it ends it. */
+/** Returns a script element. No text in it can end the element. */
 function script(type, id, text) {
   const name = id === "" ? "" : ` id="${id}"`;
   return `<script type="${type}"${name}>${text.replaceAll(/<\/(script)/gi, "<\\/$1")}</script>`;
 }
 
-/** Whose work the page holds, and under which terms: each of these once, after those it is for. */
+/**
+ * Returns the licenses of the code in the page. Each appears once, after the packages that it
+ * covers.
+ */
 async function licences(own, packages) {
   const holders = new Map();
   for (const folder of [...new Set(packages)].sort()) {
@@ -67,7 +70,7 @@ async function licences(own, packages) {
   return [own, await readFile(join(here, "../../LICENSE"), "utf8"), ...theirs].join("\n");
 }
 
-/** Writes a page: HTML and style of its folder, licences, and scripts, which are of these bundles. */
+/** Writes a page: HTML and style of its folder, licenses, and the scripts of these bundles. */
 async function writePage(name, folder, own, scripts, bundles) {
   const style = await bundle(`${folder}/page.css`);
   const packages = [style, ...bundles].flatMap((one) => one.packages);

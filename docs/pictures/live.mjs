@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Takes docs/pictures/live.jpg: the page of `keepout live` with the brain, whose licence allows it, while
+ * Takes docs/pictures/live.jpg: the page of `keepout live` with the brain, whose license allows it, while
  * a mouse drags the hand into it.
  *
  *   apps/web/build tests && KEEPOUT_WEB=build/web node docs/pictures/live.mjs KEEPOUT [BROWSER]

@@ -38,7 +38,7 @@ def projected(y, planes):
 
 # --- keepout --------------------------------------------------------------------------------------
 
-# Steps are made off the rows of vertices, so that the tip meets faces, as it would on anatomy.
+# Steps are between the rows of vertices, so that the tip meets faces, as it would on anatomy.
 HEIGHT = 0.017
 
 
@@ -49,7 +49,7 @@ def split(profile, piece):
 
 
 def prism(points, piece, half=9.0):
-    """Returns the mesh of a profile drawn out along the third axis, from -half to half. Its normals point to the
+    """Returns the mesh of a profile extruded along the third axis, from -half to half. Its normals point to the
     left of the profile."""
     heights = np.linspace(-half, half, round(2 * half / piece) + 1)
     flat = np.repeat(points, len(heights))
@@ -79,7 +79,7 @@ def step(mesh, tip, y, **options):
 
 
 def closed_loop(mesh, start, goals, max_step, **options):
-    """Returns the places of a tip that follows a goal in each cycle, from its start on."""
+    """Returns the positions of a tip that follows one goal in each cycle, including its start."""
     lifted = lambda points: np.stack([np.real(points), np.imag(points), np.full(len(points), HEIGHT)], axis=1)
     guard = keepout.MotionConstraint(mesh, **options)
     tips = guard.simulate(lifted([start]), [lifted(goals)], max_step=max_step).tips[0]
@@ -252,7 +252,7 @@ class Section:
         self.picture.put(f'<circle class="{style}" cx="{at.real:.1f}" cy="{at.imag:.1f}" r="{radius}"/>')
 
     def arrow(self, a, b, color, width, shaft_to=1.0, begin=0.0, head=True):
-        """From a to b; the shaft may begin and end on the way."""
+        """Draws an arrow from a to b; the shaft may cover only a part of it."""
         a, b = self.at(a), self.at(b)
         u = unit(b - a)
         long, wide = 7 + 2.6 * width, 2.5 + 1.35 * width
@@ -264,8 +264,8 @@ class Section:
             self.picture.put(f'<path class="{color}-f" d="M{corners}Z"/>')
 
     def plane(self, tip, plane, span, style, ticks=True):
-        """A line where normal . (p - tip) = offset; short strokes on the side that is not allowed.
-        span: from where to where along it, in mm from the foot of the tip."""
+        """Draws a line where normal . (p - tip) = offset, with short strokes on the forbidden side.
+        span: its two ends along the line, in mm from the foot of the tip."""
         self.path([self.along(tip, plane, s) for s in span], f"line {style}")
         if not ticks:
             return
@@ -289,7 +289,7 @@ class Section:
         self.picture.put(f'<path class="leader" d="M{xy(a)}L{xy(self.at(b))}"/>')
 
     def gap(self, a, b):
-        """A distance, with an arrow at both ends."""
+        """Draws a distance, with an arrow at both ends."""
         a, b = self.at(a), self.at(b)
         u = unit(b - a)
         d = f"M{xy(a)}L{xy(b)}" + "".join(f"M{xy(p)}L{xy(p + w * u)}" for p, ends in (

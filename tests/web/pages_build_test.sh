@@ -141,7 +141,7 @@ for name in bash cat cmp cp dirname env find grep id ln mkdir mv rm rmdir stat; 
 done
 PATH=$work/few
 run fails live
-says "are made with npm, which is not here"
+says "need npm, which is not installed"
 run well inspect cube
 run well simulate cube
 says "going on: reports will be plain"

@@ -23,16 +23,16 @@ struct Anatomy {
       : Anatomy(keepout::LoadedMesh{
             .mesh = std::make_shared<const keepout::Mesh>(std::move(surface))}) {}
 
-  /// Returns a constraint on it.
+  /// Returns a motion constraint on the mesh.
   keepout::MotionConstraint guard(const keepout::MotionConstraintSettings& settings) const {
     return make_motion_constraint(mesh, index, settings);
   }
 
-  /// Returns the distance from a place to the nearest triangle, below 0 inside a watertight mesh,
-  /// NaN if it is unknown. [mm]
+  /// Returns the distance from a position to the nearest triangle; below 0 inside a watertight
+  /// mesh, NaN if it is unknown. [mm]
   double clearance(double x, double y, double z) try {
     if (!probe) {
-      // The probe retreats from no depth: the winding number alone decides about the inside.
+      // The probe has no retreat, so the winding number alone decides if a position is inside.
       const double size = mesh->bounds().size().norm();
       probe = std::make_unique<keepout::MotionConstraint>(
           guard({.options = {.radius = 1e-3 * size,

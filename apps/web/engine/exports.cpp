@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The interface of keepout to a web page, bound by Embind: the page makes anatomy of a surface, a
-// file or a shape, and tools on anatomy, with the parts and in the way of the command. A function
-// that fails throws a JavaScript Error. src/engine/keepout.ts declares the same for TypeScript.
+// The interface of keepout to a web page, bound by Embind. The page makes anatomy from a surface, a
+// file or a shape, and tools on anatomy, with the same parts as the command. A function that fails
+// throws a JavaScript Error. src/engine/keepout.ts declares this interface for TypeScript.
 #include <emscripten/bind.h>
 
 #include <algorithm>
@@ -35,7 +35,8 @@ using emscripten::typed_memory_view;
 using emscripten::val;
 using keepout::Vec3;
 
-/// Returns what make() returns. Throws a JavaScript Error with the message of what make() throws.
+/// Returns the result of make(). Converts its exceptions into a JavaScript Error with the same
+/// message.
 auto or_error(const auto& make) {
   std::string message;
   try {
@@ -58,7 +59,7 @@ val value(const T& of) {
   }
 }
 
-/// Returns a JavaScript array of what `item` makes of each.
+/// Returns a JavaScript array of the results of `item`.
 val list(const auto& range, const auto& item) {
   val all = val::array();
   for (const auto& each : range) all.call<void>("push", item(each));
@@ -68,7 +69,7 @@ val list(const auto& range) {
   return list(range, [](const auto& each) { return value(each); });
 }
 
-/// Returns a JavaScript object of names and members in turn.
+/// Returns a JavaScript object; arguments are names and members in turn.
 val object(const auto&... names_and_members) {
   val made = val::object();
   const auto fill = [&](const auto& self, const char* name, const auto& member,
@@ -80,13 +81,13 @@ val object(const auto&... names_and_members) {
   return made;
 }
 
-/// Returns memory that holds triples of numbers as a typed array.
+/// Returns memory with triples of numbers as a typed array.
 val view(const auto& triples) {
   return val(typed_memory_view(3 * triples.size(), triples.data()->data()));
 }
 
-/// Anatomy of a surface whose equal vertices are one already: vertices (n, 3) in mm, and corners
-/// (m, 3), as typed arrays. They are copied.
+/// Returns the anatomy of a surface without duplicate vertices: vertices (n, 3) in mm, and corners
+/// (m, 3), as typed arrays, which are copied.
 Anatomy* anatomy_of_surface(const val& vertices, const val& corners) {
   return or_error([&] {
     keepout::Surface surface;
@@ -98,8 +99,8 @@ Anatomy* anatomy_of_surface(const val& vertices, const val& corners) {
   });
 }
 
-/// Anatomy of the bytes of a mesh file, whose name tells the format: STL, PLY, OBJ, OFF or VTK, in
-/// mm.
+/// Returns the anatomy of the bytes of a mesh file, whose name states the format: STL, PLY, OBJ,
+/// OFF or VTK, in mm.
 Anatomy* anatomy_of_file(const std::string& name, const val& content) {
   return or_error([&] {
     const auto bytes = emscripten::convertJSArrayToNumberVector<std::uint8_t>(content);
@@ -113,7 +114,7 @@ Anatomy* anatomy_of_file(const std::string& name, const val& content) {
   });
 }
 
-/// Anatomy of a generated shape: shapes() has the names.
+/// Returns the anatomy of a generated shape; shapes() returns the names.
 Anatomy* anatomy_of_shape(const std::string& name) {
   return or_error([&] { return new Anatomy(keepout::make_shape(name)); });
 }
@@ -127,7 +128,7 @@ val surface(const Anatomy& anatomy) {
 }
 
 /// Returns the facts of the mesh: watertight, size, the warnings of its file, and the findings of
-/// `keepout inspect` but for self-intersections, the worst first.
+/// `keepout inspect` except self-intersections, the worst first.
 val findings(const Anatomy& anatomy) {
   return or_error([&] {
     const keepout::MeshFindings mesh = examine(*anatomy.mesh);
@@ -154,9 +155,9 @@ val drawn(const keepout::Guide& guide) {
                 "direction", list(region.direction()), "radius", region.radius());
 }
 
-/// Returns the numbers of a position, the allowance for curvature [mm], the period of a cycle [s],
-/// name and radius [mm] of each body, the link and the place of the last body's end in its frame,
-/// and the guides.
+/// Returns the constant properties of a tool. They are the count of numbers of a position, the
+/// curvature allowance [mm], the period of a cycle [s], and names and radii of bodies [mm]. Also
+/// returns the link of the last body's end and its position in the link's frame, and the guides.
 val facts(const Tool& tool) {
   const auto body = [](const keepout::Body& each) {
     return object("name", each.name, "radius", each.radius);
@@ -168,7 +169,8 @@ val facts(const Tool& tool) {
                 list(end.position), "guides", list(tool.guides, drawn));
 }
 
-/// Returns the numbers of the last cycle as they lie in memory, a view until the next call.
+/// Returns the numbers of the last cycle in their memory layout, as a view that is valid until the
+/// next call.
 val last(const Tool& tool) {
   static_assert(sizeof(Cycle) == 8 * (42 + 6 * keepout::Instrument::most_bodies));
   return val(typed_memory_view(42 + 6 * tool.bodies.size(), tool.cycle.positions));
@@ -195,7 +197,7 @@ val step(Tool& tool, double x, double y, double z, double u, double v, double w)
   return last(tool);
 }
 
-/// Returns all planes of the last step of a tip, from the tip before it.
+/// Returns all planes of the last step of a tip, relative to the tip before it.
 val planes(const Tool& tool) {
   std::uint32_t number = 0;
   return list(tool.planes, [&](const keepout::HalfSpace& plane) {
@@ -205,8 +207,8 @@ val planes(const Tool& tool) {
   });
 }
 
-/// Returns all statuses by number: name, and reason, one line on what it means and what to do about
-/// it. `subject`: "tip" or "instrument".
+/// Returns all statuses by number: name, and a line on what it means and what to do. `subject`:
+/// "tip" or "instrument".
 val statuses(const std::string& subject) {
   const auto of = subject == "tip" ? keepout::Subject::tip : keepout::Subject::instrument;
   val all = val::array();

@@ -33,7 +33,7 @@ std::vector<keepout::Guide> guides_of(const val& settings) {
   return guides;
 }
 
-/// Writes what a step reports of the mesh and its guides.
+/// Writes the limits that a step reports, for mesh and guides.
 void show_limits(const auto& step, Cycle& cycle) noexcept {
   const std::span<const keepout::GuideState> states = step.guides;
   cycle.by_mesh = step.limits.has(keepout::Limit::mesh) ? 1.0 : 0.0;
@@ -115,7 +115,8 @@ struct Tip final : Tool {
   }
 
   Anatomy& anatomy;
-  std::optional<keepout::MotionConstraint> constraint;  // empty: the tip follows the hand anywhere
+  // Empty: the tip follows the hand without a guard.
+  std::optional<keepout::MotionConstraint> constraint;
   keepout::SpringDamper spring;
   double max_step;
   Vec3 tip = Vec3::Zero();
@@ -124,7 +125,7 @@ struct Tip final : Tool {
 /// The largest rotation of the flange in a cycle. [rad]
 constexpr double max_turn = 0.02;
 
-/// The instrument of a robot, whose link 0 is at a base: a place, and the rows of a rotation.
+/// Returns the instrument of a robot whose link 0 is at a base: a position, and rows of a rotation.
 keepout::Instrument instrument_at(const val& port) {
   using Rows = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
   const auto robot = port["robot"].as<std::string>();
@@ -195,7 +196,7 @@ struct Instrument final : Tool {
     show_bodies();
   }
 
-  /// To a twentieth of a millimeter, or a hundredth of the distance.
+  /// Accurate to a twentieth of a millimeter, or a hundredth of the distance.
   double clearance(std::size_t body) override try {
     const double* const core = cycle.cores + 6 * body;
     return distance_along(nearest, Vec3(core), Vec3(core + 3),
@@ -205,7 +206,7 @@ struct Instrument final : Tool {
     return std::numeric_limits<double>::quiet_NaN();
   }
 
-  /// Writes where flange and bodies are.
+  /// Writes the poses of flange and bodies.
   void show_bodies() noexcept {
     keepout::ChainState state;
     constraint.instrument().chain().forward_kinematics(joints, state);

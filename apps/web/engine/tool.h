@@ -18,17 +18,19 @@
 /// Result of a control cycle: doubles in this order, which src/engine/keepout.ts reads.
 struct Cycle {
   double positions[8];  // after the cycle: of a tip [mm], or of the joints [rad or mm]
-  double motion[8];     // their increment in the cycle
-  double asked[6];      // of a tip: the hand's place [mm]; of a flange: motion [mm], rotation [rad]
-  double flange[7];     // what the hand leads, after the cycle: place and quaternion i, j, k, w
-  double force[3];      // of the spring between hand and tip, on the hand [N]
-  // From the tip, or the nearest body, before the cycle to the surface; NaN if unknown. [mm]
+  double motion[8];     // increment of the positions in the cycle
+  double asked[6];  // of a tip: position of the hand [mm]; of a flange: motion [mm], rotation [rad]
+  double
+      flange[7];  // pose that follows the hand, after the cycle: position and quaternion i, j, k, w
+  double force[3];  // of the spring between hand and tip, on the hand [N]
+  // Distance of the tip, or the nearest body, from the surface before the cycle; NaN if unknown.
+  // [mm]
   double distance = std::numeric_limits<double>::quiet_NaN();
   double status;        // a number of statuses()
   double held;          // planes or rows that limit the motion
   double rounds;        // judged trial motions of an instrument
   double nearest = -1;  // number of the nearest body; -1: unknown
-  double triangles;     // that the step of a tip rests on
+  double triangles;     // examined by the step of a tip
   double plane_count;
   double by_mesh;  // 1 if the clearance from the mesh limits the motion
   double guides;   // bit g is set if guide g limits the motion
@@ -38,30 +40,32 @@ struct Cycle {
   double cores[6 * keepout::Instrument::most_bodies];  // both ends of each body, after the cycle
 };
 
-/// A tool that a hand leads and keepout constrains: the ball of a tip, or a whole instrument.
+/// A tool that follows a hand and that keepout constrains: the ball of a tip, or an instrument.
 struct Tool {
   virtual ~Tool() = default;
-  /// Puts the tip or the joints there, and forgets the past.
+  /// Sets the position of the tip or the joints, and resets all state.
   virtual void place(std::span<const double> positions) = 0;
-  /// One control cycle towards the hand, whose orientation a tip ignores.
+  /// Runs one control cycle towards the hand. A tip ignores the orientation.
   virtual void follow(const keepout::Vec3& hand, const Eigen::Quaterniond& turn) = 0;
-  /// One step: of a tip from a place by an increment, of an instrument by a twist of the flange,
-  /// its linear and its angular part.
+  /// Runs one step: of a tip from a position by an increment, of an instrument by a twist of the
+  /// flange, which is its linear and its angular part.
   virtual void step(const keepout::Vec3& first, const keepout::Vec3& second) = 0;
-  /// Returns the distance from the surface of a body to the mesh, NaN if it is unknown. [mm]
+  /// Returns the distance from the surface of a body to the mesh; NaN if it is unknown. [mm]
   virtual double clearance(std::size_t body) = 0;
 
   std::size_t positions = 3;  // numbers of a position
   std::size_t asked = 3;      // numbers of Cycle::asked
-  double band = 0.0;          // allowance for curvature [mm]
+  double band = 0.0;          // curvature allowance [mm]
   double period = 0.001;      // of a cycle [s]
   std::vector<keepout::Body> bodies;
   std::vector<keepout::Guide> guides;
   Cycle cycle = {};
-  std::span<const keepout::HalfSpace> planes;  // of the last step of a tip, from the tip before it
-  std::span<const std::uint32_t> active;       // numbers of those that limit its motion
+  std::span<const keepout::HalfSpace>
+      planes;  // of the last step of a tip, relative to the tip before it
+  std::span<const std::uint32_t> active;  // numbers of the planes that limit its motion
 };
 
-/// Makes a tool with the settings that src/engine/keepout.ts declares: the instrument of a robot at
-/// a port; without a port, the ball of a tip at the origin under a rule. Throws Error.
+/// Makes a tool with the settings that src/engine/keepout.ts declares. With a port it is the
+/// instrument of a robot; without, it is the ball of a tip at the origin, with a rule. Throws
+/// Error.
 std::unique_ptr<Tool> make_tool(Anatomy& anatomy, const emscripten::val& settings);

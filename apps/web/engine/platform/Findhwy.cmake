@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Libraries of which the headers do, as no code is chosen while the program runs: there is one
-# instruction set. Highway, and xxhash, which the engine links by the name that toolchain.cmake gives.
+# Highway and xxhash, of which the headers are enough: with one instruction set there is no dispatch at
+# run time. The engine links xxhash by the name that toolchain.cmake gives.
 
 set(hwy_FOUND TRUE)
 if(TARGET hwy::hwy)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the C library of emscripten declares and has not.
+// Defines a function that the C library of emscripten only declares.
 #include <sys/mman.h>
 
-/// Advice on how memory will be used: nobody there takes any, and nobody has to.
+/// Ignores the advice on the use of memory, which is optional.
 extern "C" int madvise(void*, size_t, int) { return 0; }

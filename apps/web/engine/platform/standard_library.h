@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What keepout uses of C++20 and libc++ 13, which emscripten brings, has not: included before each
-// source, so that the sources need not know. Nothing here is more than keepout asks for.
+// The parts of C++20 that keepout uses and emscripten's libc++ 13 lacks. The compiler includes this
+// header before each source, so that the sources need not depend on it. Nothing here is more than
+// keepout asks for.
 #pragma once
 
 #include <version>
@@ -86,7 +87,7 @@ requires is_floating_point_v<Number> from_chars_result from_chars(const char* fi
     }
   }
   if (digits == 0) {
-    // Infinite, or no number, in any case of letters.
+    // Accepts infinity and NaN, in upper or lower case.
     end = text.size();
     if (sign == end || (text[sign] | 0x20) < 'i' || (text[sign] | 0x20) > 'n') {
       return {first, errc::invalid_argument};
@@ -109,7 +110,7 @@ requires is_floating_point_v<Number> from_chars_result from_chars(const char* fi
   }
   const size_t length = static_cast<size_t>(behind - numeral.c_str());
   if (length == 0) return {first, errc::invalid_argument};
-  // What is less than the least normal number is no error, unless it is lost altogether.
+  // A subnormal result is not an error, but underflow to zero is.
   const bool is_lost = errno == ERANGE && (isinf(read) || read == Number(0));
   if (is_lost) return {first + length, errc::result_out_of_range};
   value = read;

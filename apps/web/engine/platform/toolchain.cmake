@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# keepout for a web page: WebAssembly by Debian's emscripten (clang 14, libc++ 13), whose steps are
-# those of the native library, bit for bit. Findhwy.cmake has the libraries.
+# keepout for a web page: WebAssembly by Debian's emscripten (clang 14, libc++ 13). Its steps are
+# bitwise identical to those of the native library. Findhwy.cmake has the libraries.
 
 find_program(KEEPOUT_EMSCRIPTEN em++ REQUIRED)
 mark_as_advanced(KEEPOUT_EMSCRIPTEN)
@@ -12,7 +12,7 @@ find_file(KEEPOUT_EMSCRIPTEN_TOOLCHAIN cmake/Modules/Platform/Emscripten.cmake R
 mark_as_advanced(KEEPOUT_EMSCRIPTEN_TOOLCHAIN)
 include(${KEEPOUT_EMSCRIPTEN_TOOLCHAIN})
 
-# Of the system's headers only those that are for every machine.
+# Only the system's headers that are independent of the machine.
 set(KEEPOUT_PLATFORM_HEADERS ${CMAKE_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${KEEPOUT_PLATFORM_HEADERS})
 foreach(header hwy xxhash.h)
@@ -25,12 +25,12 @@ find_path(Eigen3_DIR Eigen3Config.cmake REQUIRED NO_CMAKE_FIND_ROOT_PATH
           PATHS /usr/share/eigen3/cmake)
 set(KEEPOUT_XXHASH_INCLUDE_DIR ${KEEPOUT_PLATFORM_HEADERS} CACHE PATH "")
 set(KEEPOUT_XXHASH_LIBRARY keepout_inlined_xxhash CACHE STRING "")
-# The C library has the functions, but never a thread: shared memory needs headers that a file has not.
+# The C library has the functions, but no threads: shared memory needs HTTP headers, which a file lacks.
 set(CMAKE_HAVE_LIBC_PTHREAD ON CACHE INTERNAL "")
 
-# Eigen adds in another order without packets: it has to take those of SSE2, which emscripten turns
-# into WebAssembly's. It asks for MMX, which there is none of, and needs none of it; and it takes
-# assembly for x86 unless the compiler says to be a newer GCC than clang says by itself.
+# Without packets, Eigen adds in another order. It must therefore use those of SSE2, which emscripten
+# translates. It includes MMX's header without using it, so an empty one is enough. It uses assembly
+# for x86 unless the compiler claims to be a newer GCC than clang does by default.
 file(CONFIGURE OUTPUT ${KEEPOUT_PLATFORM_HEADERS}/mmintrin.h CONTENT "")
 string(JOIN " " CMAKE_CXX_FLAGS_INIT
   -msimd128 -msse2 -fgnuc-version=5.13 -isystem ${KEEPOUT_PLATFORM_HEADERS}

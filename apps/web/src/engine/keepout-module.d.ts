@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What emscripten makes: build/wasm/keepout.mjs. */
+/** The module that emscripten makes: build/wasm/keepout.mjs. */
 declare module "keepout-module" {
   const makeModule: import("./keepout.ts").ModuleFactory;
   export default makeModule;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * keepout itself, compiled to WebAssembly: apps/web/engine/exports.cpp says what each function does,
- * tool.h there what the numbers of a tool and of a cycle are. Lengths are in mm, forces in N,
- * coordinates in the frame of the mesh. A function that fails throws an Error with keepout's message.
+ * keepout itself, compiled to WebAssembly. apps/web/engine/exports.cpp documents the functions, and
+ * tool.h the numbers of a tool and of a cycle. Lengths are in mm, forces in N, coordinates in the
+ * frame of the mesh. A function that fails throws an Error with keepout's message.
  */
 
 export type Vec3 = readonly [x: number, y: number, z: number];
 
-/** The engine, as emscripten makes it of build/wasm/keepout.mjs. */
+/** The engine that emscripten makes: build/wasm/keepout.mjs. */
 export interface Keepout {
   shapes(): string[];
   statuses(subject: Subject): StatusWords[];
@@ -21,17 +21,17 @@ export interface Keepout {
   ): EngineTool;
 }
 
-/** What emscripten's loader makes an engine of: build/wasm/keepout.mjs. */
+/** Emscripten's loader, which creates the engine: build/wasm/keepout.mjs. */
 export type ModuleFactory = (options: {
   wasmBinary: Uint8Array;
   locateFile: (name: string) => string;
 }) => Promise<Keepout>;
 
-/** Loads the engine from its binary: no file is looked for. */
+/** Loads the engine from its binary; reads no file. */
 export const loadKeepout = (make: ModuleFactory, wasmBinary: Uint8Array): Promise<Keepout> =>
   make({ wasmBinary, locateFile: (name) => name });
 
-/** A mesh and its index, which all tools on it share: they are deleted before it. */
+/** A mesh and its index, which all tools on it share. Tools must be deleted first. */
 export interface Anatomy {
   surface(): { vertices: Float64Array; corners: Uint32Array };
   findings(): Findings;
@@ -57,7 +57,7 @@ export interface Counterexample {
   readonly radius: number;
 }
 
-/** A status in words. */
+/** The texts of a status. */
 export interface StatusWords {
   readonly name: string;
   readonly reason: string;
@@ -66,25 +66,25 @@ export interface StatusWords {
 /** The ball of a tip, or a whole instrument. */
 export type Subject = "tip" | "instrument";
 
-/** The rule that keeps a tip out; with "none" it goes wherever the hand leads. */
+/** The activation rule of a tip; with "none" the tip follows the hand anywhere. */
 export type Rule = "none" | "all_faces" | "paper" | "certified";
 
-/** Settings of a tool; rule and both radii are of a tip only. */
+/** Settings of a tool. A rule and both radii apply to a tip only. */
 export interface ToolSettings {
   readonly rule: Rule;
-  /** Of the motion sphere: the longest motion of the tip in a cycle. [mm] */
+  /** Radius of the motion sphere: the longest motion of the tip in a cycle. [mm] */
   readonly radius: number;
-  /** Of the ball around the tip. [mm] */
+  /** Radius of the ball around the tip. [mm] */
   readonly toolRadius: number;
-  /** Distance to keep beyond that. [mm] */
+  /** Clearance beyond the radius. [mm] */
   readonly margin: number;
-  /** The longest motion that a cycle asks for. [mm] */
+  /** The longest desired motion of a cycle. [mm] */
   readonly maxStep: number;
   /** Texts of guidance constraints, as `--guide` takes them. A tip has them only under a rule. */
   readonly guides: readonly string[];
 }
 
-/** The robot of an instrument, and its link 0: place, and rows of the rotation (12). */
+/** The robot of an instrument, and its link 0: position, and rows of the rotation (12). */
 export interface Port {
   readonly robot: string;
   readonly base: readonly number[];
@@ -93,19 +93,19 @@ export interface Port {
 /** The spring between hand and tip. */
 export const spring = { stiffness: 1 /* N/mm */, largestForce: 4 /* N */ } as const;
 
-/** A place and an orientation. */
+/** A position and an orientation. */
 export interface Frame {
   readonly place: Vec3; // [mm]
   readonly turn: readonly [x: number, y: number, z: number, w: number]; // a unit quaternion
 }
 
-/** The orientation of the hand that leads a tip. */
+/** The orientation of the hand that moves a tip. */
 export const unturned: Frame["turn"] = [0, 0, 0, 1];
 
-/** A guidance constraint: something stays in a region. */
+/** A guidance constraint. */
 export interface Guide {
   readonly name: string;
-  /** It bounds a direction, and its region is of unit vectors: it is not drawn. */
+  /** True if it bounds a direction: then its region contains unit vectors, and is not drawn. */
   readonly isAngular: boolean;
   readonly kind: "half_space" | "slab" | "tube" | "ball";
   readonly origin: Vec3; // [mm]
@@ -113,20 +113,20 @@ export interface Guide {
   readonly radius: number; // [mm]
 }
 
-/** Facts of a tool that stay the same. */
+/** The constant properties of a tool. */
 export interface ToolFacts {
   readonly positions: number;
   readonly asked: number;
   readonly band: number; // [mm]
   readonly period: number; // [s]
   readonly bodies: readonly { readonly name: string; readonly radius: number }[];
-  /** The end of the last body: its link, and its place in the frame of that. [mm] */
+  /** The end of the last body: its link, and its position in the link's frame. [mm] */
   readonly link: number;
   readonly end: Vec3;
   readonly guides: readonly Guide[];
 }
 
-/** A half-space {u : normal . u >= offset} of allowed increments, and the triangle it is of. */
+/** A half-space {u : normal . u >= offset} of allowed increments, and its triangle. */
 export interface Plane {
   readonly normal: Vec3;
   readonly offset: number;
@@ -148,16 +148,19 @@ export interface Cycle {
   readonly nearest: number;
   readonly triangles: number;
   readonly planeCount: number;
-  /** The clearance from the mesh limits the motion. */
+  /** True if the clearance from the mesh limits the motion. */
   readonly byMesh: boolean;
   /** Bit g is set if guide g limits the motion. */
   readonly guides: number;
-  /** How far something is out of its guide; below 0 inside, NaN without guides. [mm] */
+  /**
+   * The largest distance of a guided point from its region; below 0 inside, NaN without guides.
+   * [mm]
+   */
   readonly excess: number;
   readonly cores: readonly number[]; // (bodies, 6)
 }
 
-/** A tool of the engine, which gives cycles as numbers: struct Cycle of apps/web/engine/tool.h. */
+/** A tool of the engine, whose cycles are numbers: struct Cycle of apps/web/engine/tool.h. */
 interface EngineTool {
   facts(): ToolFacts;
   place(positions: readonly number[]): Float64Array;
@@ -168,11 +171,13 @@ interface EngineTool {
   delete(): void;
 }
 
-/** A tool that keepout constrains beside an anatomy: an instrument at a port, else the ball of a tip. */
+/**
+ * A tool that keepout constrains beside an anatomy: an instrument at a port, or the ball of a tip.
+ */
 export class Tool {
   readonly facts: ToolFacts;
   readonly subject: Subject;
-  /** The tool of the engine, whose owner deletes it. */
+  /** The engine's tool; the owner must delete it. */
   readonly made: EngineTool;
 
   constructor(keepout: Keepout, anatomy: Anatomy, settings: ToolSettings, port: Port | null) {
@@ -181,17 +186,20 @@ export class Tool {
     this.subject = port === null ? "tip" : "instrument";
   }
 
-  /** Puts the tip or the joints there, and forgets the past. */
+  /** Sets the position of the tip or the joints, and resets all state. */
   place(positions: readonly number[]): Cycle {
     return this.cycle(this.made.place(positions));
   }
 
-  /** One control cycle towards the hand; of a tip as `keepout replay --closed-loop`. */
+  /** Runs one control cycle towards the hand; for a tip like `keepout replay --closed-loop`. */
   follow({ place, turn }: Frame): Cycle {
     return this.cycle(this.made.follow(...place, ...turn));
   }
 
-  /** One step (6): of a tip from a place by an increment, of an instrument by a twist of the flange. */
+  /**
+   * Runs one step (6 numbers): of a tip from a position by an increment, or of an instrument by a
+   * twist of the flange.
+   */
   step(asked: readonly number[]): Cycle {
     return this.cycle(this.made.step(...asked));
   }

@@ -3,10 +3,12 @@ import uPlot from "uplot";
 import { colorOf } from "../page/color_of.ts";
 import { colors } from "./markers.ts";
 
-/** How much of the past is seen. [s] */
+/** The length of the visible past. [s] */
 const span = 8;
 
-/** How far hand and tool are from the surface, over the last seconds; below 0 is inside. */
+/**
+ * Plots the distances of hand and tool from the surface over the last seconds; below 0 is inside.
+ */
 export class ClearanceChart {
   private readonly plot: uPlot;
   private readonly times: number[] = [];
@@ -71,7 +73,7 @@ export class ClearanceChart {
     this.times.length = this.hand.length = this.tool.length = 0;
   }
 
-  /** At a time of the page's clock in ms; clearances in mm. */
+  /** Adds the clearances [mm] at a time of the page's clock [ms]. */
   add(time: number, hand: number, tool: number): void {
     const seconds = time / 1000;
     this.times.push(seconds);
@@ -84,7 +86,7 @@ export class ClearanceChart {
     }
     if (this.isDue) return;
     this.isDue = true;
-    // Fifteen times a second is enough for a figure.
+    // Limits the figure to fifteen updates a second.
     setTimeout(() => {
       this.isDue = false;
       const now = this.times.at(-1) ?? 0;
@@ -92,7 +94,7 @@ export class ClearanceChart {
     }, 66);
   }
 
-  /** The inside of the anatomy, and the margin before it. */
+  /** Shades the inside of the anatomy, and the margin before it. */
   private shadeInside(plot: uPlot): void {
     const { left, width, top, height } = plot.bbox;
     const at = (mm: number) => Math.min(Math.max(plot.valToPos(mm, "y", true), top), top + height);

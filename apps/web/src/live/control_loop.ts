@@ -2,17 +2,17 @@
 import type { Cycle, Frame, Tool, ToolSettings } from "../engine/keepout.ts";
 import { type PathFormat, PathRecord, pathFormat } from "./path_record.ts";
 
-/** How long the hand takes to come by 63 % to where the pointer has jumped. [cycles] */
+/** The time in which the hand covers 63 % of a jump of the pointer. [cycles] */
 const handSmoothing = 8;
-/** Statuses up to this one, degraded, come with a motion: see keepout/status.h. */
+/** Statuses up to this one, degraded, have a motion: see keepout/status.h. */
 const lastOk = 4;
-/** Nearer than this the hand is there. [mm] */
+/** At a smaller distance the hand has arrived. [mm] */
 const arrival = 1e-6;
 
 /**
- * The control loop of a robot whose surgeon is the pointer: each cycle is one millisecond. The hand
- * goes to where the pointer is, smoothly, as pointers are seen a hundred times a second and less;
- * the tool goes towards the hand as far as keepout allows.
+ * The control loop of a robot whose operator moves the pointer. Each cycle is one millisecond. The
+ * hand follows the pointer smoothly, because pointers are sampled at most about a hundred times a
+ * second. The tool follows the hand as far as keepout allows.
  */
 export class ControlLoop {
   readonly record: PathRecord;
@@ -42,7 +42,7 @@ export class ControlLoop {
     return this.settings_;
   }
 
-  /** Goes on from here with other settings; if the engine refuses them, throws, and nothing changes. */
+  /** Continues with other settings. If the engine rejects them, throws and changes nothing. */
   use(settings: ToolSettings): void {
     const tool = this.make(settings);
     this.discard();
@@ -50,11 +50,11 @@ export class ControlLoop {
     this.settings_ = settings;
     const { replay } = this;
     this.place(this.last.positions);
-    // A replay begins again under the new settings.
+    // A replay restarts with the new settings.
     if (replay !== null) this.startReplay(replay.lines);
   }
 
-  /** Puts tool and hand there; a new path begins. */
+  /** Places tool and hand; starts a new path. */
   place(positions: readonly number[]): void {
     this.last = this.tool.place(positions);
     this.hand = this.last.flange;
@@ -62,7 +62,7 @@ export class ControlLoop {
     this.record.clear();
   }
 
-  /** Where the pointer holds the hand; null: it has let go. Ends a replay. */
+  /** Sets where the pointer holds the hand; null: it has released the hand. Ends a replay. */
   hold(pointer: Frame | null): void {
     if (pointer !== null && ![...pointer.place, ...pointer.turn].every(Number.isFinite)) return;
     if (this.replay !== null && pointer === null) return;
@@ -70,13 +70,16 @@ export class ControlLoop {
     this.pointer = pointer;
   }
 
-  /** Repeats a recorded path, from where its tool began. (n, width), n > 0 */
+  /** Repeats a recorded path, from the tool's first position. (n, width), n > 0 */
   startReplay(lines: Float64Array): void {
     this.place(this.format.start([...lines.subarray(0, this.format.width)]));
     this.replay = { lines, next: 0, differs: -1 };
   }
 
-  /** One cycle. Returns, at the end of a replay, its cycles and the first one that differs. */
+  /**
+   * Runs one cycle. At the end of a replay, returns its number of cycles and the first one that
+   * differs.
+   */
   run(): { cycles: number; differs: number } | null {
     const { last: before, replay, format, tool } = this;
     const { width } = format;
@@ -87,7 +90,7 @@ export class ControlLoop {
       this.last = format.repeat(tool, recorded);
       this.hand = format.hand(this.last);
     } else {
-      // Let go, the hand is drawn to the tool.
+      // A released hand returns to the tool.
       this.hand = between(this.hand, this.pointer ?? before.flange, 1 / handSmoothing);
       this.last = tool.follow(this.hand);
     }
@@ -108,7 +111,10 @@ export class ControlLoop {
   }
 }
 
-/** A share of the way from one frame to another; of what is nearer than matters: the other. */
+/**
+ * Returns the frame at a fraction of the way between two frames; the second frame if both almost
+ * coincide.
+ */
 function between(from: Frame, to: Frame, share: number): Frame {
   const sign =
     from.turn.reduce((sum, value, i) => sum + value * (to.turn[i] as number), 0) < 0 ? -1 : 1;

@@ -2,12 +2,15 @@
 import { type Keepout, Tool, type Vec3 } from "../engine/keepout.ts";
 import type { FromWorker } from "./protocol.ts";
 
-/** Those of docs/activation.md that are shown: one of each kind of failure. */
+/** Counterexamples of docs/activation.md, one for each kind of failure. */
 const shown = ["CE2_boundary", "CE5_closed_octahedron", "CE6c_larger_saddle"];
-/** Distance to keep, where edges are some 5: the certified rule needs one. [length] */
+/** The required clearance, which the certified rule needs. Edges are about 5 long. [length] */
 const margin = 0.001;
 
-/** What each comes to in one step under the paper's rule, and under the certified one. */
+/**
+ * Returns the end of one step for each counterexample, under the rule of Li et al. (2020) and under
+ * the certified rule.
+ */
 export function runCounterexamples(
   keepout: Keepout,
 ): Omit<Extract<FromWorker, { kind: "counterexamples" }>, "kind"> {

@@ -8,7 +8,9 @@ import type { FromWorker } from "./protocol.ts";
 
 type Shown = Extract<FromWorker, { kind: "counterexamples" }>;
 
-/** Of each: what it is called here, and why the paper's rule fails (docs/activation.md). */
+/**
+ * The name of each counterexample, and why the rule of Li et al. (2020) fails (docs/activation.md).
+ */
 const words: Readonly<Record<string, readonly [title: string, why: string]>> = {
   CE2_boundary: [
     "At a rim",
@@ -27,13 +29,13 @@ const words: Readonly<Record<string, readonly [title: string, why: string]>> = {
   ],
 };
 
-/** How long the way takes, and how long it then rests. [ms] */
+/** Duration of the motion, and of the rest after it. [ms] */
 const way = 1600;
 const rest = 1400;
 
 /**
- * The dialog that plays counterexamples side by side: on the left under the paper's rule, on the
- * right under the certified one.
+ * The dialog that plays counterexamples side by side: on the left under the rule of Li et al.
+ * (2020), on the right under the certified rule.
  */
 export class CounterexampleView {
   private readonly dialog = element("failures", HTMLDialogElement);
@@ -45,7 +47,7 @@ export class CounterexampleView {
   private margin = 0;
   private begun = 0;
 
-  /** Opens it: at first with the first counterexample. */
+  /** Opens the dialog, at first with the first counterexample. */
   open({ examples, margin }: Shown): void {
     if (this.dialog.open) return;
     this.shown = examples;
@@ -115,7 +117,7 @@ export class CounterexampleView {
 class Stage {
   readonly scene = new three.Scene();
   readonly camera = new three.PerspectiveCamera(30, 1, 0.01, 1000);
-  /** Whether the way of the tip crosses a triangle. */
+  /** True if the motion of the tip crosses a triangle. */
   readonly goesThrough: boolean;
   private readonly tip: three.Mesh;
   private readonly begin: three.Vector3;
@@ -126,7 +128,7 @@ class Stage {
     this.begin = vector(example.tip);
     this.end = vector(end);
     const wanted = this.begin.clone().add(vector(example.desired));
-    // What happens fills the view; the mesh may be larger.
+    // The motion fills the view; the mesh may be larger.
     this.reach = this.begin.distanceTo(wanted);
 
     const geometry = new three.BufferGeometry().setFromPoints(example.vertices.map(vector));
@@ -185,7 +187,7 @@ class Stage {
     }
   }
 
-  /** `share` of the way gone; the view turns with the seconds. */
+  /** Shows the motion at the fraction `share`. The view turns with the seconds. */
   arrange(share: number, seconds: number, aspect: number): void {
     this.tip.position.lerpVectors(this.begin, this.end, share);
     const middle = this.begin.clone().lerp(this.end, 0.7);

@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-/** Cycles that are due and no more caught up with. */
+/** The largest number of late cycles that still run. */
 const mostBehind = 100;
-/** Between two words to the page. [ms] */
+/** The interval between messages to the page. [ms] */
 const tellEvery = 15;
 
 /**
- * Keeps a control loop at 1 kHz. Browsers wake a worker every few milliseconds at best; each time,
- * all cycles that are due are run.
+ * Runs a control loop at 1 kHz. Browsers wake a worker every few milliseconds at best; at each
+ * wake-up, all due cycles run.
  */
 export class CycleClock {
-  /** Cycles that were due and not run, as the processor was busy. */
+  /** Cycles that were due but did not run because the processor was busy. */
   lost = 0;
-  /** Cycles a second, over the last second. */
+  /** Cycles per second, over the last second. */
   rate = 0;
-  /** Of a cycle, over the last second. [us] */
+  /** Mean time of a cycle, over the last second. [µs] */
   stepTime = 0;
   private begun = 0; // the worker's clock at cycle 0 [ms]
-  private done = 0; // cycles since, run or lost
-  private told = 0; // when the page was last told [ms]
+  private done = 0; // cycles since then, run or lost
+  private told = 0; // time of the last message to the page [ms]
   private paused = false;
   private second = { begin: 0, cycles: 0, busy: 0 };
 
-  /** Starts anew: nothing is due. */
+  /** Restarts: no cycle is due. */
   restart(): void {
     this.begun = performance.now();
     this.done = 0;
@@ -34,7 +34,7 @@ export class CycleClock {
     if (!paused) this.restart();
   }
 
-  /** Runs what is due. Gives the time, when the page is to be told; else null. [ms] */
+  /** Runs the due cycles. Returns the time if a message to the page is due, else null. [ms] */
   run(cycle: () => void): number | null {
     if (this.paused) return null;
     const { second } = this;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { element } from "./page.ts";
 
-/** Opens files that the user chooses, or drops on the page. */
+/** Opens files that the user chooses or drops on the page. */
 export function takeFiles(open: (file: File) => void): void {
   const field = element("file", HTMLInputElement);
   element("open", HTMLButtonElement).onclick = () => field.click();

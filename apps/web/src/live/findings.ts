@@ -3,7 +3,7 @@ import type { Findings } from "../engine/keepout.ts";
 import { grouped, make } from "../page/elements.ts";
 import { element, set } from "./page.ts";
 
-/** What `keepout inspect` would say of the mesh, and what `keepout live` had to say. */
+/** Shows the findings of `keepout inspect` on the mesh, and the warnings of `keepout live`. */
 export function showFindings(
   { watertight, size, warnings, findings }: Findings,
   triangles: number,

@@ -8,8 +8,8 @@ const isKind = (value: string): value is GuideKind =>
   ["half_space", "slab", "tube", "ball"].includes(value);
 
 /**
- * Chooses guidance constraints: a kind, which is fitted to where the tool is, or texts as `--guide`
- * takes them, with blanks between them.
+ * Lets the user choose guidance constraints: a kind, which is fitted to the tool's position, or
+ * texts as for `--guide`, separated by blanks.
  */
 export class GuidePanel {
   private readonly kinds = element("guide", HTMLSelectElement);
@@ -41,7 +41,10 @@ export class GuidePanel {
     this.texts.hidden = guides.length === 0;
   }
 
-  /** Guides for another anatomy: those that somebody has written, and none that were fitted to this one. */
+  /**
+   * Returns the guides for another anatomy: written ones, but no guides that were fitted to this
+   * one.
+   */
   forAnother(guides: readonly string[]): readonly string[] {
     return this.fitted?.text === guides.join(" ") ? [] : guides;
   }

@@ -5,12 +5,15 @@ import { colors, sheet } from "./markers.ts";
 
 const opacity = { free: 0.13, limiting: 0.3 } as const;
 
-/** Guidance constraints, translucent: planes as discs, tubes and balls as their surfaces. */
+/** Draws guidance constraints, translucent: planes as discs, tubes and balls as surfaces. */
 export class GuideShapes {
   readonly group = new three.Group();
   private shapes: three.Object3D[] = [];
 
-  /** Draws other guides. `inside`: maps a place to the scene. `size`: of what is seen of planes and tubes. [mm] */
+  /**
+   * Draws these guides. `inside`: maps a position to the scene. `size`: the visible size of planes
+   * and tubes. [mm]
+   */
   show(guides: readonly Guide[], inside: (place: Vec3) => three.Vector3, size: number): void {
     this.group.traverse((part) => {
       if (part instanceof three.Mesh) {
@@ -28,7 +31,7 @@ export class GuideShapes {
     this.mark(0);
   }
 
-  /** Shows which guides limit the motion: bit g for guide g. */
+  /** Highlights the guides that limit the motion: bit g for guide g. */
   mark(limiting: number): void {
     this.shapes.forEach((shape, g) => {
       const isLimiting = Math.floor(limiting / 2 ** g) % 2 === 1;
@@ -41,7 +44,7 @@ export class GuideShapes {
   }
 }
 
-/** The boundary of a region about the origin. */
+/** Returns the boundary of a region about the origin. */
 function shapeOf({ kind, direction, radius }: Guide, size: number): three.Object3D {
   const along = new three.Vector3(...direction);
   if (kind === "half_space" || kind === "slab") {

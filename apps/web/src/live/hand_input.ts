@@ -3,14 +3,14 @@ import { Quaternion, Vector3 } from "three";
 import { type Frame, unturned, type Vec3 } from "../engine/keepout.ts";
 import type { Scene } from "./scene.ts";
 
-/** How near a pointer must be to take hold, or on the ball. [px] */
+/** The distance from the ball within which a pointer grabs the hand. [px] */
 const reach = { mouse: 30, touch: 52 } as const;
-/** How fast arrow keys lead the hand, and by how much slower with Shift. [mm/s] */
+/** The speed of the hand with arrow keys, without and with Shift. [mm/s] */
 const keySpeed = { usual: 40, slow: 8 } as const;
-/** How far the wheel leads the hand into the view. [mm per px of it] */
+/** The motion of the hand into the view per pixel of the wheel. [mm] */
 const wheelDepth = 0.02;
 
-/** Which way each key leads: to the right, up, and into the view. */
+/** The direction of each key: right, up, and into the view. */
 const ways: Readonly<Record<string, Vec3>> = {
   ArrowRight: [1, 0, 0],
   ArrowLeft: [-1, 0, 0],
@@ -20,11 +20,14 @@ const ways: Readonly<Record<string, Vec3>> = {
   PageDown: [0, 0, -1],
 };
 
-/** How fast keys turn the hand, and how far a pixel of the wheel or of a second finger does. [rad] */
+/**
+ * The rotation of the hand: by keys in a second, and by a pixel of the wheel or of a second finger.
+ * [rad]
+ */
 const turnSpeed = { usual: 1, slow: 0.2 } as const;
 const pixelTurn = 0.004;
 
-/** About which axis of the view each key turns: the one to the right, up, and into it. */
+/** The axis of each key, in the view: right, up, and into it. */
 const turns: Readonly<Record<string, Vec3>> = {
   w: [-1, 0, 0],
   s: [1, 0, 0],
@@ -35,29 +38,32 @@ const turns: Readonly<Record<string, Vec3>> = {
 };
 
 /**
- * The hand, led by mouse, touch or keys. A pointer that takes hold of it leads it across the view,
- * at the depth where it was taken; the wheel meanwhile leads it deeper. Elsewhere a pointer turns
- * the view. Let go, the hand follows the tool; keys hold it until Escape. A hand that can be turned
- * is turned by letters, by the wheel with Shift, and by a second finger.
+ * Moves the hand by mouse, touch or keys. A pointer that grabs the hand moves it across the view at
+ * constant depth, and the wheel moves it deeper. Elsewhere a pointer turns the view. A released
+ * hand follows the tool; keys hold it until Escape. If the hand can be rotated, letters, Shift and
+ * the wheel, or a second finger rotate it.
  */
 export class HandInput {
   private hand: Frame = { place: [0, 0, 0], turn: unturned };
   private pointer: number | null = null;
   private grip: { dx: number; dy: number } = { dx: 0, dy: 0 };
-  private finger = { x: 0, y: 0 }; // where a second one is [px]
+  private finger = { x: 0, y: 0 }; // position of a second one [px]
   private isHeld = false;
   private readonly keys = new Set<string>();
   private isSlow = false;
   private keyClock = 0;
 
-  /** `canTurn`: true if the hand turns. `hold`: called with the hand, or null when it lets go. */
+  /**
+   * `canTurn`: true if the hand can be rotated. `hold`: called with the hand, or null when it is
+   * released.
+   */
   constructor(
     private readonly scene: Scene,
     private readonly view: HTMLElement,
     private readonly canTurn: boolean,
     private readonly hold: (hand: Frame | null) => void,
   ) {
-    // Before the camera's own controls see it.
+    // These listeners must run before those of the camera.
     const options = { capture: true, passive: false };
     view.addEventListener("pointerdown", (event) => this.take(event), options);
     view.addEventListener("pointermove", (event) => this.lead(event), options);
@@ -72,12 +78,12 @@ export class HandInput {
     view.addEventListener("blur", () => this.keys.clear());
   }
 
-  /** Where the hand is while nothing leads it. */
+  /** Sets the position of the hand while no input moves it. */
   rest(hand: Frame): void {
     if (!this.isHeld) this.hand = hand;
   }
 
-  /** The hand is taken away from whatever leads it. */
+  /** Releases the hand from any input. */
   drop(): void {
     this.view.classList.remove("dragging");
     this.pointer = null;
@@ -138,7 +144,7 @@ export class HandInput {
     if (this.pointer === null) return;
     event.stopPropagation();
     event.preventDefault();
-    // With Shift, some browsers say that the wheel went across.
+    // With Shift, some browsers report a horizontal wheel.
     const pixels = event.deltaY || event.deltaX;
     if (event.shiftKey && this.canTurn) this.turnBy([0, 0, pixelTurn * pixels]);
     else this.move([0, 0, -wheelDepth * pixels]);
@@ -160,7 +166,7 @@ export class HandInput {
 
   private leadByKeys(): void {
     const now = performance.now();
-    // No leap after a frame that took long.
+    // Avoids a jump after a slow frame.
     const seconds = Math.min(now - this.keyClock, 200) / 1000;
     this.keyClock = now;
     if (this.keys.size === 0) return;
@@ -180,7 +186,7 @@ export class HandInput {
     this.go({ place: place as unknown as Vec3 });
   }
 
-  /** Turns the hand by angles about the axes of the view. [rad] */
+  /** Rotates the hand by angles about the axes of the view. [rad] */
   private turnBy(angles: Vec3): void {
     if (!this.canTurn || angles.every((angle) => angle === 0)) return;
     const about = new Vector3(...this.scene.across(...angles));
@@ -196,7 +202,7 @@ export class HandInput {
     this.hold(this.hand);
   }
 
-  /** From -1 to 1 both ways. */
+  /** Returns a position in the view, from -1 to 1 in both directions. */
   inView(event: MouseEvent): { x: number; y: number } {
     const box = this.view.getBoundingClientRect();
     return {
@@ -206,5 +212,5 @@ export class HandInput {
   }
 }
 
-/** What was pressed, letters as they are without Shift. */
+/** Returns the pressed key; letters as without Shift. */
 const keyOf = ({ key }: KeyboardEvent): string => (key.length === 1 ? key.toLowerCase() : key);

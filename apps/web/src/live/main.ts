@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The page of `keepout live`, for the ball of a tip or for an instrument: puts its parts together. */
+/** The page of `keepout live`, for the ball of a tip or for an instrument: connects its parts. */
 import type { Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
 import { grouped, saveFile } from "../page/elements.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
@@ -38,16 +38,16 @@ let settings: ToolSettings = {
   guides: page.guides,
 };
 let shown: Choice | null = null;
-/** That which is being loaded, until it is there or has failed. */
+/** The choice that is loading, until it is loaded or has failed. */
 let awaited: Choice | null = null;
 let triangles = 0;
 let facts: ToolFacts | null = null;
 let state: State | null = null;
 let readings: Readings | null = null;
-/** A path that is to be played, once its mesh is there. */
+/** A path to replay once its mesh is loaded. */
 let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = null;
 
-// Work begins before there is anything to draw on.
+// The worker starts before the scene exists.
 const worker = new Worker(
   URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
 );
@@ -80,7 +80,7 @@ function tell(message: ToWorker): void {
 const handlers: Handlers<FromWorker> = {
   ready({ statuses, shapes }) {
     readings = new Readings(statuses);
-    // An instrument has no port at a generated mesh.
+    // A generated mesh has no port for an instrument.
     for (const name of isTip ? shapes : []) {
       meshes.offer("Generated", { source: { kind: "shape", name }, command: name });
     }
@@ -137,7 +137,7 @@ function endLoading(): void {
   element("loading", HTMLElement).hidden = true;
 }
 
-/** An instrument begins where the command has placed it, a tip beside the anatomy. */
+/** Places an instrument where the command has placed it, and a tip beside the anatomy. */
 function begin(): void {
   const start = meshOf(shown)?.start?.positions;
   const positions = start ?? scene.placeBeside(settings.toolRadius + settings.margin);
@@ -157,14 +157,14 @@ function show(now: State): void {
   readings?.show(now, settings, facts, scene.frames);
 }
 
-/** The ring around the hand, where the view has it. */
+/** Puts the ring around the hand. */
 function placeGrip(): void {
   if (state !== null) grip.style.transform = scene.shift(state.hand.place);
 }
 
-// What is chosen.
+// Settings.
 
-/** Whether another mesh is being read, which the user is then told. */
+/** True while another mesh is being read; then shows a message to the user. */
 function isReading(): boolean {
   if (awaited !== null) toast(`${nameOf(awaited)} is still being read`);
   return awaited !== null;
@@ -209,7 +209,10 @@ async function openFile(file: File): Promise<void> {
   });
 }
 
-/** What a path was made with, as far as it is at hand; then plays it. */
+/**
+ * Applies the settings that a path was recorded with, as far as they are available; then replays
+ * it.
+ */
 function adopt(header: PathHeader | null): void {
   if (header !== null) {
     settings = header.settings;
@@ -218,7 +221,7 @@ function adopt(header: PathHeader | null): void {
     if (header.mesh !== shown?.command) {
       const choice = meshes.called(header.mesh);
       if (choice !== undefined) {
-        load(choice); // it is played once that is there
+        load(choice); // it is replayed after loading
         return;
       }
       pendingPath = null;
@@ -234,7 +237,7 @@ function replay(lines: Float64Array): void {
   tell({ kind: "replay", lines });
 }
 
-/** What was opened, if anything was. */
+/** Replays the opened path, if there is one. */
 function play(): void {
   if (pendingPath !== null) replay(pendingPath.lines);
   pendingPath = null;
@@ -274,7 +277,7 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
 const panel = new SettingsPanel(change);
 const guides = new GuidePanel(fittedGuide, change);
 
-/** A guide of a kind for the tip, or for the jaw's end, where that is; null while there is no tool. */
+/** Returns the text of a guide of a kind for the tip, or for the jaw's end; null without a tool. */
 function fittedGuide(kind: GuideKind): string | null {
   if (state === null || facts === null) return null;
   const region = scene.regionAbout(state.flange.place, kind);
@@ -313,12 +316,12 @@ if (!isTip) {
 const failures = isTip ? addTipControls() : null;
 showSettings();
 
-/** Adds files, double-clicks and counterexamples, which a page of an instrument lacks. */
+/** Adds files, double-clicks and counterexamples, which the page of an instrument does not have. */
 function addTipControls(): CounterexampleView {
   takeFiles((file) => void openFile(file));
   element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
 
-  // The tool is put where the anatomy is double-clicked.
+  // A double-click on the anatomy places the tool there.
   view.addEventListener("dblclick", (event) => {
     const { x, y } = input.inView(event);
     const place = scene.placeBefore(x, y, settings.toolRadius + settings.margin);

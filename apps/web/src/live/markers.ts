@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What is drawn of hand, tool and planes beside their bodies. */
+/** Drawings that belong to hand, tool and planes, except their bodies. */
 import * as three from "three";
 
 export const colors = {
@@ -11,10 +11,10 @@ export const colors = {
   steel: "#8d9db5",
 } as const;
 
-/** Points of a trail: some seconds. */
+/** The number of points of a trail, for some seconds. */
 const trailLength = 240;
 
-/** Where a point was lately. */
+/** The last positions of a point. */
 export class Trail {
   readonly line: three.Line;
   private readonly points: three.Vector3[] = [];
@@ -56,7 +56,7 @@ export class Spring {
     }),
   );
 
-  /** From here to there; not seen where that is shorter than `least`. */
+  /** Draws it between two points; hides it if it is shorter than `least`. */
   stretch(from: three.Vector3, to: three.Vector3, radius: number, least: number): void {
     const way = to.clone().sub(from);
     const length = way.length();

@@ -3,7 +3,7 @@ import { make } from "../page/elements.ts";
 import { element } from "./page.ts";
 import type { EmbeddedMesh, Source } from "./protocol.ts";
 
-/** An anatomy that can be chosen, and what to call it on a command line. */
+/** An anatomy to choose, and its name on a command line. */
 export interface Choice {
   readonly source: Source;
   readonly command: string;
@@ -26,13 +26,13 @@ export class MeshList {
     this.list.addEventListener("change", () => this.choose());
   }
 
-  /** Loads what the list says. */
+  /** Loads the selected anatomy. */
   choose(): void {
     const choice = this.choices[Number(this.list.value)];
     if (choice !== undefined) this.load(choice);
   }
 
-  /** Puts a choice into the list, under a heading. */
+  /** Adds a choice to the list, under a heading. */
   offer(heading: string, choice: Choice): void {
     let group = this.list.querySelector<HTMLOptGroupElement>(`optgroup[label="${heading}"]`);
     if (group === null) {
@@ -43,14 +43,14 @@ export class MeshList {
     this.choices.push(choice);
   }
 
-  /** Makes the list say what is in the view, also when what was chosen could not be. */
+  /** Selects the anatomy that is shown, even if loading another one has failed. */
   select(shown: Choice | null): void {
     if (shown === null) return;
     if (!this.choices.includes(shown)) this.offer("Opened", shown);
     this.list.value = String(this.choices.indexOf(shown));
   }
 
-  /** The choice that a command line calls so. */
+  /** Returns the choice with this name on a command line. */
   called(command: string): Choice | undefined {
     return this.choices.find((choice) => choice.command === command);
   }

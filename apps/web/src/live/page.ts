@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { EmbeddedMesh } from "./protocol.ts";
 
-/** What `keepout live` has put into the page beside the meshes. */
+/** The settings that `keepout live` has put into the page, besides the meshes. */
 export interface PageSettings {
   readonly keepout: string;
   readonly activation: string;
@@ -10,29 +10,32 @@ export interface PageSettings {
   readonly margin: number;
   readonly max_step: number;
   readonly guides: readonly string[];
-  /** Of an instrument; a tip has none. */
+  /** Set for an instrument only. */
   readonly robot?: string;
   readonly meshes: readonly EmbeddedMesh[];
 }
 
-/** The element of a name, which the page has. */
+/** Returns the element of this name. Precondition: the page has it. */
 export function element<T extends HTMLElement>(id: string, type: new () => T): T {
   const found = document.getElementById(id);
   if (!(found instanceof type)) throw new Error(`the page has no ${id}`);
   return found;
 }
 
-/** The text of a script element that holds data. */
+/** Returns the text of a script element with data. */
 export function embeddedText(id: string): string {
   return document.getElementById(id)?.textContent ?? "";
 }
 
 export const page: PageSettings = JSON.parse(embeddedText("settings"));
 
-/** Whether the tool is the ball of a tip, or else an instrument. */
+/** True if the tool is the ball of a tip, false if it is an instrument. */
 export const isTip = page.robot === undefined;
 
-/** The element of an identifier shows a text: changed where it has changed, as a screen reader shall not hear what has not. */
+/**
+ * Shows a text in an element. Changes it only if it differs, so that a screen reader does not
+ * repeat it.
+ */
 export function set(where: string | Element | null, text: string): void {
   const place = typeof where === "string" ? document.getElementById(where) : where;
   if (place && place.textContent !== text) place.textContent = text;
@@ -40,13 +43,16 @@ export function set(where: string | Element | null, text: string): void {
 
 export const millimetres = (length: number): string => `${length.toFixed(2)} mm`;
 
-/** The share of the view's width between the columns of cards; on a phone they are below it. */
+/**
+ * Returns the fraction of the view's width between the columns of cards; on a phone they are below
+ * it.
+ */
 export function roomBetweenCards(view: HTMLElement): number {
   const column = document.querySelector(".column")?.getBoundingClientRect().right ?? 0;
   return Math.max(1 - (2 * (column + 40)) / view.clientWidth, 0.3);
 }
 
-/** A scene in the view; where it cannot be made, the page says why. */
+/** Returns the scene of the view; if it cannot be created, the page shows why. */
 export function made<T>(makeScene: () => T): T {
   try {
     return makeScene();
@@ -59,7 +65,7 @@ export function made<T>(makeScene: () => T): T {
 
 let toastEnd: ReturnType<typeof setTimeout> | undefined;
 
-/** A word to the user, for as long as it takes to read. */
+/** Shows a message to the user, long enough to read it. */
 export function toast(text: string): void {
   const line = element("toast", HTMLElement);
   line.textContent = text;

@@ -2,10 +2,10 @@
 import type { Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
 import type { EmbeddedMesh } from "./protocol.ts";
 
-/** What a path of a tip was made with; stands in its file as JSON, after "# path: ". */
+/** The settings of a path of a tip, in its file as JSON, after "# path: ". */
 export interface PathHeader {
   readonly keepout: string;
-  /** As `keepout replay` takes it: a file, or the name of a fixture. */
+  /** As for `keepout replay`: a file, or the name of a sample mesh. */
   readonly mesh: string;
   readonly settings: ToolSettings;
 }
@@ -15,8 +15,9 @@ const decimal = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 const rules: readonly string[] = ["none", "all_faces", "paper", "certified"] satisfies Rule[];
 
 /**
- * A pose file of `keepout replay --closed-loop`: a line a cycle, where the hand was, and where the
- * tool was before the cycle, of which replay takes the first. All bits are kept.
+ * Returns a pose file for `keepout replay --closed-loop`. Each line is a cycle: the position of the
+ * hand, and the position of the tool before the cycle, of which replay uses the first. Numbers keep
+ * all their bits.
  */
 export function pathText(header: PathHeader, lines: Float64Array): string {
   const { settings } = header;
@@ -31,7 +32,9 @@ export function pathText(header: PathHeader, lines: Float64Array): string {
   ].join("\n");
 }
 
-/** A path of an instrument; its header says what it was made with. All bits are kept. */
+/**
+ * Returns the path of an instrument; its header contains the settings. Numbers keep all their bits.
+ */
 export function instrumentPathText(
   made: Pick<ToolSettings, "margin" | "maxStep" | "guides"> & { keepout: string; robot: string },
   { command_name, digest, start }: EmbeddedMesh,
@@ -55,7 +58,7 @@ function headerAndRows(header: object, lines: Float64Array, width: number): stri
   return [...rows, ""];
 }
 
-/** What to type to do a path again. */
+/** Returns the command that repeats a path. */
 export function replayCommand({ mesh, settings }: PathHeader, file: string): string {
   const rule = settings.rule === "none" ? "RULE" : settings.rule;
   return (
@@ -69,7 +72,7 @@ export function replayCommand({ mesh, settings }: PathHeader, file: string): str
 const shellWord = (text: string): string =>
   /^[\w=:,.+-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
 
-/** Reads a path, or any pose file of a closed loop, which has no header. Throws for what is none. */
+/** Reads a path, or any pose file of a closed loop, which has no header. Throws for other texts. */
 export function parsePath(text: string): { header: PathHeader | null; lines: Float64Array } {
   let header: PathHeader | null = null;
   const numbers: number[] = [];
@@ -99,12 +102,12 @@ function parseHeader(text: string, line: number): PathHeader {
   const lengths = [settings.radius, settings.toolRadius, settings.margin, settings.maxStep];
   if (typeof header?.mesh !== "string") throw wrong;
   if (!rules.includes(settings.rule ?? "") || !lengths.every(Number.isFinite)) throw wrong;
-  const { guides = [] } = settings; // paths of older pages have none
+  const { guides = [] } = settings; // older paths have no guides
   if (!Array.isArray(guides) || !guides.every((text) => typeof text === "string")) throw wrong;
   return { ...(header as PathHeader), settings: { ...(settings as ToolSettings), guides } };
 }
 
-/** The fewest digits that read back exactly; JavaScript would lose the sign of zero. */
+/** Returns the fewest digits that read back exactly; JavaScript would drop the sign of zero. */
 function numberText(value: number): string {
   return Object.is(value, -0) ? "-0" : String(value);
 }

@@ -1,24 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { type Cycle, type Frame, type Tool, unturned } from "../engine/keepout.ts";
 
-/** How a path has the cycles of a tool, a line of numbers each, and how a cycle is done again. */
+/**
+ * The format of the cycles of a path, with a line of numbers for each, and how to repeat a cycle.
+ */
 export interface PathFormat {
   /** Numbers in a line. */
   readonly width: number;
-  /** Lines at most. */
+  /** The most lines. */
   readonly most: number;
   readonly line: (before: Cycle, now: Cycle) => readonly number[];
-  /** Where the tool was before the cycle of a line. */
+  /** Returns the position of the tool before the cycle of a line. */
   readonly start: (line: readonly number[]) => readonly number[];
   readonly repeat: (tool: Tool, line: readonly number[]) => Cycle;
-  /** Where the hand is after a cycle that was repeated. */
+  /** Returns the hand after a repeated cycle. */
   readonly hand: (now: Cycle) => Frame;
 }
 
 /** Cycles of ten minutes. */
 export const tenMinutes = 600_000;
 
-/** As `keepout replay --closed-loop`: where the hand is, and where the tip was before; ten minutes. */
+/** As `keepout replay --closed-loop`: the hand, and the tip before the cycle; ten minutes. */
 const ofTip: PathFormat = {
   width: 6,
   most: tenMinutes,
@@ -32,7 +34,10 @@ const placed = ([x, y, z]: readonly number[]): Frame => ({
   turn: unturned,
 });
 
-/** Where the joints were, their increment, and what was asked of the flange; over three minutes. */
+/**
+ * The joints before the cycle, their increment, and the commanded motion of the flange; over three
+ * minutes.
+ */
 const ofInstrument = (joints: number): PathFormat => ({
   width: 2 * joints + 6,
   most: 200_000,
@@ -46,9 +51,9 @@ export const pathFormat = ({ subject, facts }: Tool): PathFormat =>
   subject === "tip" ? ofTip : ofInstrument(facts.positions);
 
 /**
- * The past, cycle by cycle. A cycle that asks for what the one before asked, from the same place, has
- * the same answer and is left out, if the one before was ok: one that ran out of work may have more
- * of it the next time.
+ * Records the cycles. Omits a cycle that repeats the command of the one before from the same
+ * position, because its result is the same. This requires that the cycle before was ok: after a
+ * lack of work budget, the result may change.
  */
 export class PathRecord {
   private readonly values: number[] = [];
@@ -59,14 +64,14 @@ export class PathRecord {
     this.values.length = 0;
   }
 
-  /** `wasOk`: whether the cycle before this one was. */
+  /** `wasOk`: true if the cycle before this one was ok. */
   add(line: readonly number[], wasOk: boolean): void {
     const { width, most } = this.format;
     if (this.values.length >= width * most || (wasOk && this.repeatsLast(line))) return;
     this.values.push(...line);
   }
 
-  /** (n, width), copied. */
+  /** Returns a copy of all lines (n, width). */
   lines(): Float64Array {
     return Float64Array.from(this.values);
   }

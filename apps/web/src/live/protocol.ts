@@ -20,23 +20,23 @@ import type { CycleClock } from "./cycle_clock.ts";
 /** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
 export interface EmbeddedMesh extends PackedSurface {
   readonly name: string;
-  /** What to give to `keepout replay` as MESH. */
+  /** The argument MESH for `keepout replay`. */
   readonly command_name: string;
   readonly warnings: readonly string[];
-  /** Where an instrument begins: its port, and its joints. [mm, rad] */
+  /** The start of an instrument: its port, and its joints. [mm, rad] */
   readonly start?: { readonly base: readonly number[]; readonly positions: readonly number[] };
-  /** Of the mesh of an instrument, as keepout has it. */
+  /** The digest that keepout computes, for the mesh of an instrument. */
   readonly digest?: string;
 }
 
-/** Where an anatomy comes from. */
+/** The source of an anatomy. */
 export type Source =
   | { readonly kind: "embedded"; readonly mesh: EmbeddedMesh; readonly data: string }
   | { readonly kind: "shape"; readonly name: string }
   | { readonly kind: "file"; readonly name: string; readonly bytes: Uint8Array };
 
 export type ToWorker =
-  /** The engine, as the page holds it: base64 of gzip. */
+  /** The engine in the page: base64 of gzip. */
   | { readonly kind: "start"; readonly engine: string; readonly subject: Subject }
   | {
       readonly kind: "load";
@@ -45,18 +45,18 @@ export type ToWorker =
       readonly port: Port | null;
     }
   | { readonly kind: "settings"; readonly settings: ToolSettings }
-  /** The tip or the joints are put there, and a new path begins. */
+  /** Places the tip or the joints; starts a new path. */
   | { readonly kind: "place"; readonly positions: readonly number[] }
-  /** Where the hand is; null: it lets go, and the spring draws it to the tool. */
+  /** The hand; null: it is released, and the spring pulls it to the tool. */
   | { readonly kind: "hand"; readonly hand: Frame | null }
   /** Repeats a recorded path: see path_record.ts. */
   | { readonly kind: "replay"; readonly lines: Float64Array }
   | { readonly kind: "ask for path"; readonly use: "save" | "replay" }
   | { readonly kind: "ask for counterexamples" }
-  /** Time stands still while nobody looks. */
+  /** The simulation pauses while the page is hidden. */
   | { readonly kind: "pause"; readonly paused: boolean };
 
-/** What to do with messages of each kind. */
+/** The function that handles messages of each kind. */
 export type Handlers<Message extends { readonly kind: string }> = {
   readonly [Kind in Message["kind"]]: (
     message: Extract<Message, { kind: Kind }>,
@@ -69,18 +69,20 @@ export const handled = <Message extends { readonly kind: string }>(
   message: Message,
 ): void | Promise<void> => handlers[message.kind as Message["kind"]](message as never);
 
-/** The last cycle, and those before it: told some sixty times a second. */
+/** The last cycle and a summary of those before, sent about sixty times a second. */
 export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "rate"> {
-  /** Of the worker's clock, at the last cycle. [ms] */
+  /** The worker's clock at the last cycle. [ms] */
   readonly time: number;
   readonly hand: Frame;
-  /** From each body's surface to the mesh; of a tip below 0 inside, NaN where unknown. [mm] */
+  /**
+   * Distance of each body's surface from the mesh; for a tip below 0 inside, NaN if unknown. [mm]
+   */
   readonly clearances: readonly number[];
-  /** The same of the last body's radius where the hand is. [mm] */
+  /** The same for a ball at the hand, with the radius of the last body. [mm] */
   readonly handClearance: number;
-  /** Those that limit the motion of a tip. */
+  /** The planes that limit the motion of a tip. */
   readonly planes: readonly Plane[];
-  /** All cycles since the anatomy was loaded, and those in which something limited the motion. */
+  /** The number of cycles since the anatomy was loaded, and of those that were limited. */
   readonly cycles: number;
   readonly limited: number;
 }
@@ -93,7 +95,7 @@ export type FromWorker =
     }
   | ({ readonly kind: "surface"; readonly name: string } & CenteredSurface)
   | { readonly kind: "findings"; readonly findings: Findings }
-  /** The index is built: the tool can be placed. */
+  /** The index is built: a tool can be placed. */
   | { readonly kind: "guarded" }
   /** A tool was made. */
   | { readonly kind: "tool"; readonly facts: ToolFacts }
@@ -104,15 +106,18 @@ export type FromWorker =
       readonly lines: Float64Array;
       readonly settings: ToolSettings;
     }
-  /** A replay has come to its end; `differs`: the first cycle with another tool, or -1. */
+  /** A replay has ended; `differs`: the first cycle with another tool position, or -1. */
   | { readonly kind: "replayed"; readonly cycles: number; readonly differs: number }
   | {
       readonly kind: "counterexamples";
       readonly margin: number;
-      /** `ends`: where a step ends under the paper's rule, and under the certified one. */
+      /**
+       * `ends`: the ends of a step under the rule of Li et al. (2020), and under the certified
+       * rule.
+       */
       readonly examples: readonly { example: Counterexample; ends: readonly Vec3[] }[];
     }
-  /** Those that stay in force, when others were refused. */
+  /** The settings that stay in force when others were rejected. */
   | { readonly kind: "settings"; readonly settings: ToolSettings }
-  /** `of`: what was asked for. */
+  /** `of`: the kind of the failed message. */
   | { readonly kind: "failure"; readonly of: ToWorker["kind"]; readonly message: string };

@@ -5,7 +5,7 @@ import { grouped, make } from "../page/elements.ts";
 import { element, isTip, millimetres, set } from "./page.ts";
 import type { State } from "./protocol.ts";
 
-/** How each status is to be taken: the colour of its chip. */
+/** The color of each status chip. */
 const moods: Readonly<Record<string, "free" | "limited">> = {
   free: "free",
   limited: "limited",
@@ -14,11 +14,14 @@ const moods: Readonly<Record<string, "free" | "limited">> = {
   degraded: "limited",
 };
 
-/** The number of the body that is held back: the nearest to the surface while a row of it holds; else -1. */
+/**
+ * The number of the limited body: the nearest to the surface while one of its rows is active; else
+ * -1.
+ */
 export const heldBody = ({ held, nearest, byMesh, guides }: State): number =>
   held > 0 && (byMesh || guides === 0) ? nearest : -1;
 
-/** The card that shows what keepout does. The page of each tool has some of its figures. */
+/** The card with keepout's readings. The page of each tool has some of the figures. */
 export class Readings {
   private readonly status = element("status", HTMLElement);
   private readonly figure = element("clearance", HTMLElement);
@@ -28,7 +31,7 @@ export class Readings {
 
   constructor(private readonly statuses: readonly StatusWords[]) {}
 
-  /** `frames`: drawn since the beginning. */
+  /** `frames`: the number of frames since the beginning. */
   show(state: State, settings: ToolSettings, facts: ToolFacts, frames: number): void {
     const isGuarded = settings.rule !== "none";
     this.showStatus(state, isGuarded);
@@ -55,7 +58,7 @@ export class Readings {
     this.countFrames(frames);
   }
 
-  /** How the last cycle ended, in a chip and in words. */
+  /** Shows the outcome of the last cycle, in a chip and in words. */
   private showStatus({ status, time }: State, isGuarded: boolean): void {
     const { name, reason } = this.statuses[status] ?? { name: "unknown", reason: "" };
     this.status.className = moods[name] ?? "stopped";
@@ -67,7 +70,7 @@ export class Readings {
     set("spoken", isGuarded ? `${name}: ${reason}` : "no fixture");
   }
 
-  /** Which guides hold the tool back, or how far out of one it is. */
+  /** Shows the guides that limit the tool, or how far outside of a guide it is. */
   private showGuides({ guides: limiting, excess }: State, { guides }: ToolFacts): void {
     const row = element("guide-state", HTMLElement);
     const holding = guides.filter((_, g) => Math.floor(limiting / 2 ** g) % 2 === 1);
@@ -98,7 +101,7 @@ export class Readings {
     });
   }
 
-  /** Where the clearance of a body stands. */
+  /** Returns the row with the clearance of a body. */
   private rowOf(body: string): HTMLElement {
     let row = this.bodies.get(body);
     if (row === undefined) {

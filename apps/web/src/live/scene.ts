@@ -8,7 +8,7 @@ import { StillPicture } from "../page/still_picture.ts";
 import { colors, Spring, Trail } from "./markers.ts";
 import type { State } from "./protocol.ts";
 
-/** The anatomy, and in it the hand and a tool, which a derived class draws. */
+/** The anatomy with the hand and a tool, which a derived class draws. */
 export abstract class Scene {
   readonly camera = new three.PerspectiveCamera(32, 1, 0.1, 10_000);
   private readonly renderer: three.WebGLRenderer;
@@ -18,10 +18,10 @@ export abstract class Scene {
   protected readonly moving = new three.Scene();
   protected readonly spring = new Spring();
   private readonly trail = new Trail(colors.tool);
-  /** What is seen; null: no tool yet. */
+  /** The displayed state; null: no tool yet. */
   private moment: State | null = null;
   private readonly lit: three.Group[] = [];
-  /** Pixels drawn for each of the screen's, along a side, at most. */
+  /** The most pixels drawn per pixel of the screen, along a side. */
   private readonly finest: number;
   protected corners = new Uint32Array();
   private origin = new three.Vector3();
@@ -31,15 +31,15 @@ export abstract class Scene {
   private drawn = 0;
 
   /**
-   * Draws into a container, and again whenever something in it changes. `room`: the share of its
-   * width that nothing covers, in the middle.
+   * Draws into a container, and again after each change. `room`: the fraction of its width that is
+   * not covered, in the middle.
    */
   constructor(
     protected readonly container: HTMLElement,
     protected readonly room: () => number,
     private readonly onDraw: () => void,
   ) {
-    // The still picture has smooth edges of its own.
+    // The still picture smooths its own edges.
     const { renderer, isSlow } = makeGraphics(false);
     this.renderer = renderer;
     this.finest = isSlow ? 0.6 : 1;
@@ -68,7 +68,7 @@ export abstract class Scene {
     return this.drawn;
   }
 
-  /** Another anatomy: looked at from one side, as large as the view. */
+  /** Shows another anatomy from one side, in the size of the view. */
   show({ positions, corners, origin, size }: CenteredSurface): void {
     this.anatomy.geometry.dispose();
     this.anatomy.geometry = surfaceGeometry(positions, corners);
@@ -89,7 +89,7 @@ export abstract class Scene {
     this.resize();
   }
 
-  /** What is to be seen from now on. */
+  /** Shows this state from now on. */
   update(moment: State): void {
     const { place } = moment.flange;
     if (this.moment?.flange.place.some((value, i) => value !== place[i])) {
@@ -100,32 +100,32 @@ export abstract class Scene {
     this.redraw();
   }
 
-  /** How large the tool's ball is in the view, where it is. [px] */
+  /** Returns the radius of the tool's ball in the view. [px] */
   ballRadius(place: Vec3): number {
     const depth = this.inside(place).distanceTo(this.camera.position);
     const halfHeight = depth * Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
     return (0.5 * this.container.clientHeight * this.toolRadius) / halfHeight;
   }
 
-  /** Where a place is in the view, from -1 to 1 both ways, and how deep. */
+  /** Returns the position in the view, from -1 to 1 in both directions, and the depth. */
   project(place: Vec3): three.Vector3 {
     return this.inside(place).project(this.camera);
   }
 
-  /** The same as a shift of CSS from the upper left. */
+  /** Like project(), but as a CSS translation from the upper left. */
   shift(place: Vec3): string {
     const { x, y } = this.project(place);
     const { clientWidth, clientHeight } = this.container;
     return `translate(${0.5 * (1 + x) * clientWidth}px, ${0.5 * (1 - y) * clientHeight}px)`;
   }
 
-  /** The place at the depth of another one, where the view is pointed at. */
+  /** Returns the position under a point of the view, at the depth of another position. */
   unproject(x: number, y: number, depthOf: Vec3): Vec3 {
     const depth = this.inside(depthOf).project(this.camera).z;
     return this.outside(new three.Vector3(x, y, depth).unproject(this.camera));
   }
 
-  /** A way given in the axes of the view: to the right, up, and into it. [mm] */
+  /** Returns a motion given along the axes of the view: right, up, and into it. [mm] */
   across(right: number, up: number, into: number): Vec3 {
     return new three.Vector3(right, up, -into)
       .transformDirection(this.camera.matrixWorld)
@@ -133,7 +133,7 @@ export abstract class Scene {
       .toArray() as Vec3;
   }
 
-  /** Draws when the browser next does. */
+  /** Draws with the browser's next frame. */
   redraw(): void {
     if (this.isDue) return;
     this.isDue = true;
@@ -143,7 +143,7 @@ export abstract class Scene {
     });
   }
 
-  /** Puts what moves where it is. */
+  /** Positions the moving parts. */
   protected abstract arrange(moment: State): void;
 
   /** Shows no tool until the next update. */
@@ -174,13 +174,13 @@ export abstract class Scene {
     this.outdate();
   }
 
-  /** Draws the anatomy anew, too. */
+  /** Draws the anatomy again as well. */
   private outdate(): void {
     this.still.outdate();
     this.redraw();
   }
 
-  /** Lights that stay with the view: from its upper left, and faintly from all sides. */
+  /** Returns lights that are fixed to the view: from its upper left, and faintly from all sides. */
   private lights(): three.Group {
     const group = new three.Group();
     const sky = new three.HemisphereLight("#ffffff", "#6b6259", 0.9);
@@ -193,7 +193,10 @@ export abstract class Scene {
     return group;
   }
 
-  /** From the frame of the mesh to that of the scene, whose origin is the middle of the anatomy. */
+  /**
+   * Maps from the frame of the mesh to that of the scene, whose origin is the middle of the
+   * anatomy.
+   */
   protected inside(place: Vec3): three.Vector3 {
     return new three.Vector3(...place).sub(this.origin);
   }

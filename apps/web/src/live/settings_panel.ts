@@ -2,7 +2,7 @@
 import type { Rule, ToolSettings } from "../engine/keepout.ts";
 import { element } from "./page.ts";
 
-/** Rule and lengths of a tool, as far as the page has controls for them. */
+/** The controls for rule and lengths of a tool. */
 export class SettingsPanel {
   private readonly radios = document.querySelectorAll<HTMLInputElement>("#rules input");
   private readonly sliders = (
@@ -28,7 +28,7 @@ export class SettingsPanel {
   show(settings: ToolSettings): void {
     for (const radio of this.radios) radio.checked = radio.value === settings.rule;
     for (const { slider, key } of this.sliders) {
-      // The page may have been made with a value beyond the range of the slider.
+      // The page's initial value may be beyond the range of the slider.
       slider.min = String(Math.min(Number(slider.min), settings[key]));
       slider.max = String(Math.max(Number(slider.max), settings[key]));
       slider.value = String(settings[key]);

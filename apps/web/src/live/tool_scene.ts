@@ -10,22 +10,22 @@ import type { State } from "./protocol.ts";
 import { heldBody } from "./readings.ts";
 import { Scene } from "./scene.ts";
 
-/** How many active planes are drawn at most. */
+/** The largest number of drawn active planes. */
 const mostPlanes = 8;
-/** Where a tip may begin: how high in the view, and how near. [sizes of the anatomy] */
+/** Start positions of a tip to try: height in the view, and distance. [sizes of the anatomy] */
 const placesToBegin = [0.3, 0.2, 0.1, 0].flatMap((near) =>
   [0.16, 0.08, 0.24, 0, -0.08].map((height) => [height, near] as const),
 );
-/** A ball that is smaller than this share of what is seen is drawn as large. */
+/** The smallest drawn radius of a ball, as a fraction of the visible size. */
 const smallestBall = 0.006;
-/** How much of an instrument is seen at first, across the view. [mm] */
+/** The initially visible width of the view, for an instrument. [mm] */
 const seenAtFirst = 130;
-/** The radius around the jaw of an instrument within which the hand takes hold of it. [mm] */
+/** The radius around the jaw of an instrument within which the hand can be grabbed. [mm] */
 const gripRadius = 4;
 
 /**
- * The anatomy, and in it a tool, where the hand wants its last body, and the planes that limit the
- * motion of a tip. A tip is a tool of one body, a ball; an instrument goes through a port.
+ * The anatomy with a tool, the commanded place of its last body, and the planes that limit the
+ * motion of a tip. A tip is a tool of one body, a ball; an instrument passes through a port.
  */
 export class ToolScene extends Scene {
   private bodies: Capsule[] = [];
@@ -41,10 +41,10 @@ export class ToolScene extends Scene {
     new three.TorusGeometry(9, 1.6, 12, 40),
     new three.MeshStandardMaterial({ color: colors.steel, roughness: 0.5 }),
   );
-  /** Whether the view is still to be turned to the jaw of an instrument. */
+  /** True until the view is turned to the jaw of an instrument. */
   private isNew = true;
 
-  /** `isBall`: of a tip. */
+  /** `isBall`: true for a tip. */
   constructor(
     container: HTMLElement,
     room: () => number,
@@ -62,14 +62,14 @@ export class ToolScene extends Scene {
     super.show(surface);
   }
 
-  /** Another tool, which has these facts. */
+  /** Shows another tool, which has these properties. */
   equip({ bodies, guides }: ToolFacts): void {
     for (const body of [...this.bodies, this.wanted]) {
       this.moving.remove(...body.parts);
       body.dispose();
     }
     this.radii = bodies.map(({ radius }) => radius);
-    // Made first, the hand is drawn under a tool at the same place.
+    // Created first, so that the hand is drawn below a tool at the same position.
     this.wanted = new Capsule(this.isBall ? 0.35 : 0.6);
     this.wanted.paint(colors.hand);
     this.bodies = bodies.map(() => new Capsule());
@@ -80,8 +80,8 @@ export class ToolScene extends Scene {
   }
 
   /**
-   * The text of a region about a place, which fits what is seen: above the place or across it in the
-   * view, or along the way from there into the middle.
+   * Returns the text of a region near a position, in the size of the view. It is above the
+   * position, across it in the view, or along the direction from there to the middle.
    */
   regionAbout(place: Vec3, kind: GuideKind): string {
     this.camera.updateMatrixWorld();
@@ -108,7 +108,7 @@ export class ToolScene extends Scene {
     }
   }
 
-  /** How much is seen at first. [mm] */
+  /** Returns the initially visible size. [mm] */
   private extent(): number {
     return this.isBall ? this.size : Math.min(this.size, seenAtFirst);
   }
@@ -120,8 +120,8 @@ export class ToolScene extends Scene {
   }
 
   /**
-   * A place for a tip to begin: beside the half of the anatomy that is seen, where a motion across
-   * the view leads into it and stays in sight. `kept`: what the tool keeps from the surface. [mm]
+   * Returns a start position for a tip: beside the visible half of the anatomy, where a motion
+   * across the view enters it and stays visible. `kept`: the required clearance. [mm]
    */
   placeBeside(kept: number): Vec3 {
     const distance = kept + this.beginning();
@@ -142,7 +142,7 @@ export class ToolScene extends Scene {
       if (!hit?.face) continue;
       const contact = hit.point.clone();
       place ??= contact.clone().addScaledVector(right, distance);
-      // Best where the surface is looked at, and nothing is before it.
+      // Skips places that the view shows at a steep angle or that something hides.
       if (Math.abs(hit.face.normal.dot(near)) < 0.4) continue;
       toCamera.copy(this.camera.position).sub(contact).normalize();
       caster.set(contact.clone().addScaledVector(toCamera, 0.01 * this.size), toCamera);
@@ -155,7 +155,10 @@ export class ToolScene extends Scene {
     return this.outside(place);
   }
 
-  /** A place to begin before where a ray through the view meets the anatomy; null where none does. */
+  /**
+   * Returns a start position before the point where a ray of the view meets the anatomy; null if it
+   * meets none.
+   */
   placeBefore(x: number, y: number, kept: number): Vec3 | null {
     const caster = new three.Raycaster();
     caster.setFromCamera(new three.Vector2(x, y), this.camera);
@@ -166,12 +169,12 @@ export class ToolScene extends Scene {
     return this.outside(hit.point.addScaledVector(normal, kept + this.beginning()));
   }
 
-  /** How far from what it keeps a tip begins. [mm] */
+  /** Returns the initial distance of a tip from its required clearance. [mm] */
   private beginning(): number {
     return Math.min(10, 0.06 * this.size);
   }
 
-  /** Leads the view back until a point is within it. */
+  /** Moves the view back until a point is within it. */
   private keepInSight(point: three.Vector3): void {
     for (let i = 0; i < 40 && Math.abs(point.clone().project(this.camera).x) > this.room(); ++i) {
       this.camera.position.multiplyScalar(1.1);
@@ -185,8 +188,8 @@ export class ToolScene extends Scene {
   }
 
   /**
-   * Looks at the jaw from beside the shaft, whence the anatomy hides as little as can be; of such
-   * places the highest.
+   * Turns the view to the jaw, from beside the shaft, where the anatomy hides it least; among equal
+   * directions from the highest.
    */
   private lookAtJaw({ cores, flange }: State): void {
     const tip = this.inside(flange.place);
@@ -240,7 +243,7 @@ export class ToolScene extends Scene {
       body.paint(i === held ? colors.plane : i === last ? colors.tool : colors.steel);
     });
 
-    // The last body does not move in the frame of the flange, nor in that of the hand.
+    // The last body is fixed in the frame of the flange, and in that of the hand.
     const turn = new three.Quaternion(...hand.turn).multiply(
       new three.Quaternion(...flange.turn).invert(),
     );
@@ -260,7 +263,9 @@ export class ToolScene extends Scene {
     this.guides.mark(moment.guides);
   }
 
-  /** Shows the planes that limited the motion of a tip, as discs, and the edges of their triangles. */
+  /**
+   * Shows the planes that limited the motion of a tip as discs, and the edges of their triangles.
+   */
   private showPlanes({ planes, motion }: State, tip: three.Vector3, size: number): void {
     // A plane of a guide has no triangle, and is drawn with its guide.
     const triangles = this.corners.length / 3;
@@ -270,7 +275,7 @@ export class ToolScene extends Scene {
       disc.visible = plane !== undefined;
       if (plane === undefined) return;
       const normal = new three.Vector3(...plane.normal);
-      // The offset is from where the tip was before the motion.
+      // The offset is relative to the tip before the motion.
       const made = normal.dot(new three.Vector3(...motion));
       disc.position.copy(tip).addScaledVector(normal, plane.offset - made - this.toolRadius);
       disc.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), normal);
@@ -282,7 +287,7 @@ export class ToolScene extends Scene {
     );
   }
 
-  /** The edges of a triangle, as pairs of points. */
+  /** Returns the edges of a triangle, as pairs of points. */
   private outline(triangle: number): three.Vector3[] {
     const positions = this.anatomy.geometry.getAttribute("position");
     const corner = (i: number) =>
@@ -293,7 +298,7 @@ export class ToolScene extends Scene {
     return [0, 1, 1, 2, 2, 3].map(corner);
   }
 
-  /** A point of a list of places, three numbers each. */
+  /** Returns a point of a list of positions, three numbers each. */
   private pointOf(places: readonly number[], i: number): three.Vector3 {
     return this.inside(places.slice(3 * i, 3 * i + 3) as unknown as Vec3);
   }

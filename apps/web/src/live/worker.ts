@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** Where keepout runs: apart from the page, so that cycles do not wait for drawing. */
+/** The worker that runs keepout, so that cycles do not wait for drawing. */
 import makeModule from "keepout-module";
 import {
   type Anatomy,
@@ -20,8 +20,8 @@ import { type FromWorker, type Handlers, handled, type Source, type ToWorker } f
 let keepout: Keepout;
 let anatomy: { of: Anatomy; settings: ToolSettings; port: Port | null } | null = null;
 let loop: ControlLoop | null = null;
-let accepted: ToolSettings | null = null; // those that a tool was last made with
-let place: readonly number[] | null = null; // where the tool was put last, in this anatomy
+let accepted: ToolSettings | null = null; // the settings of the last tool
+let place: readonly number[] | null = null; // the last start of the tool, in this anatomy
 const clock = new CycleClock();
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
@@ -43,7 +43,7 @@ function tellState(time: number): void {
   const { last, hand, tool, cycles, limited } = loop;
   const { bodies } = tool.facts;
   const clearances = bodies.map((_, i) => tool.made.clearance(i));
-  // The engine's own figure of the nearest, where it has one.
+  // The engine's own distance of the nearest body, if known.
   if (last.nearest >= 0) clearances[last.nearest] = last.distance;
   const handClearance = anatomy.of.clearance(...hand.place) - (bodies.at(-1)?.radius ?? 0);
   const planes = tool.made.planes().filter(({ isActive }) => isActive);
@@ -60,7 +60,7 @@ function tellSurface(
   tell({ kind: "surface", name, ...drawn }, [drawn.positions.buffer, drawn.corners.buffer]);
 }
 
-/** Makes a tool on the anatomy; if the engine refuses the settings, throws. */
+/** Makes a tool on the anatomy. Throws if the engine rejects the settings. */
 function makeTool(settings: ToolSettings): Tool {
   const { of, port } = anatomy as NonNullable<typeof anatomy>;
   const tool = new Tool(keepout, of, settings, port);
@@ -68,7 +68,7 @@ function makeTool(settings: ToolSettings): Tool {
   return tool;
 }
 
-/** No anatomy, and no tool. */
+/** Deletes the anatomy and the tool. */
 function letGo(): void {
   loop?.discard();
   anatomy?.of.delete();
@@ -80,7 +80,7 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
   let made: Anatomy;
   if (source.kind === "embedded") {
     const surface = await decodeSurface(source.mesh, source.data);
-    letGo(); // what is seen from here on is the other one
+    letGo(); // from here on the page shows the other one
     tellSurface(name, surface);
     made = keepout.anatomyOfSurface(surface.vertices, surface.corners);
   } else {
@@ -103,7 +103,10 @@ async function start(engine: string, subject: Subject): Promise<void> {
   setInterval(run, 1);
 }
 
-/** Begins where the tool was put, if it has not yet; what the engine refuses is thrown. */
+/**
+ * Starts the tool at its position, if it has not started. Throws if the engine rejects the
+ * settings.
+ */
 function begin(): void {
   if (loop !== null || anatomy === null || place === null) return;
   try {
@@ -149,11 +152,13 @@ const handlers: Handlers<ToWorker> = {
   pause: ({ paused }) => clock.pause(paused),
 };
 
-/** Messages are handled one after the other; one that fails is reported, and the next goes on. */
+/**
+ * Messages are handled one after the other. A failure is reported, and the next message continues.
+ */
 let queue: Promise<void> = Promise.resolve();
 self.onmessage = ({ data: message }: MessageEvent<ToWorker>) => {
   queue = queue
-    // Without an engine, nothing but its start is tried.
+    // Without an engine, only its start is handled.
     .then(() => (message.kind === "start" || keepout ? handled(handlers, message) : undefined))
     .catch((error: unknown) => {
       const words = error instanceof Error ? error.message : String(error);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
 
-/** The axis is along y; vertices above the middle are about one end, all others about the other. */
+/** The axis is along y. Vertices above the middle belong to one end, all others to the other. */
 const geometry = new three.CapsuleGeometry(1, 1, 16, 48);
 
 /**
- * All within a radius of an axis: a body of an instrument, or a ball if the axis has no length. It
- * shows through the surface that hides it, faintly.
+ * A capsule: a body of an instrument, or a ball if the axis has no length. It shines faintly
+ * through a surface that hides it.
  */
 export class Capsule {
-  /** What is hidden, then what is seen. */
+  /** The hidden part, then the visible part. */
   readonly parts: readonly three.Mesh<three.BufferGeometry, three.ShaderMaterial>[];
   private readonly uniforms = {
     from: { value: new three.Vector3() },
@@ -19,7 +19,7 @@ export class Capsule {
     color: { value: new three.Color() },
   };
 
-  /** `opacity`: of what is seen, from 0 to 1. */
+  /** `opacity`: of the visible part, from 0 to 1. */
   constructor(opacity = 1) {
     const part = (isHidden: boolean) => {
       const own = { ...this.uniforms, opacity: { value: isHidden ? 0.3 : opacity } };
@@ -33,7 +33,7 @@ export class Capsule {
     this.parts = [part(true), part(false)];
   }
 
-  /** Its axis goes from here to there. */
+  /** Sets the ends of the axis, and the radius. */
   place(from: three.Vector3, to: three.Vector3, radius: number): void {
     const { uniforms } = this;
     uniforms.from.value.copy(from);
@@ -43,11 +43,11 @@ export class Capsule {
     const turn = new three.Quaternion().setFromUnitVectors(new three.Vector3(0, 1, 0), along);
     const axes = new three.Matrix4().makeRotationFromQuaternion(turn);
     uniforms.axes.value.setFromMatrix4(axes);
-    // Transparent ones are drawn from the back to the front.
+    // Transparent bodies are drawn from back to front.
     for (const { position } of this.parts) position.lerpVectors(from, to, 0.5);
   }
 
-  /** `hidden`: how strong it is drawn where the surface hides it, from 0 to 1. */
+  /** `hidden`: the opacity where the surface hides it, from 0 to 1. */
   paint(color: three.ColorRepresentation, hidden = 0.3): void {
     this.uniforms.color.value.set(color);
     const opacity = this.parts[0]?.material.uniforms.opacity;
@@ -63,7 +63,7 @@ export class Capsule {
   }
 }
 
-/** Lit as paths are, from the upper left of the view. */
+/** Lit like paths, from the upper left of the view. */
 const capsuleMaterial = (uniforms: Record<string, three.IUniform>) =>
   new three.ShaderMaterial({
     transparent: true,

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { Vec3 } from "../engine/keepout.ts";
 
-/** A surface to be drawn: (n, 3) coordinates from the middle of its box, `origin`, and (m, 3) corners. */
+/**
+ * A surface to draw: (n, 3) coordinates relative to the middle of its box, `origin`, and (m, 3)
+ * corners.
+ */
 export interface CenteredSurface {
   readonly origin: Vec3;
   /** The diagonal of its box. [mm] */
@@ -10,7 +13,7 @@ export interface CenteredSurface {
   readonly corners: Uint32Array<ArrayBuffer>;
 }
 
-/** Makes floats, which are drawn, of coordinates from the middle, which are small. Copies all. */
+/** Returns a copy in floats, relative to the middle: small coordinates lose little by rounding. */
 export function centered(vertices: Float64Array, corners: Uint32Array): CenteredSurface {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];

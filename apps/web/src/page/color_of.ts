@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-/** The colour that a variable of the page's style has now. */
+/** Returns the current color of a variable of the page's style. */
 export function colorOf(variable: string): string {
   const probe = document.body.appendChild(document.createElement("i"));
   probe.style.color = `var(${variable})`;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-/** An element with attributes and what is in it. Text is never taken for HTML. */
+/** Returns an element with attributes and content. Text is never interpreted as HTML. */
 export function make<Tag extends keyof HTMLElementTagNameMap>(
   tag: Tag,
   attributes: Readonly<Record<string, string>> = {},
@@ -9,7 +9,7 @@ export function make<Tag extends keyof HTMLElementTagNameMap>(
   return filled(document.createElement(tag), attributes, children);
 }
 
-/** The same of a drawing. */
+/** Like make(), but returns an SVG element. */
 export function drawn<Tag extends keyof SVGElementTagNameMap>(
   tag: Tag,
   attributes: Readonly<Record<string, string>> = {},
@@ -29,10 +29,10 @@ function filled<Made extends Element>(
   return element;
 }
 
-/** A count with its thousands set apart: 24,000. */
+/** Returns a count with thousands separators: 24,000. */
 export const grouped = (count: number): string => Math.round(count).toLocaleString("en");
 
-/** Hands a file to whoever looks at the page. */
+/** Offers a file to the user as a download. */
 export function saveFile(name: string, text: string, type: string): void {
   const href = URL.createObjectURL(new Blob([text], { type }));
   make("a", { href, download: name }).click();

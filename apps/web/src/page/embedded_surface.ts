@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-/** The bytes of which a page holds base64 of gzip. */
+/** Returns the bytes that a page contains as base64 of gzip. */
 export async function unpacked(base64: string): Promise<ArrayBuffer> {
   const packed = atob(base64);
   const bytes = new Uint8Array(packed.length);
@@ -9,7 +9,7 @@ export async function unpacked(base64: string): Promise<ArrayBuffer> {
   return new Response(stream).arrayBuffer();
 }
 
-/** What is to be known of a surface to unpack it. */
+/** The properties of a surface that unpacking needs. */
 export interface PackedSurface {
   readonly vertices: number;
   readonly triangles: number;
@@ -17,9 +17,10 @@ export interface PackedSurface {
 }
 
 /**
- * Unpacks a surface as keepout packs it into pages and records (docs/records.md): base64 of gzip of all x, all y and
- * all z, and of a code for each corner, in four planes of bytes. A corner's code is how far back its
- * vertex is from the first one not named yet; 0 is that one. All bits of all coordinates come back.
+ * Unpacks a surface that keepout has packed into a page or a record (docs/records.md). The text is
+ * base64 of gzip of all x, all y and all z, and of a code for each corner, in four planes of bytes.
+ * A corner's code is the first unused vertex number minus its own. All bits of all coordinates are
+ * restored.
  */
 export async function decodeSurface(
   surface: PackedSurface,

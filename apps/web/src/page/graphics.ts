@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
 
-/** What draws with WebGL, over what was drawn before. */
+/** A WebGL renderer, which draws over the earlier content. */
 export interface Graphics {
   readonly renderer: three.WebGLRenderer;
-  /** Without a graphics processor every pixel takes its time. */
+  /** True without a graphics processor, where every pixel takes time. */
   readonly isSlow: boolean;
 }
 
-/** Throws where there is no WebGL. */
+/** Throws without WebGL. */
 export function makeGraphics(antialias: boolean): Graphics {
   const canvas = document.createElement("canvas");
   const context = canvas.getContext("webgl2", { alpha: true, antialias });
@@ -21,7 +21,7 @@ export function makeGraphics(antialias: boolean): Graphics {
   return { renderer, isSlow: /swiftshader|llvmpipe|software/i.test(String(name)) };
 }
 
-/** A surface with smooth shading: (n, 3) coordinates and (m, 3) corners. */
+/** Returns a surface with smooth shading: (n, 3) coordinates and (m, 3) corners. */
 export function surfaceGeometry(positions: Float32Array, corners: Uint32Array) {
   const geometry = new three.BufferGeometry();
   geometry.setAttribute("position", new three.BufferAttribute(positions, 3));

@@ -3,16 +3,16 @@ import * as three from "three";
 import { FullScreenQuad } from "three/addons/postprocessing/Pass.js";
 
 /**
- * A picture of what stands still, with its depths, that is drawn anew only when the view changes.
- * While the tool is dragged, an anatomy of half a million triangles so costs no more than a
- * rectangle: on a phone, and on a computer that draws without a graphics processor.
+ * A picture of the still parts, with depths, which is drawn again only when the view changes. While
+ * the tool is dragged, an anatomy of half a million triangles then costs no more than a rectangle.
+ * This helps phones, and computers without a graphics processor.
  */
 export class StillPicture {
   private readonly target: three.WebGLRenderTarget;
   private readonly sheet: FullScreenQuad;
   private isOutdated = true;
 
-  /** `samples`: of each pixel, for smooth edges. */
+  /** `samples`: per pixel, for smooth edges. */
   constructor(
     private readonly scene: three.Scene,
     private readonly camera: three.Camera,
@@ -49,7 +49,7 @@ export class StillPicture {
     this.sheet = new FullScreenQuad(material);
   }
 
-  /** What was drawn is no more what is seen. */
+  /** Marks the picture as outdated. */
   outdate(): void {
     this.isOutdated = true;
   }

@@ -4,10 +4,10 @@ import { type CenteredSurface, centered } from "../page/centered_surface.ts";
 import { decodeSurface } from "../page/embedded_surface.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 
-/** The mesh of a record, about the middle of its box. */
+/** The mesh of a record, relative to the middle of its box. */
 export interface Anatomy extends CenteredSurface {
   readonly isClosed: boolean;
-  /** A place of the record as one of these positions. */
+  /** Converts a place of the record to such a position. */
   readonly placed: (place: Place) => three.Vector3;
 }
 
@@ -24,8 +24,8 @@ export async function unpackedAnatomy(mesh: RecordedMesh): Promise<Anatomy> {
 }
 
 /**
- * The corners of the triangles of which one is within a way from a place, seen along a direction, and
- * no further that way than the front.
+ * Returns the corners of triangles near a line: at least one corner is within a distance of the
+ * line through a place along a direction, and not beyond the front.
  */
 export function cornersAround(
   { positions, corners }: Anatomy,
@@ -48,7 +48,7 @@ export function cornersAround(
   });
 }
 
-/** The corners of fewer triangles, where those vertices count as one that are in one cube of a grid. */
+/** Returns the corners of fewer triangles: vertices in the same cube of a grid count as one. */
 export function coarsened(
   positions: Float32Array,
   corners: Uint32Array,
@@ -75,7 +75,10 @@ export function coarsened(
 
 type Corners = readonly [number, number, number];
 
-/** The mean direction out of the surface around a place, weighted by area; null without a surface. */
+/**
+ * Returns the mean direction out of the surface around a place, weighted by area; null without a
+ * surface.
+ */
 export function outward(
   { positions, corners }: Anatomy,
   place: three.Vector3,
@@ -95,16 +98,16 @@ export function outward(
   return sum.lengthSq() > 0 ? sum.normalize() : null;
 }
 
-/** How the anatomy is looked at: a camera without perspective, which looks at a target. */
+/** The view of the anatomy: a camera without perspective, with a target. */
 export interface Outlook {
   readonly camera: three.OrthographicCamera;
   readonly target: three.Vector3;
 }
 
-/** Width by height of all pictures. */
+/** Width to height of all pictures. */
 export const aspect = 4 / 3;
 
-/** Looks from a direction at a target, at so much of the height. [mm] */
+/** Views a target from a direction. `height`: the visible height. [mm] */
 export function lookFrom(
   toward: three.Vector3,
   up: three.Vector3,
@@ -131,7 +134,7 @@ export const verticesOf = ({ positions }: Anatomy): three.Vector3[] =>
     new three.Vector3().fromArray(positions, 3 * i),
   );
 
-/** Looks from a direction at places, with so many times the height that shows them all. */
+/** Views places from a direction, with a multiple of the height that shows them all. */
 export function lookAtAll(
   places: readonly three.Vector3[],
   toward: three.Vector3,
@@ -143,7 +146,7 @@ export function lookAtAll(
   return lookFrom(toward, up, middle, height * least, size);
 }
 
-/** The middle of places, and the height that shows them all, for one who looks from a direction. */
+/** Returns the middle of places, and the height that shows them all from a direction. */
 export function fitted(
   places: readonly three.Vector3[],
   toward: three.Vector3,

@@ -9,14 +9,17 @@ import { type Mark, placeMarks, scaleBar } from "./marks.ts";
 import { GraphicsPainter, type Layer, type Painter } from "./painting.ts";
 import { StillPainter } from "./still.ts";
 
-/** How long after the last motion of a view it is drawn as fine as it can be. [ms] */
+/** The delay after the last motion of a view until it is drawn at full resolution. [ms] */
 const rest = 160;
-/** By how much a key turns, and by how much it zooms. */
+/** The rotation and the zoom of a key. */
 const [turn, zoom] = [0.12, 1.15];
 
 let shared: Graphics | null | undefined;
 
-/** What draws all pictures of the page with WebGL, another one when that was lost; null where there is none. */
+/**
+ * Returns the WebGL graphics that all pictures of the page share, a new one after a loss; null
+ * without WebGL.
+ */
 function sharedGraphics(): Graphics | null {
   if (shared !== undefined) return shared;
   try {
@@ -38,7 +41,7 @@ interface Picture {
   isStale: boolean;
 }
 
-/** Pictures of one anatomy that are looked at in the same way: when one is turned, all turn. */
+/** Pictures of one anatomy with the same view: when one is turned, all turn. */
 export class AnatomyView {
   private readonly pictures: Picture[] = [];
   private painter: Painter;
@@ -56,7 +59,10 @@ export class AnatomyView {
   });
   private readonly sizes = new ResizeObserver(() => this.outdate());
 
-  /** `group`: the element around the pictures, which says from where they are looked at. `isCut`: whether each shows a cut. */
+  /**
+   * `group`: the element around the pictures, which states the direction of the view. `isCut`: true
+   * for each picture that shows a cut.
+   */
   constructor(
     private readonly group: HTMLElement,
     anatomy: Anatomy,
@@ -112,7 +118,7 @@ export class AnatomyView {
     this.group.append(make("figure", {}, element, make("figcaption", {}, ...caption)));
   }
 
-  /** Puts the marks of all pictures where they are now. */
+  /** Updates the positions of the marks of all pictures. */
   placeMarks(): void {
     for (const picture of this.pictures) this.mark(picture);
   }
@@ -127,13 +133,13 @@ export class AnatomyView {
   }
 
   private controlled(element: HTMLElement): OrbitControls {
-    // Only in a picture that was clicked, or with Ctrl, the wheel zooms: else it scrolls the page.
+    // The wheel zooms in a picture that was clicked, or with Ctrl; else it scrolls the page.
     element.addEventListener("wheel", ({ ctrlKey }) => {
       controls.enableZoom = ctrlKey || document.activeElement === element;
     });
     element.addEventListener("pointerdown", ({ pointerType }) => {
       controls.enableZoom = true;
-      // Up and down a finger scrolls the page, if it is not in a picture that was tapped.
+      // A vertical motion of a finger scrolls the page, unless the picture was tapped.
       const scrolls = pointerType === "touch" && document.activeElement !== element;
       controls.minPolarAngle = scrolls ? controls.getPolarAngle() : 0;
       controls.maxPolarAngle = scrolls ? controls.getPolarAngle() : Math.PI;
@@ -186,13 +192,13 @@ export class AnatomyView {
       .join(",");
   }
 
-  /** Draws all pictures anew: what is in them has changed, or how they are looked at. */
+  /** Draws all pictures again, because their content or their view has changed. */
   outdate(): void {
     for (const picture of this.pictures) picture.isStale = true;
     this.redraw();
   }
 
-  /** Draws when the browser next does: first what is in sight, then, at rest, all else. */
+  /** Draws with the browser's next frame: first the visible pictures, then, at rest, all others. */
   private redraw(): void {
     if (this.isDue || this.pictures.length === 0) return;
     this.isDue = true;
@@ -226,14 +232,14 @@ export class AnatomyView {
     const { clientWidth: width, clientHeight: height } = element;
     if (width === 0) return;
     const { camera } = this.outlook;
-    // On paper the picture has another size, but is not drawn anew.
+    // On paper the picture has another size, but is not drawn again.
     scale.ownerSVGElement?.setAttribute("viewBox", `0 0 ${width} ${height}`);
     placeMarks(marks, camera, width, height);
     scaleBar(scale, (camera.top - camera.bottom) / camera.zoom / height, width, height);
   }
 }
 
-/** What a reader can do with so many pictures, and without WebGL why they are plain. */
+/** Explains to the reader how to use the pictures, and without WebGL why they are simpler. */
 export const hint = (pictures: number): HTMLElement =>
   make(
     "p",
@@ -244,7 +250,10 @@ export const hint = (pictures: number): HTMLElement =>
     ...(sharedGraphics() ? [] : [" There is no WebGL here: the pictures are plain."]),
   );
 
-/** The direction, of those all around and a little above, from which most places are seen. */
+/**
+ * Returns the direction from which most places are visible, among directions all around and
+ * slightly above.
+ */
 export function bestDirection(
   directions: readonly three.Vector3[],
   seenFrom: (toward: three.Vector3) => number,

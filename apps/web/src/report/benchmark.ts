@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The sections of a benchmark: plots of the rows that are chosen, then every row. */
+/** The sections of a benchmark: plots of the selected rows, then every row. */
 
 import * as Plot from "@observablehq/plot";
 import { grouped, make } from "../page/elements.ts";
@@ -25,7 +25,7 @@ import {
 
 /** A row of a benchmark: one combination on one mesh. */
 export interface BenchmarkRow {
-  /** Where it is in the record. */
+  /** The pointer to the row in the record. */
   readonly from: string;
   readonly mesh: string;
   readonly triangles: number;
@@ -50,7 +50,10 @@ export interface BenchmarkRow {
 
 type Rows = readonly BenchmarkRow[];
 
-/** Those of the benchmark and of the comparison at these pointers, as far as there are such. */
+/**
+ * Returns the sections for the benchmark and the comparison at these pointers, as far as they
+ * exist.
+ */
 export function benchmarkSections(from: string, comparisonFrom: string): HTMLElement[] {
   const comparison = comparisonSections(comparisonFrom);
   const rows = entries(`${from}/rows`).map((row) => ({
@@ -70,7 +73,7 @@ export function benchmarkSections(from: string, comparisonFrom: string): HTMLEle
   ];
 }
 
-/** Under which conditions the headline holds. Older records have it in their account. */
+/** Returns the conditions of the headline. Older records have them in their account. */
 function conditions(from: string): HTMLElement[] {
   if (valueAt(`${from}/fastest`) === undefined) return [];
   const row = (which: string) => `${from}/rows/${valueAt(`${from}/${which}`)}`;
@@ -100,19 +103,21 @@ const sphere = ({ radius }: BenchmarkRow): string =>
 const combination = ({ index, activation, solver }: BenchmarkRow): string =>
   [index, activation, solver].join(", ");
 const median = (timing: Timing | null): number => timing?.p50 ?? Number.NaN;
-/** Whether all steps but one in a hundred at most have an answer: what gives up is not fast. */
+/**
+ * True if at most one step in a hundred has no answer: a combination that often fails is not fast.
+ */
 const answers = ({ unsolved_share }: BenchmarkRow): boolean => unsolved_share <= 0.01;
-/** The first row of each name. */
+/** Returns the first row of each name. */
 const distinct = (rows: Rows, name: (row: BenchmarkRow) => string): BenchmarkRow[] =>
   rows.filter((row, i) => rows.findIndex((other) => name(other) === name(row)) === i);
 
-/** Those of the largest mesh among them, each index, rule and solver once. */
+/** Returns the rows of the largest mesh, each index, rule and solver once. */
 function ofLargest(rows: Rows): BenchmarkRow[] {
   const most = Math.max(...rows.map(({ triangles }) => triangles));
   return rows.filter(({ triangles }) => triangles === most);
 }
 
-/** A combination within the text of a plot. */
+/** Returns a combination as part of a plot's text. */
 const combinationParts = (from: string) =>
   ["index", ", ", "activation", ", ", "solver"].map((part) =>
     part === ", " ? part : { from: `${from}/${part}` },
@@ -138,7 +143,7 @@ const facts = columnsOf(
   "/bytes_per_triangle",
 );
 
-/** A published rate, or that of a row. */
+/** A published rate, or the rate of a row. */
 interface Rate {
   readonly from: string;
   readonly triangles: number;
@@ -154,7 +159,7 @@ const stages = [
   { key: "solve_us", name: "solve", color: "var(--stage-solve)" },
 ] as const;
 
-/** The plots, and what is chosen for all of them: mesh, motion sphere, rule. */
+/** The plots, and the choices for all of them: mesh, motion sphere, rule. */
 class BenchmarkPlots {
   private readonly mesh: Question<BenchmarkRow>;
   private readonly sphere: Question<BenchmarkRow>;
@@ -170,7 +175,7 @@ class BenchmarkPlots {
       .sort((a, b) => (b.radius ?? 0) - (a.radius ?? 0));
     const mesh = ({ mesh }: BenchmarkRow) => mesh;
     const rule = ({ activation }: BenchmarkRow) => activation;
-    // The published one has been timed with most indices and solvers.
+    // The published rule was timed with most indices and solvers.
     const isPaper = (row: BenchmarkRow) => Number(rule(row) === "paper");
     const rules = distinct(rows, rule).sort((a, b) => isPaper(b) - isPaper(a));
     const radii = distinct(spheres.length > 0 ? spheres : rows, sphere);
@@ -195,9 +200,9 @@ class BenchmarkPlots {
     ];
   }
 
-  /** Those chosen, where nothing is timed that has nothing to find. */
+  /** Returns the selected rows, except indices that cannot find anything. */
   private chosen(...ignored: readonly Question<BenchmarkRow>[]): BenchmarkRow[] {
-    // What certified looks at is no choice of the user: it is shown with any sphere.
+    // The query of certified is not a choice of the user, so it is shown with any sphere.
     const fits = (row: BenchmarkRow) =>
       this.selection.has(row, ...ignored) ||
       (row.radius === null && this.selection.has(row, this.sphere, ...ignored));
@@ -270,7 +275,9 @@ class BenchmarkPlots {
     ];
   }
 
-  /** Of every rule: ours and what it is set against; all combinations where there is neither. */
+  /**
+   * Returns the rates of each rule, ours and its reference; all combinations if there is neither.
+   */
   private rates(): HTMLElement[] {
     const pairs = entries(`${this.from}/pairs`).map((pair) => [
       valueAt(`${pair}/index`),

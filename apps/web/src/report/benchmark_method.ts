@@ -7,7 +7,7 @@ import { rounded, shown, shownMembers } from "./shown.ts";
 
 const term = (name: string): HTMLElement => make("b", {}, name);
 
-/** How a benchmark was measured, on what, and what the names of its parts stand for. */
+/** Describes how and on what a benchmark was measured, and the names of its parts. */
 export function benchmarkMethod(from: string, rows: readonly BenchmarkRow[]): HTMLElement {
   const hasNlopt = rows.some(({ solver }) => solver.startsWith("nlopt"));
   const clock = `${from}/machine/clock_ns`;

@@ -6,7 +6,7 @@ import { lead, section } from "./report_page.ts";
 import { type Format, mean, percent, rounded, shown } from "./shown.ts";
 import { type Column, column, named, rowFilter, scrolled, table } from "./table.ts";
 
-/** Nothing for what an index of no cost has. */
+/** A dash for an index without cost. */
 const cost: Format = (value) => (value > 0 ? rounded(value) : "–");
 
 const columns: readonly Column[] = [
@@ -41,11 +41,14 @@ const columns: readonly Column[] = [
 
 const only: readonly Column[] = [column("query 99 % [µs]", "/query_us/p99", rounded)];
 
-/** What is told of a row elsewhere as the table tells it, by where below a row it is. */
+/** Returns columns of the table for use elsewhere, by the pointers below a row. */
 export const columnsOf = (...wanted: readonly string[]): Column[] =>
   [...columns, ...only].filter(({ from }) => wanted.includes(from));
 
-/** In how many groups of rows all indices made the same steps. Older records do not have the counts. */
+/**
+ * Shows in how many groups of rows all indices made the same steps. Older records do not have the
+ * counts.
+ */
 function sameSteps(groups: string): HTMLElement[] {
   if (!valueAt(`${groups}/groups`)) return [];
   const count = (key: string) => shown(`${groups}/${key}`, grouped);
@@ -68,7 +71,10 @@ function sameSteps(groups: string): HTMLElement[] {
   ];
 }
 
-/** Every row of a benchmark, the largest mesh first, then the largest sphere, then the fastest. */
+/**
+ * Returns every row of a benchmark, sorted by the largest mesh, the largest sphere, and the
+ * fastest.
+ */
 export function benchmarkTable(from: string, rows: readonly BenchmarkRow[]): HTMLElement {
   const meshes = [...new Set(rows.map(({ mesh }) => mesh))];
   const key = ({ mesh, triangles, radius, step_us }: BenchmarkRow) => [

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What all plots share: how they are drawn to fit, told of by a tip, and filtered by a legend. */
+/** The common parts of all plots: responsive drawing, tips, and filtering by a legend. */
 
 import * as Plot from "@observablehq/plot";
 import { make } from "../page/elements.ts";
@@ -8,7 +8,7 @@ import { lead, panels, section } from "./report_page.ts";
 import { shown } from "./shown.ts";
 import type { Column } from "./table.ts";
 
-/** How a series is told from others, by its colour and by its mark. */
+/** The appearance of a series: its color and its mark. */
 export interface Look {
   readonly color: string;
   readonly symbol: Plot.SymbolType;
@@ -16,7 +16,7 @@ export interface Look {
 
 const symbols = ["circle", "square", "triangle", "diamond", "cross", "wye"] as const;
 
-/** The looks of series by their names: the same for a name wherever it is drawn. */
+/** Returns the appearance of series by name, which is the same in all plots. */
 export function looksOf(names: readonly string[]): Map<string, Look> {
   return new Map(
     [...new Set(names)].map((name, i) => [
@@ -26,7 +26,7 @@ export function looksOf(names: readonly string[]): Map<string, Look> {
   );
 }
 
-/** Choices of the reader that bear on what charts show. */
+/** Choices of the reader that affect the charts. */
 export class Choices {
   private readonly listeners: (() => void)[] = [];
 
@@ -38,7 +38,7 @@ export class Choices {
   }
 }
 
-/** Names of series with their looks; those that are not ticked are left out of its charts. */
+/** Names of series with their looks. Its charts omit series that are not ticked. */
 export class Legend extends Choices {
   readonly element = make(
     "fieldset",
@@ -47,7 +47,9 @@ export class Legend extends Choices {
   );
   private readonly hidden = new Set<string>();
 
-  /** `label`: what stands for a name, if not the name. `others`: choices that its charts follow too. */
+  /**
+   * `label`: the displayed name, if it differs. `others`: further choices that its charts follow.
+   */
   constructor(
     readonly looks: ReadonlyMap<string, Look>,
     label: (name: string) => Node | string = (name) => name,
@@ -77,21 +79,21 @@ function glyph({ color, symbol }: Look): Element {
   return picture;
 }
 
-/** A card with a plot of data, drawn as wide as its place is. */
+/** A card with a plot of data, in the width of its container. */
 export interface Chart<Datum> {
   readonly title?: string;
-  /** For those who cannot see it. */
+  /** For readers who cannot see it. */
   readonly description: string;
   readonly draw: (width: number) => Plot.PlotOptions;
-  /** What is told of a datum under the pointer: see the marks that are made with Plot.pointer. */
+  /** The tip of a datum under the pointer: see the marks that are made with Plot.pointer. */
   readonly tip: (datum: Datum) => readonly (Node | string)[];
   readonly legend?: Legend;
 }
 
-/** Around what a plot draws, for its axes. */
+/** Space around a plot, for its axes. */
 const space = { marginLeft: 48, marginBottom: 40, inset: 7 };
 
-/** The element that holds a chart. */
+/** Returns the element with a chart. */
 export function chart<Datum>(wanted: Chart<Datum>): HTMLElement {
   const { title, description, draw, tip, legend } = wanted;
   const bubble = make("div", { class: "tip", hidden: "" });
@@ -116,7 +118,7 @@ export function chart<Datum>(wanted: Chart<Datum>): HTMLElement {
   place.addEventListener("pointermove", follow);
   place.addEventListener("pointerdown", follow);
   legend?.whenChanged(redraw);
-  // What is not seen has no width; it is drawn all the same, for print.
+  // A hidden chart has no width, but is drawn for print.
   new ResizeObserver(([entry]) => {
     const room = Math.floor(entry?.contentRect.width ?? 0) || width || 560;
     if (room === width) return;
@@ -127,7 +129,9 @@ export function chart<Datum>(wanted: Chart<Datum>): HTMLElement {
   return make("figure", {}, ...(name ? [name] : []), place);
 }
 
-/** A section with plots side by side, which a legend filters. `words`: on what they show. */
+/**
+ * Returns a section with plots side by side, which a legend filters. `words`: their explanation.
+ */
 export const plotSection = (
   title: string,
   words: readonly (Node | string)[],
@@ -135,7 +139,7 @@ export const plotSection = (
   ...plots: readonly HTMLElement[]
 ): HTMLElement => section(title, lead(...words), legend.element, panels(...plots));
 
-/** Names and values for a tip. */
+/** Returns names and values for a tip. */
 export function tipOf(
   title: readonly (Node | string)[],
   facts: readonly (readonly [string, Node])[],
@@ -144,7 +148,7 @@ export function tipOf(
   return [make("b", {}, ...title), make("dl", {}, ...lines)];
 }
 
-/** The same, of those that some columns of a table would show of a row. */
+/** Like tipOf(), for the values that some columns of a table show. */
 export const tipOfColumns = (
   title: readonly (Node | string)[],
   row: string,
@@ -155,7 +159,7 @@ export const tipOfColumns = (
     columns.map(({ heading, from, format }) => [heading, shown(row + from, format)]),
   );
 
-/** A dashed line over the whole plot, at a level of one axis, and its name. */
+/** Returns a dashed line across the plot at a value of one axis, with its name. */
 export function levelMarks(
   axis: "x" | "y",
   level: number,
@@ -169,7 +173,7 @@ export function levelMarks(
   ];
 }
 
-/** A logarithmic scale, with ticks that fit the values. */
+/** Returns a logarithmic scale with ticks that fit the values. */
 export function logarithmic(label: string | null, values: readonly number[]): Plot.ScaleOptions {
   const positive = values.filter((value) => value > 0);
   const [low, high] = extremes(positive);
@@ -185,7 +189,7 @@ export function logarithmic(label: string | null, values: readonly number[]): Pl
   return { type: "log", domain: [low, high], label, grid: true, ticks: seen, tickFormat: tickText };
 }
 
-/** The number at a tick: 0.5, 200, 50k, 1M, 10⁻⁶. */
+/** Returns the text of a tick: 0.5, 200, 50k, 1M, 10⁻⁶. */
 export function tickText(value: number): string {
   if (value >= 1e6) return `${Number((value / 1e6).toPrecision(6))}M`;
   if (value >= 1e4) return `${Number((value / 1e3).toPrecision(6))}k`;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The sections of a comparison: whether indices, solvers and narrow phases give the same answers. */
+/**
+ * The sections of a comparison: whether indices, solvers and narrow phases give the same answers.
+ */
 
 import { grouped, make } from "../page/elements.ts";
 import { Legend, logarithmic, looksOf, tipOfColumns } from "./charts.ts";
@@ -68,7 +70,7 @@ const faults = (rows: readonly string[], columns: readonly Column[]): (Node | st
       return [`${words}: `, ...(all.length > 0 ? all : ["none"]), ". "];
     });
 
-/** `from`: where the comparison is; what was not compared is left out. */
+/** `from`: the pointer to the comparison. Parts that were not compared are omitted. */
 export function comparisonSections(from: string): HTMLElement[] {
   const part = (
     key: string,
@@ -113,7 +115,7 @@ export function comparisonSections(from: string): HTMLElement[] {
   ];
 }
 
-/** What the libraries said, in their words: a line for each solver. */
+/** Returns the statuses of the libraries, in their own words, with a line for each solver. */
 function outcomes(rows: readonly string[]): HTMLElement[] {
   const lines = rows.flatMap((row) => {
     const most = entries(`${row}/outcomes`).sort(
@@ -142,11 +144,11 @@ interface NarrowPhaseRow {
   readonly worst_error_mm: number;
 }
 
-/** The errors of all narrow phases, side by side for each relation of tool and triangle. */
+/** Plots the errors of all narrow phases, side by side for each relation of tool and triangle. */
 function errors(pointers: readonly string[]): HTMLElement[] {
   const rows = pointers.map((from) => ({ ...(valueAt(from) as NarrowPhaseRow), from }));
   const legend = new Legend(looksOf(rows.map(({ backend }) => backend)));
-  // A logarithmic axis has no place for what is exact.
+  // A logarithmic axis cannot show an error of zero.
   const above = (value: number) => (value > 0 ? value : Number.NaN);
   const middle = ({ median_error_mm }: NarrowPhaseRow) => above(median_error_mm);
   const worst = ({ worst_error_mm }: NarrowPhaseRow) => above(worst_error_mm);
@@ -166,7 +168,7 @@ function errors(pointers: readonly string[]): HTMLElement[] {
         " to ",
         { from: `${from}/worst_error_mm`, format: error },
       ],
-      // On the same axis, so that panels can be compared.
+      // All panels have the same axis, so that they can be compared.
       x: () => logarithmic("error [mm]", [...rows.map(middle), ...rows.map(worst)]),
       marks: (seen, channels) => spans(seen, channels, middle, worst),
     });

@@ -2,22 +2,22 @@
 import * as Plot from "@observablehq/plot";
 import { type Chart, chart, type Legend, levelMarks, logarithmic } from "./charts.ts";
 
-/** What is drawn as lines through marks, a line for each series, on two logarithmic axes. */
+/** A plot of lines through marks, one line for each series, on two logarithmic axes. */
 interface Curves<Datum> extends Omit<Chart<Datum>, "draw"> {
-  /** Asked for whenever it is drawn. */
+  /** Called for each drawing. */
   readonly data: () => readonly Datum[];
   readonly series: (datum: Datum) => string;
-  /** The label of an axis, and where on it a datum is; not a number: nowhere. */
+  /** The label of an axis, and the value of a datum on it; NaN: not drawn. */
   readonly x: readonly [string, (datum: Datum) => number];
   readonly y: readonly [string, (datum: Datum) => number];
   readonly legend: Legend;
-  /** A level that tells something, and its name. */
+  /** A reference value and its name. */
   readonly rule?: readonly [number, string];
-  /** Marks alone, where one series has several at one place. */
+  /** True for marks without lines, if a series has several at one place. */
   readonly isLoose?: boolean;
 }
 
-/** The element that holds such a plot. Stars stand alone. */
+/** Returns the element with such a plot. Stars have no lines. */
 export function curves<Datum>(wanted: Curves<Datum>): HTMLElement {
   const { legend, series, rule, isLoose = false } = wanted;
   const [[xLabel, x], [yLabel, y]] = [wanted.x, wanted.y];

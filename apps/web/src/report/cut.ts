@@ -12,13 +12,14 @@ import {
 } from "./simulation_record.ts";
 
 /**
- * A cut along a path: a curtain hung from it, before which the anatomy is taken away. It is fixed to
- * the anatomy: a depth towards the viewer for each place sideways, so that the view can be turned.
+ * A cut along a path: a curtain that hangs from the path; the anatomy in front of it is removed. It
+ * is fixed to the anatomy, so that the view can be turned. It stores a depth towards the viewer for
+ * each sideways position.
  */
 export interface Cut {
   readonly sideways: three.Vector3;
   readonly toward: three.Vector3;
-  /** Where sideways the first and the last of the depths are. [mm] */
+  /** The sideways positions of the first and the last depth. [mm] */
   readonly from: number;
   readonly to: number;
   readonly depths: Float32Array;
@@ -32,10 +33,13 @@ interface CloseUp extends Outlook {
 }
 
 const columns = 1024;
-/** Depths are means over so many columns to either side: takes the steps out, keeps the way. */
+/** Depths are averaged over this many columns to either side, which removes steps. */
 const smoothing = 6;
 
-/** Hangs a curtain from a path, both ways from its start: of lengths that overlap the first counts. */
+/**
+ * Hangs a curtain from a path, in both directions from its start. The first of overlapping parts
+ * counts.
+ */
 export function hang(path: readonly three.Vector3[], start: number, frame: CloseUp): Cut {
   const { sideways, toward } = frame;
   const across = path.map((place) => place.dot(sideways));
@@ -67,7 +71,7 @@ export function hang(path: readonly three.Vector3[], start: number, frame: Close
   return { sideways, toward, from, to, depths: smooth };
 }
 
-/** How far behind a curtain places are, three coordinates each. [mm] */
+/** Returns the distances of places behind a curtain, three coordinates each. [mm] */
 export function restBehind(
   { sideways, toward, from, to, depths }: Cut,
   places: Float32Array,
@@ -80,7 +84,9 @@ export function restBehind(
   });
 }
 
-/** Looks at a moment from the side of its stroke, at all of it or, where that hides it, at its depth. */
+/**
+ * Views a moment from the side of its stroke: all of the stroke or, if that hides it, the depth.
+ */
 export function closeUp(record: SimulationRecord, moment: Moment, anatomy: Anatomy): CloseUp {
   const tips = record.runs.flatMap((run) =>
     (run.strokes[moment.stroke] as Stroke).tip.map(anatomy.placed),
@@ -95,7 +101,7 @@ export function closeUp(record: SimulationRecord, moment: Moment, anatomy: Anato
   );
   const told = depths[moment.run] as number;
   if (told === 0 || told >= 0.03 * height) {
-    // Room for labels, and for the scale bar below.
+    // Space for labels, and for the scale bar below.
     fit.middle.addScaledVector(wide.out, -0.06 * height);
     return { ...wide, ...lookFrom(wide.eye, wide.out, fit.middle, height, anatomy.size), height };
   }
@@ -114,12 +120,12 @@ function lookAt(record: SimulationRecord, moment: Moment, anatomy: Anatomy, heig
   const bad = trespass(run, moment.stroke, record);
   const entry = path[Math.max(bad.lastIndexOf(false, moment.cycle), 0)] as three.Vector3;
   const hand = anatomy.placed(record.hand[moment.stroke]?.[0] ?? [0, 0, 0]);
-  const widest = 4; // [mm]: of a thin branch, not also the far side
+  const widest = 4; // [mm]; excludes the far side of a thin branch
   const out =
     outward(anatomy, entry, Math.min(0.3 * height, widest) + entry.distanceTo(place)) ??
     hand.sub(place).normalize();
 
-  // Sideways to the way of the tip, so that the picture shows the length of it.
+  // Sideways to the motion of the tip, so that the picture shows its length.
   const way = new three.Vector3();
   for (const tip of path) {
     const offset = tip.clone().sub(place);
@@ -131,8 +137,8 @@ function lookAt(record: SimulationRecord, moment: Moment, anatomy: Anatomy, heig
   const toward = way.cross(out).normalize();
   if (toward.dot(new three.Vector3(...record.up)) < 0) toward.negate();
 
-  // From a little above, the surface shows as the ground and the cut as its front. The surface is
-  // somewhat above the middle: most of what there is to see is at it, the rest is below.
+  // From slightly above, the surface appears as the ground and the cut as its front. The surface is
+  // above the middle, because most of the relevant parts are at it or below.
   const eye = toward.clone().addScaledVector(out, 0.35);
   const depth = Math.max(0, -(stroke.clearance_mm[moment.cycle] as number));
   const target = place.clone().addScaledVector(out, depth - 0.12 * height);
@@ -147,7 +153,10 @@ function lookAt(record: SimulationRecord, moment: Moment, anatomy: Anatomy, heig
   };
 }
 
-/** The cycle that a close-up marks: the worst of what went in, else the nearest that is in sight. */
+/**
+ * Returns the cycle that a close-up marks: the deepest penetration, or else the nearest visible
+ * one.
+ */
 export function markedCycle(
   record: SimulationRecord,
   number: number,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** Pictures that a record has as SVG: they are shown, and nothing in them is done. */
+/** SVG pictures of a record: they are displayed, but cannot execute anything. */
 
 const elements = new Set(
   "svg g defs clipPath path rect circle ellipse line polyline polygon text tspan use title desc style".split(
@@ -7,11 +7,11 @@ const elements = new Set(
   ),
 );
 
-/** Whether what stands in an attribute or a style names nothing but what is in the picture. */
+/** True if an attribute or a style refers only to the picture itself. */
 const isOwn = (text: string): boolean =>
   !/@import|\\|image-set|src\(/i.test(text) && !/url\((?!\s*['"]?#)/i.test(text);
 
-/** Takes out of a picture all but shapes, words and their looks: no script, no other file. */
+/** Removes everything except shapes, texts and their styles: no script, no other file. */
 function strip(element: Element): void {
   for (const { name, localName, value } of [...element.attributes]) {
     const leads = localName === "href" && !value.startsWith("#");
@@ -25,8 +25,8 @@ function strip(element: Element): void {
 }
 
 /**
- * The picture that is this SVG, in a shadow of its own: its names and styles are not those of the
- * page. What is no SVG is told of.
+ * Returns the picture of this SVG in its own shadow root, so that its names and styles do not mix
+ * with the page's. Shows a message if the text is not SVG.
  */
 export function drawnSvg(text: string, name: string): HTMLElement {
   const host = document.createElement("div");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The sections of the paper's experiments, done again. */
+/** The sections of the experiments that reproduce Li et al. (2020). */
 import { make } from "../page/elements.ts";
 import { drawnSvg } from "./drawn_svg.ts";
 import { below, entries, valueAt } from "./record.ts";
@@ -7,13 +7,16 @@ import { lead, panels, section } from "./report_page.ts";
 import { paragraphs, show, shown } from "./shown.ts";
 import { type Column, named, scrolled, table } from "./table.ts";
 
-/** The paper's numbers beside ours, of all experiments; then what each found. */
+/**
+ * Returns the published numbers of all experiments beside ours, then the results of each
+ * experiment.
+ */
 export function experimentSections(): HTMLElement[] {
   const all = entries("/experiments");
   return [...claims(all), ...all.map(found)];
 }
 
-/** Where the experiment is that a claim is of. */
+/** Returns the pointer to the experiment of a claim. */
 const experimentOf = (claim: string): string => claim.split("/").slice(0, 3).join("/");
 
 const claimColumns: readonly Column[] = [
@@ -38,7 +41,7 @@ function claims(all: readonly string[]): HTMLElement[] {
   if (rows.length === 0) return [];
   return [
     section(
-      "Beside the paper",
+      "Compared with Li et al. (2020)",
       lead(
         "What the paper prints; what its rule does here, under the same conditions as the others; what the certified rule does; and which does best.",
       ),
@@ -47,7 +50,7 @@ function claims(all: readonly string[]): HTMLElement[] {
   ];
 }
 
-/** What an experiment found: in a sentence, in tables, in pictures. */
+/** Returns the results of an experiment: a sentence, tables and pictures. */
 function found(experiment: string): HTMLElement {
   const heading = show(make("h2", { class: "part" }), `${experiment}/title`);
   const tables = entries(`${experiment}/tables`).flatMap((one) => [
@@ -68,7 +71,7 @@ function found(experiment: string): HTMLElement {
 
 const isNumber = (text: string): boolean => /^([-−–+]?\d|[<>≤≥]|[-–]?$)/.test(text);
 
-/** A table whose headings and rows are text in the record. */
+/** Returns a table whose headings and rows are text in the record. */
 function textTable(pointer: string): HTMLTableElement {
   const headings = entries(`${pointer}/columns`);
   const rows = entries(`${pointer}/rows`);
@@ -87,7 +90,7 @@ function textTable(pointer: string): HTMLTableElement {
   return made;
 }
 
-/** A picture with its title above and its caption below, which scrolls sideways where it is narrow. */
+/** Returns a picture with title and caption, which scrolls sideways on a narrow page. */
 function picture(figure: string): HTMLElement {
   const title = valueAt<string>(`${figure}/title`) ?? "";
   const drawn = drawnSvg(valueAt<string>(`${figure}/svg`) ?? "", title);

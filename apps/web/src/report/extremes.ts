@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
-/** The least and the largest of values, of which there may be more than a call takes arguments. */
+/**
+ * Returns the smallest and the largest value. Works for more values than a function call has
+ * arguments.
+ */
 export function extremes(values: Iterable<number>): [number, number] {
   let least = Number.POSITIVE_INFINITY;
   let largest = Number.NEGATIVE_INFINITY;

@@ -28,10 +28,10 @@ interface InspectionRecord extends ReportRecord {
   readonly inspection: { readonly findings: readonly Finding[] };
 }
 
-/** How many groups of faults of a kind have rings, and how many faults have rows. */
+/** The most groups of faults with rings, and the most faults with rows, of each kind. */
 const [mostRings, mostRows] = [10, 100];
 
-/** What the page of `inspect` shows. */
+/** Shows the page of `inspect`. */
 export async function inspectionSections(main: HTMLElement, record: ReportRecord): Promise<void> {
   const { mesh, inspection } = record as InspectionRecord;
   const anatomy = await unpackedAnatomy(mesh);
@@ -53,7 +53,7 @@ export async function inspectionSections(main: HTMLElement, record: ReportRecord
 
 type Located = Finding & { readonly from: string };
 
-/** What a finding means and what to do about it. */
+/** Returns the meaning of a finding, and the advice. */
 const advice = (from: string) => [
   make("b", {}, "Meaning:"),
   " ",
@@ -65,10 +65,10 @@ const advice = (from: string) => [
   ".",
 ];
 
-/** A finding that is about all of the mesh. */
+/** Returns a finding about the whole mesh. */
 const unmarked = ({ from }: Located) => make("p", { class: "account bad" }, ...advice(from));
 
-/** The mesh, once for each kind of fault. */
+/** Returns the mesh, once for each kind of fault. */
 function pictures(anatomy: Anatomy, findings: readonly Located[]): HTMLElement {
   const group = pictureGrid(findings.length);
   const up = new three.Vector3(0, 0, 1);
@@ -100,14 +100,14 @@ function pictures(anatomy: Anatomy, findings: readonly Located[]): HTMLElement {
     : section("The mesh", group, hint(1));
 }
 
-/** From where the first fault is seen, and a little from above and the side. */
+/** Returns a direction that shows the first fault, slightly from above and from the side. */
 function direction({ placed }: Anatomy, findings: readonly Located[]): three.Vector3 {
   const oblique = new three.Vector3(0.45, -0.25, 0.175);
   const [first] = findings.flatMap(({ places }) => places);
   return first ? placed(first.at).normalize().add(oblique) : oblique;
 }
 
-/** The outlines of faults: a vertex as a dot, an edge, a triangle, or two triangles. */
+/** Returns the outlines of faults: a vertex as a dot, an edge, a triangle, or two triangles. */
 function layerOf({ placed }: Anatomy, { places }: Finding): Layer {
   const ends = places.flatMap(({ corners }) =>
     corners.flatMap((corner, i) => {
@@ -132,7 +132,7 @@ function layerOf({ placed }: Anatomy, { places }: Finding): Layer {
   };
 }
 
-/** Rings with numbers, so that small faults are found. */
+/** Returns rings with numbers, which make small faults visible. */
 const rings = ({ placed }: Anatomy, { from, groups, places }: Located): Mark[] =>
   places.slice(0, Math.min(groups, mostRings)).map(({ at }, number) => {
     const pointer = below(from, "places", number);
@@ -140,13 +140,13 @@ const rings = ({ placed }: Anatomy, { from, groups, places }: Located): Mark[] =
     return mark("ring numbered bad", placed(at), 13, label);
   });
 
-/** Coordinates in mm, all with so many decimals that the size of the mesh has six digits. */
+/** Formats coordinates in mm with as many decimals as the size of the mesh has with six digits. */
 function coordinates({ size }: Anatomy): Format {
   const decimals = Math.min(Math.max(5 - Math.floor(Math.log10(size)), 0), 12);
   return (mm) => mm.toFixed(decimals).replace(/^-(?=[0.]*$)/, "");
 }
 
-/** The first faults of each kind and where they are. */
+/** Returns the first faults of each kind and their places. */
 function faultTable(findings: readonly Located[], coordinate: Format): HTMLElement {
   const keyOf = (row: string) => row.replace(/\/places\/\d+$/, "/key");
   const columns: readonly Column[] = [
@@ -166,7 +166,7 @@ function faultTable(findings: readonly Located[], coordinate: Format): HTMLEleme
   );
 }
 
-/** What the mesh is made of. */
+/** Returns the facts of the mesh. */
 function facts(coordinate: Format): HTMLElement {
   const about = "/inspection";
   const names: readonly (readonly [string, string, Format?])[] = [

@@ -3,10 +3,10 @@ import * as three from "three";
 import { colorOf } from "../page/color_of.ts";
 import type { Lengths } from "./painting.ts";
 
-/** The four corners of what is drawn of a length: at which of its ends, and at which side. */
+/** The four corners of a drawn segment: its end and its side. */
 const corners = [0, 0, 1, 1].map((end, i) => [end, i % 2 === 0 ? -1 : 1] as const);
 
-/** Lengths of paths as tubes that are as wide wherever the view is. */
+/** Segments of paths as tubes with a constant width on the screen. */
 export class Line {
   readonly mesh: Shaded;
 
@@ -38,7 +38,7 @@ export class Line {
     this.mesh.frustumCulled = false;
   }
 
-  /** `width` and `height`: of what is drawn to; `pixel`: one of the page, as a depth. */
+  /** `width` and `height`: of the canvas; `pixel`: a pixel of the page, as a depth. */
   adjust(width: number, height: number, scale: number, pixel: number): void {
     const radius = this.lengths.width / 2 + 0.4;
     setUniforms(this.mesh.material, {
@@ -53,7 +53,7 @@ export class Line {
 /** A mesh with a shader. */
 export type Shaded = three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
 
-/** Gives a shader values by the names of its uniforms. */
+/** Sets the uniforms of a shader by name. */
 export function setUniforms({ uniforms }: three.ShaderMaterial, values: object): void {
   for (const [name, value] of Object.entries(values)) {
     (uniforms[name] as three.IUniform).value = value;
@@ -65,7 +65,7 @@ export function discard({ geometry, material }: Shaded): void {
   material.dispose();
 }
 
-/** A tube with round ends, lit and rimmed to stand out from bone of any brightness. */
+/** Returns a tube with round ends, lit and rimmed so that it stands out from bone. */
 const tubeMaterial = (): three.ShaderMaterial =>
   new three.ShaderMaterial({
     side: three.DoubleSide,

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What lies over a picture of anatomy: balls, rings and labels at places of it, and a scale bar. */
+/** Marks over a picture of anatomy: balls, rings and labels at places of it, and a scale bar. */
 import type * as three from "three";
 import { drawn } from "../page/elements.ts";
 import { extremes } from "./extremes.ts";
 
-/** Something at a place of the anatomy. */
+/** A mark at a place of the anatomy. */
 export interface Mark {
   readonly element: SVGGElement;
   readonly label: SVGTSpanElement | null;
   place: three.Vector3;
 }
 
-/** A mark and where it is in a picture. [px] */
+/** A mark and its position in a picture. [px] */
 interface Spot {
   readonly mark: Mark;
   readonly x: number;
@@ -43,8 +43,8 @@ const has = ({ element }: Mark, kind: string) => element.classList.contains(kind
 const textOf = ({ element }: Mark) => element.lastElementChild as SVGTextElement;
 
 /**
- * Puts the marks of a picture where their places are seen. Rings that are close share a label. The label
- * of a mark outside the picture points to it, but the number of a ring ("numbered") is hidden.
+ * Positions the marks of a picture. Rings that are close share a label. The label of a mark outside
+ * the picture points to it, but the number of a ring ("numbered") is hidden.
  */
 export function placeMarks(
   marks: readonly Mark[],
@@ -73,7 +73,9 @@ export function placeMarks(
   labelRings(groupsOf(rings), width, height);
 }
 
-/** Puts the label of a mark below it; where the mark is outside the picture, it points the way. */
+/**
+ * Puts the label of a mark below it. If the mark is outside the picture, the label points to it.
+ */
 function placeLabel({ mark, x, y }: Spot, width: number, height: number): void {
   const arrow = y > height ? "↓ " : y < 0 ? "↑ " : x > width ? "→ " : x < 0 ? "← " : "";
   const isLeft = x > 0.55 * width;
@@ -87,7 +89,7 @@ function placeLabel({ mark, x, y }: Spot, width: number, height: number): void {
   );
 }
 
-/** Writes the labels of marks at a place, with commas between them, as the text of the first. */
+/** Writes the labels of marks at a position, separated by commas, as the text of the first. */
 function write(marks: readonly Mark[], anchor: string, x: number, y: number, before = ""): void {
   for (const one of marks) textOf(one).setAttribute("display", "none");
   const text = textOf(marks[0] as Mark);
@@ -102,7 +104,7 @@ function write(marks: readonly Mark[], anchor: string, x: number, y: number, bef
   text.setAttribute("y", y.toFixed(1));
 }
 
-/** Rings so close that they share a label, in their order. */
+/** Returns groups of rings that are close enough to share a label, in their order. */
 function groupsOf(rings: readonly Spot[]): Spot[][] {
   let groups: Spot[][] = [];
   for (const ring of rings) {
@@ -118,7 +120,7 @@ function groupsOf(rings: readonly Spot[]): Spot[][] {
 const overlap = (a: Box, b: Box): boolean =>
   a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom;
 
-/** Puts the label of each group on that side of it where it covers the fewest other things. */
+/** Puts the label of each group on the side where it covers the fewest other marks. */
 function labelRings(groups: readonly (readonly Spot[])[], width: number, height: number): void {
   const rings = groups.map(boxOf);
   const scale = { left: 0, right: 0.3 * width, top: 0.96 * height - 26, bottom: height };
@@ -155,7 +157,7 @@ function labelRings(groups: readonly (readonly Spot[])[], width: number, height:
   });
 }
 
-/** The bounds of the circles of rings. */
+/** Returns the bounds of the circles of rings. */
 function boxOf(group: readonly Spot[]): Box {
   const [left, right] = extremes(group.map(({ x }) => x));
   const [top, bottom] = extremes(group.map(({ y }) => y));
@@ -168,7 +170,7 @@ function boxOf(group: readonly Spot[]): Box {
   };
 }
 
-/** A bar of a round length, so that a reader can tell millimetres from centimetres. */
+/** Draws a bar of a round length, so that a reader can distinguish millimeters from centimeters. */
 export function scaleBar(element: SVGGElement, pixel: number, width: number, height: number): void {
   const longest = 0.24 * width * pixel;
   const power = 10 ** Math.floor(Math.log10(longest));

@@ -8,52 +8,52 @@ import { type Anatomy, coarsened } from "./anatomy.ts";
 import type { Cut } from "./cut.ts";
 import { discard, Line, setUniforms } from "./line.ts";
 
-/** Lengths of paths that look alike. */
+/** Segments of paths with the same appearance. */
 export interface Lengths {
   /** Pairs of ends, three coordinates each. */
   readonly ends: Float32Array;
-  /** The variable of the page's style that has the colour. */
+  /** The variable of the page's style with the color. */
   readonly color: string;
-  /** Wide, and seen through the surface. */
+  /** True for wide segments that are visible through the surface. */
   readonly isAlarming: boolean;
   readonly isSeenThrough: boolean;
   /** [px of the page] */
   readonly width: number;
 }
 
-/** A body of an instrument: all within a radius of what is between two places. */
+/** A body of an instrument: a capsule between two places. */
 export interface Body {
   readonly from: three.Vector3;
   readonly to: three.Vector3;
   /** [mm] */
   readonly radius: number;
-  /** The variable of the page's style that has the colour. */
+  /** The variable of the page's style with the color. */
   readonly color: string;
-  /** How strong it is drawn where the surface hides it, from 0 to 1. */
+  /** The opacity where the surface hides it, from 0 to 1. */
   readonly hidden: number;
 }
 
-/** What a picture shows beside the anatomy. */
+/** The content of a picture besides the anatomy. */
 export interface Layer {
   readonly lengths: readonly Lengths[];
   readonly cut: Cut | null;
-  /** Bodies of an instrument; others from one picture to the next. */
+  /** Bodies of an instrument, which differ between pictures. */
   bodies?: readonly Body[];
 }
 
 /** Draws the pictures of one anatomy. */
 export interface Painter {
   /**
-   * `scale`: pixels for each of the page; less than one where time counts more than looks. What is
-   * returned holds until it paints again.
+   * `scale`: drawn pixels per pixel of the page; below one if speed matters more than quality. The
+   * result is valid until the next call.
    */
   paint(layer: Layer, width: number, height: number, scale: number): CanvasImageSource;
-  /** Another view than that of the last picture. */
+  /** Marks the view of the last picture as outdated. */
   outdate(): void;
   dispose(): void;
 }
 
-/** What bone looks like, in linear light: of a free side, of a back, of a section and of its edge. */
+/** The appearance of bone, in linear light: the free side, the back, a section and its edge. */
 export const materials = {
   bone: [0.8, 0.69, 0.52],
   hollow: [0.34, 0.2, 0.15],
@@ -61,7 +61,7 @@ export const materials = {
   edge: [0.2, 0.09, 0.05],
 } as const;
 
-/** Lines of a hatched section: how far apart, and how wide. [px of the page] */
+/** Lines of a hatched section: distance and width. [px of the page] */
 export const hatching = { period: 15, line: 1.7 } as const;
 
 /** Draws with WebGL. */
@@ -78,7 +78,7 @@ export class GraphicsPainter implements Painter {
   private readonly coarse: three.BufferAttribute;
   private lastColumns = 0;
 
-  /** `corners`: of the triangles that are drawn. `isCut`: whether each picture cuts them open. */
+  /** `corners`: of the drawn triangles. `isCut`: true for each picture that cuts them open. */
   constructor(
     private readonly graphics: Graphics,
     anatomy: Anatomy,
@@ -122,7 +122,7 @@ export class GraphicsPainter implements Painter {
     const lines = this.linesOf.get(layer) ?? layer.lengths.map((lengths) => new Line(lengths));
     this.linesOf.set(layer, lines);
     for (const line of lines) {
-      // What is seen through the surface is drawn over all that was drawn before.
+      // Parts that are visible through the surface are drawn over everything else.
       if (line.lengths.isSeenThrough) renderer.clearDepth();
       line.adjust(columns, rows, scale, pixel);
       renderer.render(line.mesh, this.camera);
@@ -131,7 +131,7 @@ export class GraphicsPainter implements Painter {
     return renderer.domElement;
   }
 
-  /** Draws bodies over what was drawn before, and with its depths. */
+  /** Draws bodies over the earlier content, using its depths. */
   private drawBodies(bodies: readonly Body[]): void {
     bodies.forEach(({ from, to, radius, color, hidden }, i) => {
       const capsule = this.capsules[i] ?? new Capsule();
@@ -159,7 +159,9 @@ export class GraphicsPainter implements Painter {
   }
 }
 
-/** Bone, lit from the upper left of the view; where it is cut, a section as a draughtsman draws it. */
+/**
+ * Returns bone, lit from the upper left of the view, with cuts hatched as in a technical drawing.
+ */
 function boneMaterial(
   isCut: boolean,
   isClosed: boolean,
@@ -194,7 +196,7 @@ function boneMaterial(
       varying vec3 place, eye, bent;
       ${color("bone")} ${color("hollow")} ${color("section")} ${color("edge")}
 
-      // How far behind the curtain a place is. [mm]
+      // Returns the distance of a place behind the curtain. [mm]
       float behind() {
         float last = float(textureSize(depths, 0).x - 1);
         float column = last * clamp((dot(place, sideways) - from) / (to - from), 0.0, 1.0);

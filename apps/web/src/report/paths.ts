@@ -2,10 +2,13 @@
 import type * as three from "three";
 import type { Lengths } from "./painting.ts";
 
-/** How wide paths are in a picture. [px] */
+/** The widths of paths in a picture. [px] */
 export const widths = { many: 1.7, whole: 2.2, near: 3.4 } as const;
 
-/** What is between neighbours of a path, as pairs of ends; places nearer than `least` count as one. */
+/**
+ * Returns the segments between neighbors of a path, as pairs of ends. Places nearer than `least`
+ * count as one.
+ */
 export function ends(path: readonly three.Vector3[], least = 0): number[] {
   const result: number[] = [];
   let last = path[0];
@@ -18,7 +21,10 @@ export function ends(path: readonly three.Vector3[], least = 0): number[] {
   return result;
 }
 
-/** Paths in a colour where all is well, and in that of alarm, seen through the surface, where not. */
+/**
+ * Returns paths in their color where they are good, and in the alarm color, visible through the
+ * surface, where they are bad.
+ */
 export function coloured(
   good: readonly number[],
   bad: readonly number[],
@@ -38,14 +44,14 @@ export function coloured(
   ];
 }
 
-/** A path in the lengths that are good and those that are bad, by the cycles that are. */
+/** Splits a path into good and bad segments, by its good and bad cycles. */
 export function parted(
   path: readonly three.Vector3[],
   isBad: readonly boolean[],
   least: number,
 ): { good: number[]; bad: number[] } {
   const result = { good: [] as number[], bad: [] as number[] };
-  // The move that leads in or out belongs to what is drawn over the rest.
+  // A move into or out of a bad cycle counts as bad.
   const isBadMove = (i: number) => isBad[i] === true || isBad[i - 1] === true;
   for (let first = 1, i = 1; i < path.length; ++i) {
     if (i + 1 < path.length && isBadMove(i + 1) === isBadMove(first)) continue;

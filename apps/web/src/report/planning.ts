@@ -11,19 +11,19 @@ import { rounded, shown } from "./shown.ts";
 import type { PlanRecord } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
 
-/** What the page of `plan` shows. */
+/** Shows the page of `plan`. */
 export async function planningSections(main: HTMLElement, record: ReportRecord): Promise<void> {
   const plan = record as PlanRecord;
   for (const mesh of plan.meshes.keys()) main.append(await meshSection(plan, mesh));
 }
 
-/** What came out under a checker: which runs have a path. */
+/** The results under a checker: the runs that have a path. */
 const solved: readonly Column[] = [
   named("checker", "/checker"),
   column("runs", "/runs"),
   column("solved", "/solved"),
 ];
-/** What its paths took. */
+/** The cost of its paths. */
 const cost: readonly Column[] = [
   column("median [s]", "/median_seconds", rounded),
   column("checking [s]", "/median_checking_seconds", rounded),
@@ -45,13 +45,13 @@ const columns: readonly Column[] = [
   ...cost,
 ];
 
-/** One mesh: what came out under each checker, and all paths that were found. */
+/** Returns the section of a mesh: the results under each checker, and all paths. */
 async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElement> {
   const mesh = plan.meshes[number] as PlanRecord["meshes"][number];
   const anatomy = await unpackedAnatomy(mesh);
   const rows = [...plan.summaries.keys()].filter((row) => plan.summaries[row]?.mesh === mesh.name);
   const group = pictureGrid(2);
-  // From the side and a little above, z upwards, as the fixtures stand.
+  // From the side and slightly above, with z upward, as the sample meshes are oriented.
   const [toward, up] = [new three.Vector3(0.9, -0.5, 0.35), new three.Vector3(0, 0, 1)];
   const outlook = lookAtAll(verticesOf(anatomy), toward, up, anatomy);
   const view = new AnatomyView(group, anatomy, anatomy.corners, outlook);
@@ -89,7 +89,7 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
   );
 }
 
-/** What came out under each checker for a whole instrument, and of each run. */
+/** Returns the results under each checker for a whole instrument, and of each run. */
 export function robotPlanningSections(): HTMLElement[] {
   const mesh: Column = { heading: "mesh", from: "/mesh" };
   const judged: readonly Column[] = [

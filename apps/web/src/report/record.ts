@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The record that the page shows: docs/records.md says what is in it. */
+/** The record that the page shows, see docs/records.md. */
 import { unpacked } from "../page/embedded_surface.ts";
 
-/** What all records have, as far as the page does not only show it. */
+/** The common members of all records that the page evaluates. */
 export interface ReportRecord {
   readonly keepout_record: string;
   readonly date: string;
@@ -12,7 +12,7 @@ export interface ReportRecord {
   readonly machine: object | null;
 }
 
-/** Times of which some need more samples than there are. */
+/** Percentiles that need more samples than there are, are missing. */
 export interface Timing {
   readonly p50: number;
   readonly p99: number | null;
@@ -23,7 +23,7 @@ export interface Timing {
 let text = "";
 let record: unknown;
 
-/** Unpacks what `keepout` has put into the page. To be called before anything is shown. */
+/** Unpacks the record in the page. Must be called before anything is shown. */
 export async function readRecord(): Promise<ReportRecord> {
   const packed = document.getElementById("record")?.textContent;
   if (!packed) throw new Error("this page has no record: keepout puts it there");
@@ -32,23 +32,23 @@ export async function readRecord(): Promise<ReportRecord> {
   return record as ReportRecord;
 }
 
-/** The record as it was written. */
+/** Returns the record as it was written. */
 export const recordText = (): string => text;
 
-/** The place of a member in the record, as a JSON pointer (RFC 6901). */
+/** Returns the pointer to a member in the record, as a JSON pointer (RFC 6901). */
 export function below(base: string, ...keys: readonly (string | number)[]): string {
   const escaped = keys.map((key) => String(key).replaceAll("~", "~0").replaceAll("/", "~1"));
   return [base, ...escaped].join("/");
 }
 
-/** The last member that a pointer names. */
+/** Returns the last member that a pointer names. */
 export const lastKey = (pointer: string): string =>
   pointer
     .slice(pointer.lastIndexOf("/") + 1)
     .replaceAll("~1", "/")
     .replaceAll("~0", "~");
 
-/** What is in the record at a pointer; undefined where there is nothing, or nothing above it. */
+/** Returns the value in the record at a pointer; undefined if it or its parent is missing. */
 export function valueAt<T>(pointer: string): T | undefined {
   let value = record as Record<string, unknown> | undefined | null;
   for (const key of pointer.split("/").slice(1)) {
@@ -57,6 +57,8 @@ export function valueAt<T>(pointer: string): T | undefined {
   return value as T | undefined;
 }
 
-/** Where the entries of an array, or the members of an object, are in the record. */
+/**
+ * Returns the pointers to the entries of an array, or to the members of an object, in the record.
+ */
 export const entries = (pointer: string): string[] =>
   Object.keys(valueAt<object>(pointer) ?? {}).map((key) => below(pointer, key));

@@ -3,10 +3,10 @@ import { make, saveFile } from "../page/elements.ts";
 import { type ReportRecord, readRecord, recordText, valueAt } from "./record.ts";
 import { paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
 
-/** What a page shows between its headline and its machine. */
+/** The content of a page between its headline and its machine. */
 type Sections = (main: HTMLElement, record: ReportRecord) => void | Promise<void>;
 
-/** Builds the page of the record that is in it. `kinds`: what can be shown, by `keepout_record`. */
+/** Builds the page for the record in it. `kinds`: the supported records, by `keepout_record`. */
 export async function showReport(kinds: Readonly<Record<string, Sections>>): Promise<void> {
   const main = document.querySelector("main") as HTMLElement;
   try {
@@ -28,7 +28,7 @@ export async function showReport(kinds: Readonly<Record<string, Sections>>): Pro
     );
     if (!record.complete) {
       main.append(
-        make("p", { class: "account bad" }, "It was stopped: this is what was finished."),
+        make("p", { class: "account bad" }, "The command was stopped: this page shows the finished part."),
       );
     }
     try {
@@ -42,24 +42,24 @@ export async function showReport(kinds: Readonly<Record<string, Sections>>): Pro
   }
 }
 
-/** A section under a heading. */
+/** Returns a section under a heading. */
 export function section(title: Node | string, ...content: readonly (Node | string)[]): HTMLElement {
   return make("section", {}, make("h2", {}, title), ...content);
 }
 
-/** A paragraph of the page's own words under a heading. */
+/** Returns a paragraph of the page's own text under a heading. */
 export const lead = (...content: readonly (Node | string)[]): HTMLElement =>
   make("p", { class: "lead" }, ...content);
 
-/** A paragraph on how something was measured. */
+/** Returns a paragraph on how something was measured. */
 export const method = (...words: readonly (Node | string)[]): HTMLElement =>
   make("p", { class: "method" }, ...words);
 
-/** Cards with plots, side by side where there is room. */
+/** Returns cards with plots, side by side if the page is wide enough. */
 export const panels = (...figures: readonly HTMLElement[]): HTMLElement =>
   make("div", { class: "panels wide charts", style: `--columns:${figures.length}` }, ...figures);
 
-/** The facts of a machine, as far as they are known, for a list of definitions. */
+/** Returns the known facts of a machine, for a list of definitions. */
 function machineFacts(pointer: string): HTMLElement[] {
   const gibibytes = (value: number) => `${rounded(value)} GiB`;
   return [
@@ -82,7 +82,7 @@ function machineFacts(pointer: string): HTMLElement[] {
   });
 }
 
-/** Where and how the record was made, and how to make it again or take it along. */
+/** Returns how the record was made, and how to repeat or save it. */
 function circumstances(record: ReportRecord): HTMLElement {
   const copy = make("button", { type: "button" }, "Copy");
   copy.addEventListener("click", async () => {

@@ -29,7 +29,7 @@ interface RobotSimulationRecord extends ReportRecord {
   readonly meshes: readonly (RecordedMesh & { readonly strokes: readonly Stroke[] })[];
 }
 
-/** What the page of `simulate --robot` shows. */
+/** Shows the page of `simulate --robot`. */
 export async function robotSimulationSections(
   main: HTMLElement,
   record: ReportRecord,
@@ -64,7 +64,7 @@ function figures({ bodies }: RobotSimulationRecord): HTMLElement {
   );
 }
 
-/** The strokes on one mesh that say most. */
+/** Returns the most informative strokes on one mesh. */
 async function meshSection(record: RobotSimulationRecord, number: number): Promise<HTMLElement> {
   const mesh = record.meshes[number] as RobotSimulationRecord["meshes"][number];
   const anatomy = await unpackedAnatomy(mesh);
@@ -101,11 +101,11 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   );
 }
 
-/** Where the instrument's bodies end in a cycle: at the port, and each at the next. */
+/** Returns the ends of the instrument's bodies in a cycle: the port, and the end of each body. */
 const ends = ({ port }: Stroke, run: Run, cycle: number, { placed }: Anatomy): three.Vector3[] =>
   [port, ...(run.places[cycle] ?? [])].map(placed);
 
-/** A stroke in all modes, side by side, and what follows it in time. */
+/** Returns a stroke in all modes, side by side, with the views that follow it in time. */
 function strokeView(
   { bodies }: RobotSimulationRecord,
   anatomy: Anatomy,
@@ -156,7 +156,7 @@ function strokeView(
   };
 }
 
-/** Obliquely along the shaft, at what the tip comes to in all modes. */
+/** Views the tip in all modes, obliquely along the shaft. */
 function outlook(anatomy: Anatomy, stroke: Stroke) {
   const up = new three.Vector3(0, 0, 1);
   const places = stroke.runs.flatMap((run) =>

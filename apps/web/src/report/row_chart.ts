@@ -11,18 +11,18 @@ interface Inscribed {
 }
 type Inscription<Datum> = (datum: Datum) => readonly (Inscribed | string)[];
 
-/** How the marks of a row chart are placed and told apart. */
+/** The channels of the marks of a row chart. */
 interface RowChannels<Datum> {
   readonly y: (datum: Datum, place: number) => number;
   readonly color: (datum: Datum) => string;
   readonly symbol: (datum: Datum) => string;
 }
 
-/** What is drawn as one row a datum, below its name, at the left, and its value, at the right. */
+/** A chart with one row per datum, with the name above on the left and the value on the right. */
 interface RowChart<Datum> extends Omit<Chart<Datum>, "draw"> {
-  /** In the order of the rows; asked for whenever it is drawn. */
+  /** In the order of the rows; called for each drawing. */
   readonly data: () => readonly Datum[];
-  /** By which the legend knows a datum; without, all are shown. */
+  /** The series of a datum in the legend; if missing, all are shown. */
   readonly series?: (datum: Datum) => string;
   readonly name: Inscription<Datum>;
   readonly value: Inscription<Datum>;
@@ -31,11 +31,11 @@ interface RowChart<Datum> extends Omit<Chart<Datum>, "draw"> {
 }
 
 const rowHeight = 42;
-/** Where in its row a mark is, and a bar: below the texts. */
+/** The position of a mark or a bar in its row: below the texts. */
 export const inRow = { dy: 9 };
 export const barInRow = { insetTop: 22, insetBottom: 7 };
 
-/** A line in each row from one value to another, and a mark at the first. */
+/** Returns a line in each row from one value to another, and a mark at the first. */
 export function spans<Datum>(
   seen: Datum[],
   { y, color, symbol }: RowChannels<Datum>,
@@ -49,7 +49,7 @@ export function spans<Datum>(
   ];
 }
 
-/** The element that holds a row chart. */
+/** Returns the element with a row chart. */
 export function rowChart<Datum>(wanted: RowChart<Datum>): HTMLElement {
   const { data, series = () => "", legend, name, value, x, marks } = wanted;
   const y = (_: Datum, place: number) => place;
@@ -83,7 +83,7 @@ export function rowChart<Datum>(wanted: RowChart<Datum>): HTMLElement {
   return chart({ ...wanted, draw });
 }
 
-/** A mark of texts that hold values of the record, each of which says where it is from. */
+/** Returns a mark of texts with values of the record; each text states the pointer to its value. */
 function inscribed<Datum>(data: Datum[], content: Inscription<Datum>, options: Plot.TextOptions) {
   return Plot.text(data, {
     ...options,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** How runs are told apart on a page: by their names, with a swatch of their colours. */
+/** The appearance of runs on a page: their names, with a swatch of their colors. */
 import { make } from "../page/elements.ts";
 import { lastKey } from "./record.ts";
 import { shown } from "./shown.ts";
 
-/** The variable of the page's style that has the colour of a run. */
+/** Returns the variable of the page's style with the color of a run. */
 export const runColor = (run: number): string => `--rule-${run % 6}`;
 
-/** The name of a run, after a swatch of its colour. `from`: where the name is. */
+/** Returns the name of a run, after a swatch of its color. `from`: the pointer to the name. */
 export const runName = (run: number, from = `/runs/${run}/name`): HTMLElement =>
   make(
     "span",
@@ -16,7 +16,7 @@ export const runName = (run: number, from = `/runs/${run}/name`): HTMLElement =>
     shown(from),
   );
 
-/** The place of something in an array of the record, as people count: from one. */
+/** Returns the position in an array of the record, counted from one. */
 export const ordinal = (pointer: string): HTMLElement =>
   make(
     "span",
@@ -24,7 +24,7 @@ export const ordinal = (pointer: string): HTMLElement =>
     (Number(lastKey(pointer)) + 1).toLocaleString("en"),
   );
 
-/** A place for pictures side by side: two and four make pairs, three a row. */
+/** Returns a container for pictures side by side: pairs for two or four, else three a row. */
 export const pictureGrid = (count: number): HTMLElement =>
   make("div", {
     class: "panels",

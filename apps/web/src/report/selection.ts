@@ -2,17 +2,17 @@
 import { make } from "../page/elements.ts";
 import { Choices } from "./charts.ts";
 
-/** Something that rows differ in, of which one at a time is chosen. */
+/** A property that differs between rows; the reader chooses one value. */
 export interface Question<Row> {
   readonly label: string;
   readonly of: (row: Row) => string;
-  /** Where below a row the answer is in the record. */
+  /** The pointer to the value, below a row. */
   readonly from: string;
-  /** A row of each answer, in their order; the first is chosen until another is. */
+  /** One row for each value, in order; the first is the default. */
   readonly answers: readonly Row[];
 }
 
-/** Questions to the reader about which rows to show. */
+/** The reader's selection of rows to show. */
 export class Selection<Row extends { readonly from: string }> extends Choices {
   readonly element = make("div", { class: "selection" });
   private readonly chosen = new Map<Question<Row>, string>();
@@ -34,7 +34,7 @@ export class Selection<Row extends { readonly from: string }> extends Choices {
     }
   }
 
-  /** Whether a row is one of those chosen; `ignored`: what does not matter. */
+  /** True if a row is selected; `ignored`: questions that do not matter. */
   has(row: Row, ...ignored: readonly Question<Row>[]): boolean {
     return [...this.chosen].every(
       ([question, answer]) => ignored.includes(question) || question.of(row) === answer,

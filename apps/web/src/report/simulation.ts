@@ -24,7 +24,7 @@ import { seen } from "./still.ts";
 import { strokeSection } from "./stroke.ts";
 import { column, harm, named, tableSection } from "./table.ts";
 
-/** What the page of `simulate` shows. */
+/** Shows the page of `simulate`. */
 export async function simulationSections(main: HTMLElement, record: ReportRecord): Promise<void> {
   const simulation = record as SimulationRecord;
   const anatomy = await unpackedAnatomy(simulation.mesh);
@@ -38,7 +38,7 @@ export async function simulationSections(main: HTMLElement, record: ReportRecord
   );
 }
 
-/** The anatomy with all strokes, once for each run. */
+/** Returns the anatomy with all strokes, once for each run. */
 function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
   const group = pictureGrid(record.runs.length);
   const view = new AnatomyView(group, anatomy, anatomy.corners, wholeView(record, anatomy));
@@ -63,7 +63,10 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
   return make("section", {}, group, hint(record.runs.length));
 }
 
-/** A ring around the worst place of a rule that let the tool in, so that a small place is found. */
+/**
+ * Returns a ring around the worst place of a rule that let the tool in, which makes a small place
+ * visible.
+ */
 function worstPlace(record: SimulationRecord, anatomy: Anatomy, run: Run, number: number) {
   if (run.kept_out || run.rule === "none") return [];
   const { stroke, cycle } = run.worst;
@@ -85,7 +88,7 @@ function strokes(record: SimulationRecord, anatomy: Anatomy, run: Run, number: n
   return coloured(good, bad, runColor(number), widths.whole);
 }
 
-/** Upright, from where most of the strokes of the last run are seen. */
+/** Upright, from a direction that shows most of the strokes of the last run. */
 function wholeView(record: SimulationRecord, anatomy: Anatomy): Outlook {
   const every = 10;
   const some = (run: Run) =>
@@ -94,7 +97,7 @@ function wholeView(record: SimulationRecord, anatomy: Anatomy): Outlook {
   const all = [...record.runs.flatMap(some), ...verticesOf(anatomy)];
   const outlook = (toward: three.Vector3) => {
     const { middle, height } = fitted(all, toward, up);
-    // Room for the scale bar below.
+    // Space for the scale bar below.
     middle.addScaledVector(up, -0.035 * height);
     return lookFrom(toward, up, middle, 1.13 * height, anatomy.size);
   };
@@ -115,7 +118,7 @@ function wholeView(record: SimulationRecord, anatomy: Anatomy): Outlook {
   );
 }
 
-/** Ways to look from all around, level and from a little above, as a person would. */
+/** Returns directions all around, level and slightly from above. */
 function directions(up: three.Vector3): three.Vector3[] {
   const east = new three.Vector3(up.y, up.z, up.x).cross(up).normalize();
   return [0.1, 0.45].flatMap((elevation) =>
@@ -184,7 +187,7 @@ function speed(record: SimulationRecord): HTMLElement[] {
   ];
 }
 
-/** How the check knows where the tip, or a convex tool, is. */
+/** Explains how the audit knows where the tip, or a convex tool, is. */
 function judgement({ mesh, has_convex_tool }: SimulationRecord): string {
   if (has_convex_tool) {
     return "The clearance of the whole tool is the distance of its convex hull from the triangles, by a computation that shares nothing with the rule. A tool that touches the surface or is inside is at least as deep as the number says. A motion counts as a contact unless the distances on its way prove that the tool did not touch; a distance up to 1 nm counts as touching.";
@@ -194,7 +197,7 @@ function judgement({ mesh, has_convex_tool }: SimulationRecord): string {
     : "The surface has holes, so it has no inside: only crossings count. On which side of the surface the tip is, is told by the angle-weighted normal at the nearest point of it (the pseudonormal), which no rule uses. The tip may go around a rim; sliding around one in contact counts as a crossing.";
 }
 
-/** Where the distances of a tip come from. */
+/** Explains the source of the distances of a tip. */
 const distances =
   " Distances come from a search tree (a PD-tree) and a closest-point computation that the rules may use too. The tests compare both with brute force and with an independent computation in quadruple precision. A depth up to 1 nm counts as touching, not as inside.";
 

@@ -10,7 +10,7 @@ import { ordinal, runColor } from "./runs.ts";
 import { deep, microseconds, millimetres, show, shown } from "./shown.ts";
 import type { Moment, SimulationRecord, Stroke } from "./simulation_record.ts";
 
-/** A cycle in a plot: what is drawn of it, and where in the record that is. */
+/** A cycle in a plot: the drawn values, and their pointer in the record. */
 interface Point extends Moment {
   readonly x: number;
   readonly y: number;
@@ -25,7 +25,7 @@ function legendOf(runs: Iterable<number>): Legend {
   return new Legend(new Map(looks), (run) => shown(`/runs/${run}/name`));
 }
 
-/** Lines of points, one a run; later runs are narrower, so that none hides another. */
+/** Lines of points, one for each run. Later runs are narrower, so that all remain visible. */
 const lines = (points: readonly Point[]): Plot.Markish[] => [
   Plot.line([...points], {
     x: "x",
@@ -53,13 +53,13 @@ export function showDepth<Shown extends Element>(
   return element;
 }
 
-/** A clearance; below zero, that of a convex tool is a depth. */
+/** Returns a clearance; below zero, the depth for a convex tool. */
 export const shownClearance = (record: SimulationRecord, from: string): HTMLSpanElement =>
   record.has_convex_tool && Number(valueAt(from)) < 0
     ? showDepth(make("span"), record, from)
     : shown(from, millimetres);
 
-/** The words for the clearance: of the tip, or of a whole convex tool. */
+/** Returns the name of the clearance: of the tip, or of a whole convex tool. */
 const wordsOf = ({ has_convex_tool, mesh }: SimulationRecord) =>
   has_convex_tool
     ? {
@@ -75,7 +75,10 @@ const wordsOf = ({ has_convex_tool, mesh }: SimulationRecord) =>
           "Distance of the tool tip to the surface over the time of one stroke, for each rule; below zero the tip is inside the anatomy.",
       };
 
-/** How far the tool is from the surface over the time of a stroke: all of it, and near the surface. */
+/**
+ * Plots the distance of the tool from the surface over the time of a stroke: all of it, and near
+ * the surface.
+ */
 export function clearanceCharts(record: SimulationRecord, stroke: number) {
   const legend = legendOf(record.runs.keys());
   const points = record.runs.flatMap(({ strokes }, run) =>
@@ -152,7 +155,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
     rule === "none" ? [] : [extremes((strokes[stroke] as Stroke).clearance_mm)[0]],
   );
   const deepest = Math.min(0, ...guarded);
-  // Where no rule failed, no more than a reader cares for: rules that only touch leave no room.
+  // If no rule failed, shows only a small range around the surface.
   const around = Math.max(-deepest, ...guarded, record.kept_mm, deepest === 0 ? 0.1 : 0);
   const both = [
     [words.description, draw([low - room, high + room], 0)],
@@ -173,7 +176,9 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
   };
 }
 
-/** For each rule, the share of all steps that took at least so long; nothing without times. */
+/**
+ * Plots for each rule the fraction of steps that took at least a given time; empty without times.
+ */
 export function stepTimes(record: SimulationRecord): HTMLElement[] {
   const points = record.runs.flatMap(({ strokes }, run) => {
     const steps = strokes.flatMap(({ step_us }, stroke) =>

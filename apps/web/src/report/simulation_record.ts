@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What the records of `simulate` and `plan` say of anatomy and paths: docs/records.md. */
+/** Anatomy and paths in the records of `simulate` and `plan`: docs/records.md. */
 
 import type { PackedSurface } from "../page/embedded_surface.ts";
 import { extremes } from "./extremes.ts";
@@ -62,9 +62,9 @@ export interface PlanRecord extends ReportRecord {
 }
 
 /**
- * In which cycles of a stroke the tip is where it must not be: inside a closed surface, or just having
- * passed through it; past an open one after an odd number of crossings; a convex tool, where it touches
- * the surface. What is not known counts against.
+ * Returns the cycles of a stroke in which the tip is at a forbidden place. For a closed surface:
+ * inside it, or just after passing through it. For an open surface: beyond it, after an odd number
+ * of crossings. For a convex tool: where it touches the surface. Unknown cycles count as bad.
  */
 export function trespass(
   run: Run,
@@ -84,7 +84,7 @@ export function trespass(
   });
 }
 
-/** The cycle of a stroke that is its deepest, or else its first crossing, or else its nearest. */
+/** Returns the deepest cycle of a stroke, or else its first crossing, or else its nearest cycle. */
 export function worstCycle(run: Run, stroke: number): number {
   const { clearance_mm } = run.strokes[stroke] as Stroke;
   const [lowest] = extremes(clearance_mm);
@@ -92,7 +92,10 @@ export function worstCycle(run: Run, stroke: number): number {
   return lowest >= 0 && crossing ? crossing.cycle : clearance_mm.indexOf(lowest);
 }
 
-/** The moment of a stroke that tells most: of a rule that failed, else of the run that came nearest. */
+/**
+ * Returns the most informative moment of a stroke: of a rule that failed, else of the run that came
+ * nearest.
+ */
 export function tellingMoment(record: SimulationRecord, stroke: number): Moment {
   if (stroke === record.moment.stroke) return record.moment;
   const moments = record.runs.map((run, number) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The sections of the table of ratios that keepout is held to. */
+/** The sections of the ratios that the speed test requires of keepout. */
 
 import * as Plot from "@observablehq/plot";
 import { make } from "../page/elements.ts";
@@ -9,7 +9,7 @@ import { entries, type Timing, valueAt } from "./record.ts";
 import { type Format, mean, nanoseconds, rounded, shown, trimmed } from "./shown.ts";
 import { type Column, column, tableSection } from "./table.ts";
 
-/** Median, 99 % and 99.9 %, as far as there are enough samples, in one unit. */
+/** Returns median, 99 % and 99.9 % in one unit, as far as there are enough samples. */
 function percentiles(from: string): (Node | string)[] {
   const timing = valueAt<Timing>(from);
   if (!timing) return ["–"];
@@ -20,14 +20,14 @@ function percentiles(from: string): (Node | string)[] {
   return [
     ...times.flatMap((key, i) => {
       const time = shown(`${from}/${key}`, format);
-      time.dataset.unit = unit; // which stands behind the last of them
+      time.dataset.unit = unit; // which follows the last of them
       return [i > 0 ? " / " : "", time];
     }),
     `\u00a0${unit}`,
   ];
 }
 
-/** What is behind a figure of a row. */
+/** Returns the unit of a value of a row. */
 const unitOf = (row: string): string => {
   const unit = valueAt<string>(`${row}/unit`) ?? "";
   return unit === "x" || unit === "" ? unit : `\u00a0${unit}`;
@@ -93,7 +93,7 @@ const queryColumns: readonly Column[] = [
   })),
 ];
 
-/** Ratios, the histogram of many steps, and queries. */
+/** Returns the sections: ratios, the histogram of many steps, and queries. */
 export function speedSections(): HTMLElement[] {
   return [ratioSection(), ...histogramSection(), ...querySection()];
 }
@@ -130,7 +130,7 @@ function querySection(): HTMLElement[] {
   ];
 }
 
-/** A bin of a histogram, in µs: how many are in it, and how many of a million not below it. */
+/** A bin of a histogram, in µs: its count, and how many of a million are not below it. */
 interface Bin {
   readonly from: string;
   readonly low: number;
@@ -140,7 +140,7 @@ interface Bin {
   readonly series: string;
 }
 
-/** Bins are an eighth of a doubling wide. */
+/** A bin is an eighth of an octave wide. */
 function binsOf(from: string, series: string): Bin[] {
   const total = valueAt<number>(`${from}/total`) ?? 0;
   let left = total;

@@ -5,7 +5,7 @@ import type { Anatomy } from "./anatomy.ts";
 import { type Cut, restBehind } from "./cut.ts";
 import { hatching, type Layer, materials, type Painter } from "./painting.ts";
 
-/** A surface as it is seen: what the picture shows, and how deep that is, from -1 to 1. */
+/** A rendered surface: the picture, and the depths, from -1 to 1. */
 interface Seen {
   readonly picture: ImageData;
   readonly depths: Float32Array;
@@ -13,12 +13,12 @@ interface Seen {
 
 const key = new three.Vector3(-0.45, 0.62, 0.64).normalize();
 
-/** Linear light as a byte of a picture. */
+/** Converts linear light to a byte of a picture. */
 const byte = (light: number): number => 255 * Math.min(1, light) ** (1 / 2.2);
 
 /**
- * Draws a surface without WebGL, triangle by triangle, each in one colour. `scale`: pixels for each of
- * the page.
+ * Draws a surface without WebGL, triangle by triangle, each in one color. `scale`: drawn pixels per
+ * pixel of the page.
  */
 export function seen(
   { positions, isClosed }: Anatomy,
@@ -66,7 +66,7 @@ export function seen(
         const w = 1 - u - v;
         const pixel = y * width + x;
         const depth = w * at(a, 2) + u * at(b, 2) + v * at(c, 2);
-        // A little over the edge, so that there are no pinholes between neighbours.
+        // Draws slightly beyond the edge, so that there are no gaps between neighbors.
         if (Math.min(u, v, w) < -1e-4 || depth >= (depths[pixel] as number)) continue;
         if (
           rests &&
@@ -87,12 +87,12 @@ export function seen(
   return { picture, depths };
 }
 
-/** Draws where there is no WebGL. */
+/** Draws without WebGL. */
 export class StillPainter implements Painter {
   private readonly canvas = document.createElement("canvas");
   private last: Seen | null = null;
 
-  /** `corners`: of the triangles that are drawn. */
+  /** `corners`: of the drawn triangles. */
   constructor(
     private readonly anatomy: Anatomy,
     private readonly corners: Uint32Array,
@@ -119,7 +119,7 @@ export class StillPainter implements Painter {
     return this.canvas;
   }
 
-  /** A body is a wide line with round ends, from wherever one looks. */
+  /** Draws a body as a wide line with round ends, in every view. */
   private drawBodies(pen: CanvasRenderingContext2D, { bodies = [] }: Layer): void {
     const { width, height } = this.canvas;
     const { top, bottom, zoom } = this.camera;

@@ -21,7 +21,7 @@ import {
 } from "./simulation_record.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
 
-/** Up to here a tip touches. [mm] */
+/** The distance up to which a tip touches. [mm] */
 const touching = 1e-6;
 const outcomes: Readonly<Record<string, string>> = {
   f: "moved freely",
@@ -29,7 +29,10 @@ const outcomes: Readonly<Record<string, string>> = {
   s: "stopped",
 };
 
-/** One stroke: the anatomy cut open along it for each run, how near it came, and all of it in time. */
+/**
+ * Returns one stroke: the anatomy cut open along it for each run, the nearest approach, and its
+ * course in time.
+ */
 export function strokeSection(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
   const isClosed = record.mesh.surface === "closed";
   const content = make("div");
@@ -70,7 +73,10 @@ function options({ runs, moment }: SimulationRecord): HTMLElement[] {
   ];
 }
 
-/** Fills a place with the pictures and plots of a stroke, and with what follows it in time. */
+/**
+ * Fills a container with the pictures and plots of a stroke, and with the views that follow it in
+ * time.
+ */
 function strokeView(
   record: SimulationRecord,
   anatomy: Anatomy,
@@ -136,7 +142,10 @@ function strokeView(
 const clearanceAt = (run: number, stroke: number, cycle: number): string =>
   `/runs/${run}/strokes/${stroke}/clearance_mm/${cycle}`;
 
-/** The depth or distance of a tool. Past an open surface the distance of a tip is not a depth. */
+/**
+ * Returns the depth or distance of a tool. Beyond an open surface, the distance of a tip is not a
+ * depth.
+ */
 function distance(record: SimulationRecord, from: string, isBad: boolean): SVGTSpanElement {
   const label = drawn("tspan", {});
   const clearance = Number(valueAt(from));

@@ -4,33 +4,33 @@ import { valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { type Format, show } from "./shown.ts";
 
-/** A column of a table: what of each row it shows. */
+/** A column of a table. */
 export interface Column {
   readonly heading: string;
-  /** Where below a row the value is, as a JSON pointer; "" for the row itself. Rows sort by it. */
+  /** The pointer to the value, below a row; "" for the row itself. Rows sort by it. */
   readonly from: string;
   readonly format?: Format;
-  /** How a cell looks; `harm` is a number that ought to be nothing. */
+  /** The appearance of a cell; `harm` is a number that must be zero. */
   readonly look?: "name" | "words" | "harm";
-  /** What is in the cell, where that is more than the value. */
+  /** The content of the cell, if it is more than the value. */
   readonly content?: (row: string) => readonly (Node | string)[];
 }
 
-/** A column of numbers: counts, unless there is another format. */
+/** Returns a column of numbers: counts, unless another format is given. */
 export const column = (heading: string, from: string, format: Format = grouped): Column => ({
   ...{ heading, from, format },
 });
-/** A column of numbers that ought to be nothing. */
+/** Returns a column of numbers that must be zero. */
 export const harm = (heading: string, from: string, format?: Format): Column => ({
   ...column(heading, from, format),
   look: "harm",
 });
-/** A column of names. */
+/** Returns a column of names. */
 export const named = (heading: string, from: string): Column => ({ heading, from, look: "name" });
 
 /**
- * A table of rows that are in the record, at these pointers, sorted by whichever heading is pressed;
- * below it those of `totals`, which stay there.
+ * Returns a table of the rows at these pointers, sorted by the heading that the reader presses. The
+ * rows of `totals` stay below them.
  */
 export function table(
   rows: readonly string[],
@@ -61,12 +61,12 @@ export function table(
   return make("table", {}, make("thead", {}, make("tr", {}, ...heads)), body, foot);
 }
 
-/** A table that scrolls sideways where the page is narrow; by keyboard too. */
+/** Returns a table that scrolls sideways on a narrow page, also by keyboard. */
 export function scrolled(content: HTMLTableElement, name = "scroll"): HTMLElement {
   return make("div", { class: name, tabindex: "0" }, content);
 }
 
-/** A section with a table of rows of the record, under the page's words on them. */
+/** Returns a section with a table of rows of the record, below an explanation. */
 export const tableSection = (
   title: Node | string,
   words: readonly (Node | string)[],
@@ -81,7 +81,7 @@ export const tableSection = (
     ...more,
   );
 
-/** A field that leaves only the rows of a table that have all words that are written there. */
+/** Returns a field that hides the rows of a table that lack one of the typed words. */
 export function rowFilter(content: HTMLTableElement): HTMLElement {
   const field = make("input", { type: "search", placeholder: "wide_bvh paper" });
   field.addEventListener("input", () => {

@@ -3,10 +3,13 @@ import { make } from "../page/elements.ts";
 import type { AnatomyView } from "./anatomy_view.ts";
 import { ordinal } from "./runs.ts";
 
-/** How long a stroke is played. [ms] */
+/** The playing time of a stroke. [ms] */
 const playing = 8000;
 
-/** A list of strokes; `show` makes the view of the chosen one, in place of that before. */
+/**
+ * Returns a list of strokes; `show` makes the view of the chosen one, which replaces the view
+ * before.
+ */
 export function strokeChooser(
   options: readonly HTMLElement[],
   first: number,
@@ -23,8 +26,8 @@ export function strokeChooser(
 }
 
 /**
- * Chooses a cycle of the stroke that a view shows, and plays it, slower than it was. `from`: an array with
- * one entry a cycle. Disposes of the view, too.
+ * Chooses a cycle of the stroke that a view shows, and plays it in slow motion. `from`: an array
+ * with one entry a cycle. Also disposes of the view.
  */
 export function timeSlider(
   view: AnatomyView,

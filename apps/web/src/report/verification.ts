@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** The sections of a campaign that looks for a step that breaks the theorem, of a tip or of a whole instrument. */
+/** The sections of a campaign that tries to break the theorem, for a tip or a whole instrument. */
 import { make } from "../page/elements.ts";
 import { entries, lastKey, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
@@ -8,14 +8,17 @@ import { type Column, column, harm, named, scrolled, table, tableSection } from 
 
 const mesh: Column = { heading: "mesh", from: "/mesh" };
 
-/** A column for each member of an object of rows that is not nothing in one of them; for each that ought to be. */
+/**
+ * Returns a column for each member that is not zero in some row; for `harm`, each member that must
+ * be zero.
+ */
 const membersOf = (rows: readonly string[], key: string, kind: typeof column): Column[] =>
   entries(`${rows[0]}/${key}`)
     .map((member) => `/${key}/${lastKey(member)}`)
     .filter((from) => kind === harm || rows.some((row) => valueAt<number>(row + from) !== 0))
     .map((from) => kind(lastKey(from).replaceAll("_", " "), from));
 
-/** What was done on each mesh and what came out, in which shards, and each breach in full. */
+/** Returns the work and the results on each mesh, the shards, and each breach in full. */
 export function verificationSections(): HTMLElement[] {
   const total = ["/total"];
   const work: readonly Column[] = [
@@ -70,7 +73,7 @@ const share = (heading: string, from: string): Column =>
 const time = (heading: string, key: string, of = "step_us"): Column =>
   column(heading, `/${of}/${key}`, microseconds);
 
-/** What was tried with an instrument and what broke, how the steps went, and how good they were. */
+/** Returns the work and the breaches of an instrument, its steps, and their quality. */
 export function robotVerificationSections(): HTMLElement[] {
   const rows = entries("/rows");
   const which = [mesh, { heading: "scenario", from: "/scenario" }, column("speed", "/speed", mean)];
