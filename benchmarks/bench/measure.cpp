@@ -35,7 +35,7 @@ std::uint64_t hash_of(std::span<const Hit> hits) {
   return hash.value();
 }
 
-/// Of each query and step. [us]
+/// The times of each query and step. [µs]
 struct TimesOfStages {
   std::vector<double> collect, query, step, step_query, activate, solve;
 };

@@ -265,6 +265,7 @@ class Section:
 
     def plane(self, tip, plane, span, style, ticks=True):
         """Draws a line where normal . (p - tip) = offset, with short strokes on the forbidden side.
+
         span: its two ends along the line, in mm from the foot of the tip."""
         self.path([self.along(tip, plane, s) for s in span], f"line {style}")
         if not ticks:

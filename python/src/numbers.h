@@ -22,10 +22,10 @@ inline bool may_be_number(pybind11::handle given) {
   return numeric.find(kind.cast<std::string_view>()) != std::string_view::npos;
 }
 
-/// Converts a number as pybind11 does, unless it is none for may_be_number().
+/// Converts a number as pybind11 does, but rejects what may_be_number() rejects.
 template <class Number>
 struct NumberCaster {
-  // Of the same values, but not of a type that is converted here.
+  // A type with the same values, which this caster does not convert.
   using Wide = std::conditional_t<
       std::is_floating_point_v<Number>, long double,
       std::conditional_t<std::is_signed_v<Number>, long long, unsigned long long>>;

@@ -31,9 +31,6 @@ Solver& required(const std::unique_ptr<Solver>& solver) {
   return *solver;
 }
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
-
 InstrumentCapacity checked(InstrumentCapacity capacity) {
   const auto& planes = option_named(instrument_capacity_options, "max_planes");
   planes.accepted(planes.get(capacity));
@@ -51,8 +48,6 @@ MotionProof with_former_names(MotionProof proof) noexcept {
   proof.share = proof.fraction;
   return proof;
 }
-
-#pragma GCC diagnostic pop
 
 }  // namespace
 

@@ -67,7 +67,7 @@ Twist Attacker::wish(const Vec3& at, bool is_turn) {
     case Route::slide:
       if (is_turn) heading_ = random_->direction();
       return {.linear = longest_ * (inwards_ + random_->uniform(0.0, 2.0) * heading_)};
-    case Route::traversal:
+    case Route::walk:
       return {.linear = kept_ * std::pow(10.0, random_->uniform(-3.0, 1.0)) * random_->direction()};
     case Route::aim:
       if (cycle_ % attention_ == 0) goal_ = target_on_triangle();

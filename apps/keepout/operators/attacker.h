@@ -15,7 +15,7 @@ enum class Route : std::uint8_t {
   // Routes of a tip, which does not change its route:
   push,       // straight into the surface
   slide,      // into the surface and along it
-  traversal,  // in random directions, in steps of all lengths
+  walk,       // in random directions, in steps of all lengths
   aim,        // to the corners and edges of the nearest triangle
   ping_pong,  // from wall to wall
   tremor,     // to a place behind the surface, trembling

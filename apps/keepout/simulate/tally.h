@@ -99,7 +99,7 @@ std::uint32_t guides_inside(std::span<const GuideState> guides);
 std::vector<std::string> untested_guides(std::span<const RunTally> runs,
                                          std::span<const std::string> texts);
 
-/// Returns a sentence on untested guides, after a space; empty if there are none.
+/// Returns a sentence on untested guides, after a space; empty without untested guides.
 std::string sentence_on_untested(const std::vector<std::string>& guides);
 
 }  // namespace keepout::app

@@ -15,8 +15,8 @@ class Attack {
   explicit Attack(Tally tally) : row(std::move(tally)) {}
   virtual ~Attack() = default;
 
-  /// Draws the start of the next trajectory; loads the mesh before the first. Returns its largest
-  /// number of cycles; 0 if there is none, or no mesh.
+  /// Draws the start of the next trajectory. Loads the mesh before the first one. Returns the
+  /// largest number of cycles of the trajectory; 0 if no trajectory is left, or without a mesh.
   virtual std::uint64_t begin() = 0;
 
   /// Commands a motion, runs the step, lets the judge examine it, tallies it and applies it.

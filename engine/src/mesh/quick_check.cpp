@@ -106,7 +106,7 @@ std::string short_number(double value) {
   return text.data();
 }
 
-/// What is odd about its size, which mostly tells of the unit; empty for one that organs have.
+/// Returns a doubt about the unit, from the size of the mesh; empty for the sizes of organs.
 std::string doubt_of_unit(const Mesh& mesh, double scale) {
   const double extent = mesh.bounds().size().maxCoeff();
   if (extent >= MeshFindings::meters_below && extent <= MeshFindings::micrometers_above) return {};

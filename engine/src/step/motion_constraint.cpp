@@ -46,10 +46,7 @@ Capacity checked(Capacity capacity, const StepOptions& options) {
   require_in_range(options);
   require_in_range(capacity_options, capacity);
   capacity.nodes = std::max(capacity.nodes, static_cast<std::size_t>(std::max(options.nodes, 0)));
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
   if (capacity.work_units == 0) capacity.work_units = capacity.looks;
-#pragma GCC diagnostic pop
   return capacity;
 }
 

@@ -112,7 +112,7 @@ struct Capacity {
   /// returned. 0: work_units_of_traversals on an index that traverses along motions, such as
   /// wide_bvh; work_units_of_queries on others, which return all triangles in the region.
   std::size_t work_units = 0;
-  [[deprecated("use work_units")]] std::size_t looks = 0;  // its former name
+  std::size_t looks = 0;  // deprecated: use work_units
 
   /// The default for an index that traverses along motions.
   static constexpr std::size_t work_units_of_traversals = std::size_t{1} << 16;

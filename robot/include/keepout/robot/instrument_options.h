@@ -91,7 +91,7 @@ struct InstrumentCapacity {
   std::size_t planes = 128;                      // rows of a cycle
   /// Work units of a cycle, for all meshes; 0: the largest of the defaults of their indices.
   std::size_t work_units = 0;
-  [[deprecated("use work_units")]] std::size_t looks = 0;  // its former name
+  std::size_t looks = 0;  // deprecated: use work_units
 };
 
 /// The table of these options.
