@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout-bench: the commands of keepout, and those that compare. keepout runs this program for
-// them.
+// keepout-bench: all commands of keepout, and also bench, compare and plan. keepout starts this
+// program for these three, and for simulate --bench.
 #include <span>
 
 #include "bench/bench.h"

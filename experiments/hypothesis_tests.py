@@ -111,8 +111,9 @@ def effect(
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
-    """Returns each p adjusted for its family: below 0.05 means at most 5 % for any error in the family.
+    """Returns the p values of a family of tests, each adjusted for the number of tests.
 
+    If an adjusted p below 0.05 counts as significant, the family has a false finding with a probability of at most 5 %.
     Holm, "A simple sequentially rejective multiple test procedure", 1979.
     """
     order = np.argsort(p_values, kind="stable")

@@ -71,7 +71,8 @@ struct FreeSpace : Planes {
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::polytope); }
 };
 
-/// A step that outlives the next one: its own lists hide the views of the engine's step.
+/// A step that stays valid after the next one: its own lists replace the views of the engine's step
+/// that have the same names.
 struct StepResult : Step {
   std::vector<double> increment;
   Planes planes;
@@ -135,7 +136,8 @@ void bind_instrument_guard(py::module_& module);
 void bind_instrument_results(py::module_& module);
 void bind_registration(py::module_& module);
 
-/// Makes the errors of calls that fit no signature name the wrong argument. Must be called last.
+/// Replaces the message for a call that fits no signature: the new message names the wrong
+/// argument. Must be called last.
 void explain_call_errors(py::module_& module);
 
 }  // namespace keepout::python

@@ -19,7 +19,7 @@ namespace keepout {
 ///
 ///     demand <= full_demand <= target = margin - band    that a proof must maintain
 ///     row_margin = margin                                that rows demand
-///     vicinity - radius                                  of the listed triangles
+///     vicinity - radius                                  within which triangles are listed
 ///
 /// If a body is slowed down (slow_down), full_demand and row_margin are larger.
 class PairWatch {
@@ -33,8 +33,8 @@ class PairWatch {
     int mesh = -1;  // the number of the mesh
   };
 
-  /// Precondition of open(): all motions have begun the cycle. Both arguments must outlive this
-  /// object.
+  /// Precondition of open(): begin_cycle() was called in this cycle for memory.trial_motion and for
+  /// the motion of each mesh. Both arguments must outlive this object.
   PairWatch(CycleMemory& memory, const CycleConstants& cycle) noexcept
       : memory_(memory), cycle_(cycle) {}
 
@@ -83,15 +83,15 @@ class PairWatch {
   bool is_watched(std::size_t p) const noexcept {
     return !memory_.pairs[p].is_dropped && !memory_.pairs[p].is_settled;
   }
-  /// Lowers the pair's clearance fraction by at least a quarter, to a multiple of a quarter of at
-  /// most `most`. If that is below 0, or the full demand is not above 0, drops the pair and
-  /// remembers the reason.
+  /// Lowers the pair's clearance fraction by at least 1/4, and to at most `most`. The new fraction
+  /// is the largest such multiple of 1/4. If it is below 0, or if the full demand is not above 0,
+  /// drops the pair instead and remembers the reason.
   void lower_clearance_fraction(std::size_t p, double most, Status reason) noexcept;
-  /// Notes that the proof of a pair whose body no joint moves is complete.
+  /// Marks a pair as proved for this cycle. Precondition: is_immovable(p).
   void settle(std::size_t p) noexcept { memory_.pairs[p].is_settled = true; }
   /// Returns true if no joint moves the pair's body.
   bool is_immovable(std::size_t p) const noexcept;
-  /// Returns the reason for which a pair whose body a joint moves was dropped last, or free.
+  /// Returns why a pair was last dropped, or free. Ignores immovable pairs.
   Status dropped_for() const noexcept { return dropped_for_; }
   /// Lists the degraded pairs. Returns the least clearance fraction of all pairs.
   double list_degraded() noexcept;

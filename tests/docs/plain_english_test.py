@@ -17,7 +17,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs" / "figures"))
 from pages import FENCE, blank, of_tree  # noqa: E402
 
-BUDGETS = {"pages": 0, "changelog": 0, "headers": 0, "sources": 10, "tests": 310}  # matches in each area
+BUDGETS = {"pages": 0, "changelog": 0, "headers": 0, "sources": 0, "tests": 310}  # matches in each area
 NAMES = ("*.md", "*.h", "*.cpp", "*.py", "*.pyi", "*.mjs", "*.js", "*.ts", "*.css", "*.sh", "*.cmake", "CMakeLists.txt", "run", "test")
 LONGEST = 30  # words of a sentence
 

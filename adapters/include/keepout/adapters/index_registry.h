@@ -18,8 +18,8 @@ namespace keepout {
 struct IndexBackend {
   std::string_view name;         // for make_index
   std::string_view description;  // one line, for lists
-  /// Makes an index. Throws Error if the underlying library cannot hold the mesh: no triangle is
-  /// lost.
+  /// Makes an index. Throws Error if the underlying library cannot hold all triangles: an index
+  /// never omits one.
   std::unique_ptr<SpatialIndex> (*make)(std::shared_ptr<const Mesh> mesh);
   std::size_t most_triangles;  // capacity of the data structure
   std::string (*library)();    // name and version of the underlying library; null for keepout's own

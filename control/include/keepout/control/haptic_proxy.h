@@ -68,15 +68,16 @@ struct HapticCycle {
 /// constraint. All values are in the frame and the unit of the mesh. Not thread-safe. A cycle does
 /// not allocate, lock or throw.
 ///
-/// If a cycle fails, the proxy does not move. The force must not jump, as the hand leans against
-/// it, and a fault must not leave a motor pushing. So the force of the spring to the proxy, where
-/// the tool is, fades out over `fade` seconds. While the hand is not measured, the last force
-/// fades. From the next successful cycle on, the force returns over the same time.
+/// If a cycle fails, the proxy does not move, and the force fades out over `fade` seconds. The
+/// force must not vanish at once, because the hand leans against it. It must not stay either,
+/// because a motor must not push after a fault. While the hand is measured, the fading force is
+/// that of the spring to the proxy, where the tool is. While the hand is not measured, it is the
+/// last force. From the next successful cycle on, the force returns over the same time.
 class HapticProxy {
  public:
   /// Makes a proxy. The longest motion of a cycle is top_speed * period, limited to the radius of
   /// the motion sphere; it also limits the guard's recovery. Throws Error for an option out of
-  /// range, and for guides like MotionConstraint::set_guides.
+  /// range, and for guides that MotionConstraint::set_guides rejects.
   HapticProxy(MotionConstraint guard, const HapticOptions& options);
 
   /// Sets proxy and hand to a tip: at the start, and after the hand has moved without the proxy
@@ -133,7 +134,7 @@ class HapticProxy {
   double stretch_ = 0.0;                      // between proxy and hand in the last cycle [length]
   double rate_ = 0.0;                         // of the stretch [length / s]
   double share_ = 1.0;                        // the fraction of the force that has not faded
-  std::span<const GuideState> guide_states_;  // views of the guard's
+  std::span<const GuideState> guide_states_;  // of the last step of guard_
   bool engaged_ = false;
   bool seen_ = false;  // true if the hand was measured in the last cycle
 };

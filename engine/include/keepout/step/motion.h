@@ -64,12 +64,12 @@ struct Step {
   /// The indices of the planes that limit the motion; those from planes.size() on are extra rows.
   /// Empty unless ok().
   std::span<const std::uint32_t> active = {};
-  /// The limits that make the motion differ from the desired increment; without a motion, the
-  /// constraints for which no motion was found.
+  /// The limits that make the motion differ from the desired increment. Without a motion: the
+  /// causes why no motion was found, such as constraints that cannot be satisfied together.
   Limits limits = {};
   std::span<const GuideState> guides = {};   // one for each guide, in the order of set_guides
   Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
-  /// The triangles that the result depends on: see ActivationRule::triangles.
+  /// The number of triangles that the result depends on: see ActivationRule::triangles.
   std::size_t triangles = 0;
   /// The distance from the tip at the start of the step to the nearest triangle, on either side
   /// [length]. The certified rule knows it for a tip within the required clearance, and for an

@@ -24,15 +24,17 @@ namespace keepout {
 /// Only the certificate is trusted. Planes, solver and linearization propose a motion. The true
 /// motion q + s dq, s in [0, 1], is then proved, or truncated to the part that is proved.
 ///
-/// Guarantee (docs/joint-space-step.md, Theorem 1, with its assumptions): joint limits hold. If
-/// each body is at least radius + F from the mesh at the start, it is at least radius + F - 3
-/// tolerance away for all s. F is the certified clearance of the pair of body and mesh: margin -
-/// band, or less if the body is already closer.
+/// Guarantee (docs/joint-space-step.md, Theorem 1, with its conditions and assumptions): a joint
+/// that starts within its limits stays within them. Let the core of a body (see Body) be at least
+/// radius + F from a mesh at the start. It is then at least radius + F - 3 tolerance from the mesh
+/// for all s. F is the certified clearance of this pair of body and mesh, from the body's surface:
+/// margin - band, or less if the body starts closer.
 ///
-/// If a mesh moves in the cycle (see place), this holds for its pose at each s. It then holds only
-/// if the whole increment is executed: a part of it is not proved. A pair in
-/// InstrumentStep::degraded maintains that fraction of F, or no clearance if it is not certified;
-/// all other pairs maintain F.
+/// If a mesh moves in the cycle (see place), the guarantee is for its pose at each s (Theorem 3).
+/// The joints must then execute the whole increment, at constant speed over the cycle. If they
+/// execute only a part of it, nothing is proved. A pair in InstrumentStep::degraded maintains only
+/// DegradedClearance::fraction times F, or no clearance if is_certified is false. All other pairs
+/// maintain F.
 ///
 /// Not thread-safe: make one for each control loop. Mesh and index may be shared.
 class InstrumentConstraint {
@@ -70,8 +72,8 @@ class InstrumentConstraint {
   /// mesh, above the band; 0: the margin of the options [length]. Forgets the last cycle, like
   /// forget(). All meshes share the work budget of a cycle, which is by default that of the slowest
   /// index: see InstrumentCapacity::work_units. Throws Error, and changes nothing, for more meshes
-  /// than InstrumentCapacity::most_meshes and like the constructor. Allocates: not for the control
-  /// path.
+  /// than InstrumentCapacity::most_meshes, for a margin that is negative or NaN, and for a mesh or
+  /// an index that the constructor would reject. Allocates: not for the control path.
   std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        double margin = 0.0);
 
@@ -108,10 +110,10 @@ class InstrumentConstraint {
   /// Forgets the last cycle. For motions that do not continue each other.
   void forget() noexcept;
 
-  /// Replaces the guides from the next step on: see Guide. A guided point outside its region may
-  /// move farther out by one band again. Throws Error, and changes nothing, for more guides than
-  /// Guide::most, for link 0 or a link that the chain does not have, or if rounding hides a band.
-  /// Allocates: not for the control path.
+  /// Replaces the guides from the next step on: see Guide. A guide that starts outside its
+  /// region may then leave it farther, by at most one band from its place at the next step. Throws
+  /// Error, and changes nothing, for more guides than Guide::most, for link 0 or a link that the
+  /// chain does not have, or if rounding hides a band. Allocates: not for the control path.
   void set_guides(std::vector<Guide> guides);
 
   /// Follows anatomy that has deformed: continues with a mesh and its index. The index may be the

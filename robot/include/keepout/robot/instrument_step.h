@@ -50,7 +50,7 @@ struct InstrumentStep {
   Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
   /// The limits that make the motion differ from the commanded one. With a motion, these are all
   /// constraints that limit or shorten it (not a refinement that exceeds budget or capacity).
-  /// Without a motion, these are the constraints for which no motion could be proved.
+  /// Without a motion, these are the causes why no motion could be proved.
   /// joints_outside is reported with any status, singularity only without another limit.
   Limits limits = {};
 
@@ -70,7 +70,7 @@ struct MotionProof {
   /// The motion q + s dq is proved for s in [0, fraction], with any status.
   double fraction = 0.0;
   double share = 0.0;  // deprecated: use fraction
-  std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
+  std::optional<double> distance = std::nullopt;      // as InstrumentStep::distance [length]
 
   /// Returns one line on what happened and what to do about it.
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }

@@ -28,8 +28,9 @@ HWY_INLINE void store(FloatTag d, const Vector& v, std::size_t leaf, VectorRows&
   hn::Store(v.z, d, to.z.row[leaf]);
 }
 
-/// Reduces the lanes of each of `Count` rows to one number. Each round makes one row of two, so the
-/// results are side by side. The work is a quarter of that of row by row.
+/// Reduces the lanes of each of `Count` rows to one number. Each round combines two rows into one,
+/// so the results end up side by side. This takes a quarter of the work of reducing one row after
+/// the other.
 template <std::size_t Count, class Operation>
 HWY_INLINE V put_together(FloatTag d, const float (*rows)[width],
                           [[maybe_unused]] const Operation& operation) {
@@ -95,7 +96,8 @@ HWY_INLINE void look_at(FloatTag d, const LeafBlock& leaf, std::size_t row, Vect
   store(d, high, row, highs);
 }
 
-/// Sets the axes of the cylinders of the leaves, and the middles of their boxes as middles.
+/// Sets the axis of each leaf's cylinder. Sets the middle of the cylinder to the middle of the
+/// leaf's box; set_sizes() moves it later.
 HWY_INLINE void set_axes(FloatTag d, const VectorRows& normals, const NodeBlock& boxes,
                          CylinderBlock& cylinders) {
   const V zero = hn::Zero(d);
@@ -140,7 +142,8 @@ HWY_INLINE void measure(FloatTag d, const LeafBlock& leaf, std::size_t row,
   hn::Store(radius2, d, radii2.row[row]);
 }
 
-/// Moves the middles along the axes to the middle of the sheets.
+/// Moves the middle of each cylinder along its axis, to the middle of the heights of the leaf's
+/// triangles. Sets half height and radius.
 HWY_INLINE void set_sizes(FloatTag d, const Rows& bottoms, const Rows& tops, const Rows& radii2,
                           const NodeBlock& boxes, CylinderBlock& cylinders) {
   for (std::size_t first = 0; first < leaf_count; first += width) {
@@ -158,7 +161,8 @@ HWY_INLINE void set_sizes(FloatTag d, const Rows& bottoms, const Rows& tops, con
     // The greatest distance of a corner from the middle of the box.
     const V far = norm1(load(d, boxes.high, first) - load(d, boxes.low, first));
     // The most that rounding adds to a length, as a fraction of the sum of the coordinates' sizes:
-    // 32 u. A dozen operations and the length of the axis add up to less than 24 u.
+    // 32 u, with the unit roundoff u of float. The errors of a dozen operations, and of the axis's
+    // length, add up to less than 24 u.
     constexpr float outward = 2e-6f;
     const V rounding = hn::Mul(hn::Set(d, outward), hn::Add(far, norm1(moved)));
     // Squares of very small or very large numbers are lost.

@@ -48,7 +48,9 @@ HWY_INLINE DoubleVector all_double(const double (&v)[3]) {
   return {hn::Set(d, v[0]), hn::Set(d, v[1]), hn::Set(d, v[2])};
 }
 
-/// The reaches of some cylinders along an axis and away from it, one in each lane.
+/// The extents of cylinders, measured from a point and an axis through it; one cylinder in each
+/// lane. Along the axis, a cylinder extends from at - along to at + along. No point of it is
+/// farther than `away` from the axis, or farther than `far` from the point.
 struct Reaches {
   hn::Vec<Double> at, along, away, far;
 };
@@ -138,7 +140,7 @@ void EncloseNode(const NodeBlock& node, const CylinderBlock& of_node, NodeBlock&
     radius = hn::Max(radius, hn::IfThenElseZero(is_used, its.away));
     far = hn::Max(far, hn::IfThenElseZero(is_used, its.far));
   });
-  constexpr double outward = 2e-6;  // for the lengths of axes and the rounding to float
+  constexpr double outward = 2e-6;  // axes are not exactly of length 1; rounding to float
   const double rounding = outward * hn::GetLane(hn::MaxOfLanes(d, far));
   above.half_height[lane] =
       static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, half_height)) + rounding);
