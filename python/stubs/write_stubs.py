@@ -126,7 +126,9 @@ def class_of(owner, type_, options):
     lines = ""
     for name, member in vars(type_).items():
         if isinstance(member, property):
-            lines += prop(owner, name, member, options)
+            former = re.match(r"Deprecated: use (\w+)\.", member.__doc__ or "")
+            present = former[1] if former else name
+            lines += prop(owner, present, vars(type_)[present], options).replace(f"def {present}(", f"def {name}(")
         elif name in ("__init__", "__len__") or not name.startswith("_"):
             doc = getattr(type_, name).__doc__
             if doc.startswith(f"{name}("):
