@@ -36,7 +36,6 @@ for _owner, _former, _name in (
     (MotionConstraint, "max_looks", "max_work_units"),  # noqa: F405
     (InstrumentGuard, "max_looks", "max_work_units"),  # noqa: F405
     (Inspection, "looks_like_metres", "looks_like_meters"),  # noqa: F405
-    (Inspection, "looks_like_micrometres", "looks_like_micrometers"),  # noqa: F405
 ):
     _alias(_owner, _former, _name)
 del _owner, _former, _name
