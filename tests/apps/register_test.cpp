@@ -64,7 +64,7 @@ TEST_F(Register, DoubtsAWrongUnitOnStderrAndFailsUnlessItIsTrustedAnyway) {
   EXPECT_EQ(status, EXIT_FAILURE);
   EXPECT_CONTAINS(printed, "--target X Y Z");
   EXPECT_EQ(text({.unit = LengthUnit::metre, .trusted_anyway = true}), printed);
-  EXPECT_CONTAINS(doubt, "do not trust it");
+  EXPECT_CONTAINS(doubt, "do not trust this registration");
   EXPECT_EQ(status, EXIT_SUCCESS);
   text({});
   EXPECT_EQ(doubt, "");

@@ -124,7 +124,7 @@ TEST_F(BenchCommand, SaysWhatIsWrongWithTheArguments) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.json")));
   std::filesystem::create_directory(folder.file("other"));
   std::filesystem::copy(folder.file("cube.stl"), folder.file("other/cube.stl"));
-  folder.expect_refused("bench --mesh cube.stl,other/cube.stl", "told apart");
+  folder.expect_refused("bench --mesh cube.stl,other/cube.stl", "would have the same name");
 }
 
 TEST_F(BenchCommand, NamesTheMeshOfWhichNothingCanBeMeasured) {

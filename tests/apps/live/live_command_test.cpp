@@ -208,10 +208,11 @@ TEST_F(Live, NeitherAMeshNorThePagesOwnPartsAreOverwritten) {
 }
 
 TEST_F(Live, WithoutThePagesPartsItSaysWhatToDo) {
-  expect_refused("cube",
-                 "there is no elsewhere/live.html. In a checkout of keepout, ./run makes the pages "
-                 "of reports and ./run live makes live.html",
-                 1, "KEEPOUT_WEB=elsewhere");
+  expect_refused(
+      "cube",
+      "there is no elsewhere/live.html. In a checkout of keepout, with npm and a network, ./run "
+      "makes the pages of reports and ./run live makes live.html",
+      1, "KEEPOUT_WEB=elsewhere");
   for (const std::string& page : {std::string("<p>no place</p>\n"), place + place}) {
     folder_.write("web/live.html", page);
     expect_refused("cube", "is not the front end of this keepout");

@@ -124,7 +124,7 @@ std::size_t occurrences(const std::string& text, std::string_view part) {
 }
 
 TEST_F(NamedMesh, EveryCommandTellsOfMetresHolesAndWindingOnceOnStderr) {
-  write_cube("metres.stl", 0.001);
+  write_cube("meters.stl", 0.001);
   Surface bad = opened(make_cube(25.0));
   std::swap(bad.triangles[0][0], bad.triangles[0][1]);
   write_binary_stl(folder.file("bad.stl"), bad);
@@ -133,7 +133,7 @@ TEST_F(NamedMesh, EveryCommandTellsOfMetresHolesAndWindingOnceOnStderr) {
       return run(with_mesh(command, mesh) + " >/dev/null 2>told.txt; cat told.txt").output;
     };
     // Whether or not the command can do something with it.
-    const std::string metres = told("metres.stl");
+    const std::string metres = told("meters.stl");
     EXPECT_EQ(occurrences(metres, "keepout: meters.stl: the mesh is 0.1 mm across"), 1u)
         << command << '\n'
         << metres;

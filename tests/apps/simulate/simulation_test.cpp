@@ -320,7 +320,7 @@ TEST(TipStrokes, OfTheSameSeedAreAlike) {
 TEST(TipStrokes, WithoutRoomAnywhereTheErrorNamesTheRemedy) {
   Audit audit = audit_of(inside_out(make_thin_plates(10.0)));  // free are the plates: 1 mm
   const std::string message = error_of([&] { strokes_over(audit); });
-  for (const char* word : {"no free place", "room for 8 mm", "flip", "keepout inspect"}) {
+  for (const char* word : {"no free place", "8 mm of free space", "flip", "keepout inspect"}) {
     EXPECT_CONTAINS(message, word);
   }
 }
