@@ -54,7 +54,8 @@ Inspection examine_file(const InspectOptions& options) {
     inspection.self_intersections =
         find_self_intersections(mesh, tree, most, [&progress] { progress.advance(); });
   }
-  inspection.findings = findings_of(inspection.mesh, inspection.self_intersections);
+  inspection.findings =
+      findings_of(inspection.mesh, inspection.self_intersections, inspection.loaded.scale != 1.0);
   return inspection;
 }
 

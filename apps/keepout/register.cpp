@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -12,6 +13,7 @@
 #include "keepout/control/rigid_fit.h"
 #include "keepout/control/target_error.h"
 #include "keepout/error.h"
+#include "keepout/mesh/diagnostics.h"
 #include "shared/columns.h"
 #include "shared/number_text.h"
 #include "shared/output_file.h"
@@ -64,6 +66,13 @@ RigidFit fit_of(const FiducialPairs& pairs, const RegisterOptions& options) {
   }
 }
 
+/// Returns the largest extent of points along an axis. [mm]
+double extent_of(const std::vector<Vec3>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& point : points) box.extend(point);
+  return box.sizes().maxCoeff();
+}
+
 }  // namespace
 
 int register_fiducials(const RegisterOptions& options, std::ostream& out) {
@@ -78,18 +87,24 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
                           : " If the measured ones are in meters, give --measured-in m";
   }
   if (doubt.empty() && options.fle) doubt = fit.doubt_of(*options.fle);
+  if (const double extent = extent_of(pairs.model);
+      doubt.empty() && extent < MeshFindings::meters_below) {
+    doubt = "the points of the model are within " + formatted("%g", extent) +
+            " mm of each other: give both sides in mm";
+  }
   if (!doubt.empty()) std::cerr << "keepout: do not trust this registration: " << doubt << '\n';
   const double largest = std::ranges::max(fit.residuals);
   std::vector<PairRow> rows;
   for (std::size_t i = 0; i < fit.residuals.size(); ++i) {
     rows.push_back({pairs.lines[i], fit.residuals[i], fit.residuals[i] == largest});
   }
+  const bool is_trusted = doubt.empty() || options.trusted_anyway;
   std::vector<Vec3> places;
   std::vector<TargetRow> targets;
   const auto margin_of = [&](const std::vector<Vec3>& of) {
     return registration_margin(fit, of, options.confidence, options.fle);
   };
-  for (std::size_t i = 0; i < options.targets.size(); i += 3) {
+  for (std::size_t i = 0; is_trusted && i < options.targets.size(); i += 3) {
     const double* const xyz = &options.targets[i];
     places.emplace_back(xyz[0], xyz[1], xyz[2]);
     targets.push_back(
@@ -119,19 +134,21 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
                {"confidence", options.confidence},
                {"targets", json_of(target_columns, targets)},
                {"margin", places.empty() ? Json(nullptr) : Json(margin_of(places))}});
-  if (places.empty()) {
+  if (!is_trusted) {
+    out << "No margin: the registration is in doubt. --anyway computes one.\n";
+  } else if (places.empty()) {
     out << "No margin: give the places in the mesh where the tool works, with --target X Y Z.\n";
   } else {
     print_rows(out, target_columns, targets);
     out << formatted(
         "Add %.4f mm to a guard's margin: the registration error%s is no larger,\nwith a "
-        "probability of %g.\n",
+        "probability of %g%s.\n",
         json["margin"].get<double>(), places.size() == 1 ? " there" : " at all of them and between",
-        options.confidence);
+        options.confidence, doubt.empty() ? "" : ", if the registration can be trusted");
   }
   if (std::ostream* file = outputs.stream("--json")) *file << json.dump(2) << '\n';
   outputs.commit();
-  return doubt.empty() || options.trusted_anyway ? EXIT_SUCCESS : EXIT_FAILURE;
+  return is_trusted ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 }  // namespace keepout::app

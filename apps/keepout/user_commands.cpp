@@ -66,10 +66,10 @@ void add_docs(CLI::App& app, DocsOptions& options) {
 }
 
 void add_register(CLI::App& app, RegisterOptions& options) {
-  CLI::App& command =
-      *app.add_subcommand("register",
-                          "Compute the pose of the mesh in the robot's frame from points that are "
-                          "known in both, and the expected error where the tool works");
+  CLI::App& command = *app.add_subcommand(
+      "register",
+      "Compute the pose of the robot in the frame of the mesh from points that are "
+      "known in both, and the expected error where the tool works");
   command
       .add_option("FILE", options.fiducials,
                   "One pair a line, 'measured x,y,z, model x,y,z' and optionally a weight; the "
@@ -188,8 +188,8 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->capture_default_str()
       ->needs(robot);
   CLI::Option* const guide = add_guides(command, options.guides);
-  for (const char* other : {"--space", "--untagged", "--activation", "--verbose", "--index-cache",
-                            "--solver", "--max-step", "--inside", "--tool"}) {
+  for (const char* other : {"--activation", "--verbose", "--index-cache", "--solver", "--max-step",
+                            "--inside", "--tool"}) {
     command.get_option(other)->excludes(robot);
   }
   CLI::Option* const tool = command.get_option("--tool");

@@ -32,7 +32,6 @@ for _owner, _former, _name in (
     (InstrumentStep, "share", "fraction"),  # noqa: F405
     (InstrumentStep, "level", "clearance_fraction"),  # noqa: F405
     (MotionProof, "share", "fraction"),  # noqa: F405
-    (Proofs, "share", "fraction"),
     (MotionConstraint, "max_looks", "max_work_units"),  # noqa: F405
     (InstrumentGuard, "max_looks", "max_work_units"),  # noqa: F405
     (Inspection, "looks_like_metres", "looks_like_meters"),  # noqa: F405

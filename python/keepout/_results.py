@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+import warnings
 from enum import IntEnum
 from typing import Any, NamedTuple
 
@@ -147,6 +148,12 @@ class Proofs(_Batch):
     status: NDArray[np.uint8]  # (m,): numbers of Status
     fraction: NDArray[np.float64]  # (m,): the motion is proved from its start to this fraction
     distance: NDArray[np.float64]  # (m,): of the nearest body at the start; NaN if unknown [length]
+
+    @property
+    def share(self) -> NDArray[np.float64]:
+        """Deprecated: use fraction."""
+        warnings.warn("Proofs.share is now fraction", DeprecationWarning, stacklevel=2)
+        return self.fraction
 
     @property
     def is_clear(self) -> NDArray[np.bool_]:

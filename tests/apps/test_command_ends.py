@@ -71,7 +71,7 @@ def test_simulate_keeps_the_strokes_that_are_finished(tmp_path, number):
     assert all(run["summary"]["cycles"] == 100 * strokes > 0 for run in record["runs"]), "whole strokes only"
     assert f"keepout: stopped; {strokes:,} of 100,000 strokes were finished, and are kept in keepout-report.html and r.json" in err
     assert "Report, with tables and settings, no pictures: keepout-report.html" in out
-    assert "It was stopped" in (tmp_path / "keepout-report.html").read_text()
+    assert "The command was stopped" in (tmp_path / "keepout-report.html").read_text()
 
 
 def test_simulate_of_a_robot_has_no_row_of_what_did_not_run(tmp_path):

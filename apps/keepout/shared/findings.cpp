@@ -6,7 +6,9 @@
 namespace keepout::app {
 
 std::vector<Finding> findings_of(const MeshFindings& mesh,
-                                 const std::optional<SelfIntersections>& self_intersections) {
+                                 const std::optional<SelfIntersections>& self_intersections,
+                                 bool is_scaled) {
+  constexpr std::string_view check_scale = "check the unit or the scale that was given";
   const SelfIntersections crossings = self_intersections.value_or(SelfIntersections{});
   const std::vector<Finding> all{
       {"inside_out", mesh.is_inside_out(), "",
@@ -14,12 +16,14 @@ std::vector<Finding> findings_of(const MeshFindings& mesh,
        "flip all triangles: --flip, flip=True in Python, or 'keepout convert --orient'"},
       {"looks_like_meters", mesh.looks_like_meters(), "",
        "smaller than 3 in every direction: in millimeters that is tiny, so these may be meters",
-       "give the unit of the file: --unit m, or another that 'unit' above names; in Python "
-       "unit=\"m\""},
+       is_scaled ? check_scale
+                 : "give the unit of the file: --unit m, or another that 'unit' above names; in "
+                   "Python unit=\"m\""},
       {"looks_like_micrometers", mesh.looks_like_micrometers(), "",
        "larger than 3000 in some direction: 3 m in millimeters, so these may be micrometers, or "
        "something lies far from the rest",
-       "give the unit of the file if so: --unit um, or in Python unit=\"um\""},
+       is_scaled ? check_scale
+                 : "give the unit of the file if so: --unit um, or in Python unit=\"um\""},
       {"inconsistent_edges", mesh.inconsistent_edges, "inconsistently wound edge",
        "the two triangles there disagree about which side is free",
        "orient the surface consistently: 'keepout convert --orient'",

@@ -23,9 +23,10 @@ struct Finding {
 };
 
 /// Returns the findings, the worst first. `self_intersections`: empty if they were not searched
-/// for.
+/// for. `is_scaled`: the user gave a unit or a scale.
 std::vector<Finding> findings_of(const MeshFindings& mesh,
-                                 const std::optional<SelfIntersections>& self_intersections);
+                                 const std::optional<SelfIntersections>& self_intersections,
+                                 bool is_scaled = false);
 
 /// Returns the count and the meaning as text for people, without a full stop.
 std::string text_of(const Finding& finding);

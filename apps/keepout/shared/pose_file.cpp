@@ -115,6 +115,7 @@ void read_lines(const std::filesystem::path& path, const LineKind& kind, const T
 }
 
 bool begins_a_number(std::string_view word) {
+  if (word.starts_with('"') || word.starts_with('\'')) word.remove_prefix(1);
   double ignored = 0.0;
   return word.starts_with('+') ||
          std::from_chars(word.data(), word.data() + word.size(), ignored).ec !=
