@@ -86,7 +86,7 @@ def test_the_replay_of_the_command(sphere_file, closed_loop, tmp_path):
 def test_the_inspection_of_the_command(sphere_file):
     told = json.loads(run(command, "inspect", sphere_file, "--json", "--self-intersections"))
     found = keepout.load_mesh(sphere_file).inspect(self_intersections=True)
-    for name in (name for name in dir(found) if not name.startswith("_")):
+    for name in (name for name in dir(found) if not name.startswith("_") and name != "looks_like_metres"):
         value = getattr(found, name)
         if name in ("low", "high"):
             assert list(value) == told["bounds"][name]
