@@ -108,8 +108,9 @@ def read_all():
         text = gzip.decompress(path.read_bytes()).decode()
         for former, name in (("fallback", "truncated"), ("yielding", "degraded"), ("linearised", "linearized"),
                              ("held back by the surface", "limited by the surface"),
-                             ("that are held back", "that the surface limits")):
-            text = re.sub(rf"\b{former}\b", name, text)
+                             ("that are held back", "that the surface limits"),
+                             ("looks of a step | us | looks of a polytope | us", "work of a step | µs | work of a polytope | µs")):
+            text = re.sub(rf"\b{re.escape(former)}\b", name, text)
         text = re.sub(r'(\d |"unit": ")us\b', r"\1µs", text)
         records[path.name.removesuffix(".json.gz")] = json.loads(text)
     return records

@@ -364,6 +364,6 @@ def test_former_names_warn_and_have_the_same_value(mesh):
     with pytest.warns(DeprecationWarning, match="MotionProof.share is now fraction"):
         assert proof.share == proof.fraction
     with pytest.warns(DeprecationWarning, match="max_looks is now max_work_units"):
-        limited = keepout.InstrumentGuard(guard.index, keepout.free_ball(0.1), max_looks=1000)
+        limited = keepout.InstrumentGuard(mesh, keepout.free_ball(0.1), max_looks=1000)
     assert limited.max_work_units == 1000
     assert Status["fallback"] is Status.truncated and Status["yielding"] is Status.degraded
