@@ -62,13 +62,27 @@ TEST_F(Register, DoubtsAWrongUnitOnStderrAndFailsUnlessItIsTrustedAnyway) {
       << doubt;
   EXPECT_CONTAINS(doubt, "If the measured ones are in mm, leave out --measured-in m");
   EXPECT_EQ(status, EXIT_FAILURE);
-  EXPECT_CONTAINS(printed, "--target X Y Z");
-  EXPECT_EQ(text({.unit = LengthUnit::metre, .trusted_anyway = true}), printed);
+  EXPECT_CONTAINS(printed, "No margin: the registration is in doubt");
+  EXPECT_CONTAINS(text({.unit = LengthUnit::metre, .trusted_anyway = true}), "--target X Y Z");
   EXPECT_CONTAINS(doubt, "do not trust this registration");
   EXPECT_EQ(status, EXIT_SUCCESS);
   text({});
   EXPECT_EQ(doubt, "");
   EXPECT_EQ(status, EXIT_SUCCESS);
+}
+
+TEST_F(Register, DoubtsPointsThatAreInMetersOnBothSides) {
+  file = folder.write(
+      "meters.csv",
+      "0,0,0,.01,.02,.03\n0,.08,0,.01,.1,.03\n.06,0,0,.07,.02,.03\n0,0,.07,.01,.02,.1\n");
+  text({});
+  EXPECT_CONTAINS(doubt, "give both sides in mm");
+  EXPECT_EQ(status, EXIT_FAILURE);
+}
+
+TEST_F(Register, AFirstLineOfQuotedNumbersIsNotAHeader) {
+  file = folder.write("quoted.csv", "\"0\",\"0\",\"0\",\"10\",\"20\",\"30\"\n0,0,90,10,20,120\n");
+  EXPECT_CONTAINS(error_of([&] { text({}); }), "is not a number");
 }
 
 TEST_F(Register, NamesTheFileOfPointsThatFixNoRotation) {

@@ -190,7 +190,7 @@ def test_chains_of_tables_and_files_are_the_same(tmp_path):
     with pytest.raises(keepout.Error, match="no_such_link"):
         keepout.read_chain(robots / "psm.urdf", tip="no_such_link")
     os.mkfifo(tmp_path / "pipe.urdf")
-    for path, says in ((tmp_path, "is a folder"), (tmp_path / "pipe.urdf", "is not a regular file"),
+    for path, says in ((tmp_path, "is a directory"), (tmp_path / "pipe.urdf", "is not a regular file"),
                        (tmp_path / "none.urdf", "cannot read it")):
         with pytest.raises(keepout.Error, match=f"{path.name}: {says}"):
             keepout.read_chain(path)
