@@ -28,7 +28,11 @@ export async function showReport(kinds: Readonly<Record<string, Sections>>): Pro
     );
     if (!record.complete) {
       main.append(
-        make("p", { class: "account bad" }, "The command was stopped: this page shows the finished part."),
+        make(
+          "p",
+          { class: "account bad" },
+          "The command was stopped: this page shows the finished part.",
+        ),
       );
     }
     try {
