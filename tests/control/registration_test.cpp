@@ -111,7 +111,7 @@ TEST(Registration, OtherMatricesAreRefusedForWhatTheyAre) {
   EXPECT_CONTAINS(complaint(matrix_of(Mat3::Identity(), {0, test::nan, 0})), "not finite");
   Mat3 huge = Mat3::Identity();
   huge(0, 0) = 1e200;
-  EXPECT_CONTAINS(complaint(matrix_of(huge, Vec3::Zero())), "no rotation");
+  EXPECT_CONTAINS(complaint(matrix_of(huge, Vec3::Zero())), "not a rotation");
   Eigen::Matrix4d transposed = matrix_of(Mat3::Identity(), {10, 20, 30}).transpose();
   EXPECT_CONTAINS(complaint(transposed), "transposed");
 }

@@ -17,7 +17,7 @@ std::string slicer_binary_stl(const Surface& surface, std::string header) {
 }
 
 std::string slicer_text_stl(const Surface& surface, const std::string& header) {
-  return replaced(as_text_stl(surface), "a name with prepared triangle in it", header);
+  return replaced(as_text_stl(surface), "a name with facet in it", header);
 }
 
 std::string slicer_ply(std::string contents, const std::string& comment) {
@@ -198,7 +198,7 @@ TEST_F(LoadMesh, TagsInOddPlacesAreFound) {
   const std::string text = as_text_stl(surface);
   const std::string end = "endsolid SPACE=RAS\n";
   EXPECT_EQ(
-      load("end.stl", replaced(text, "endsolid a name with prepared triangle in it\n", end)).stated,
+      load("end.stl", replaced(text, "endsolid a name with facet in it\n", end)).stated,
       ras);
   EXPECT_EQ(load("upper.stl", replaced(text, "solid a name", "SOLID SPACE=RAS a name")).stated,
             ras);

@@ -41,7 +41,7 @@ function claims(all: readonly string[]): HTMLElement[] {
   if (rows.length === 0) return [];
   return [
     section(
-      "Compared with Li et al. (2020)",
+      "Compared with Li et al.",
       lead(
         "What the paper prints; what its rule does here, under the same conditions as the others; what the certified rule does; and which does best.",
       ),
