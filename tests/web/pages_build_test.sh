@@ -126,7 +126,7 @@ npm_fails=yes run fails live
 calls_no "npm ci"
 says "could not be bundled"
 bundled=nothing run fails live
-says "has not one line"
+says "does not have exactly one line"
 grep -qF "anatomy goes here" "$page" || fault "the page of before is gone"
 
 not_installed=emscripten run fails live
