@@ -239,7 +239,7 @@ void write_csv(std::ostream& out, const Benchmark& benchmark);
 
 /// Options of `bench --speed` only.
 struct SpeedOptions {
-  std::optional<std::size_t> largest = {};  // triangles of a third mesh; empty: none
+  std::optional<std::size_t> largest = {};  // triangles of a third mesh, if any
   std::size_t histogram_steps = 10'000'000;
   bool quick = false;  // a short run
 };

@@ -229,6 +229,10 @@ int compare(const CompareOptions& options, std::ostream& out) {
       return stop.has_come();
     });
   });
+  if (!comparison.complete && comparison.indices.empty()) {
+    std::cerr << "keepout: stopped before anything was finished: nothing was written\n";
+    return exit_interrupted;
+  }
   print(out, comparison);
   const CompareExtent& extent = options.extent;
   Json record = new_record(

@@ -102,9 +102,10 @@ OptionValue OptionText::parsed(const std::string& text) const {
 }
 
 OptionValue OptionText::accepted(OptionValue value) const {
-  // Names of choices before version 0.3.
-  if (value == OptionValue(std::string("led_out"))) value = std::string("escape");
-  if (value == OptionValue(std::string("linearised"))) value = std::string("linearized");
+  if (kind == OptionKind::choice) {  // names before version 0.3
+    if (value == OptionValue(std::string("led_out"))) value = std::string("escape");
+    if (value == OptionValue(std::string("linearised"))) value = std::string("linearized");
+  }
   if (kind == OptionKind::number && std::holds_alternative<std::int64_t>(value)) {
     value = static_cast<double>(std::get<std::int64_t>(value));
   }

@@ -38,17 +38,6 @@ InstrumentCapacity checked(InstrumentCapacity capacity) {
   return capacity;
 }
 
-InstrumentStep with_former_names(InstrumentStep step) noexcept {
-  step.share = step.fraction;
-  step.level = step.clearance_fraction;
-  return step;
-}
-
-MotionProof with_former_names(MotionProof proof) noexcept {
-  proof.share = proof.fraction;
-  return proof;
-}
-
 }  // namespace
 
 struct InstrumentConstraint::State {
@@ -121,7 +110,9 @@ struct InstrumentConstraint::State {
     // Without a proved motion beside meshes that move, no clearance is certified.
     if (!result.ok() && memory.is_moving()) result.clearance_fraction = 0.0;
     move_meshes();
-    return with_former_names(result);
+    result.share = result.fraction;
+    result.level = result.clearance_fraction;
+    return result;
   }
 
   /// Moves the meshes by their velocities.
@@ -183,7 +174,9 @@ MotionProof InstrumentConstraint::prove(std::span<const double> q,
   const Status status =
       state_->renew_and_check(q, are_valid_positions(state_->memory, q, increment));
   if (!is_ok(status)) return {.status = status};
-  return with_former_names(prove_in_parts(state_->memory, state_->options, q, increment));
+  MotionProof proof = prove_in_parts(state_->memory, state_->options, q, increment);
+  proof.share = proof.fraction;
+  return proof;
 }
 
 void InstrumentConstraint::forget() noexcept { state_->memory.forget(); }

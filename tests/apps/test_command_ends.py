@@ -138,6 +138,23 @@ def test_compare_stops_while_it_records_problems(tmp_path):
     assert not json.loads((tmp_path / "r.json").read_text())["complete"]
 
 
+def test_compare_stopped_before_its_first_row_leaves_an_older_record(tmp_path):
+    (tmp_path / "r.json").write_text("precious")
+    process = start(tmp_path, "compare", "gear", "--poses", "1e6", "--json", "r.json")
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=patience)
+    assert process.returncode == 130 and "stopped before anything was finished: nothing was written" in err
+    assert (tmp_path / "r.json").read_text() == "precious"
+
+
+def test_verify_fails_if_nothing_was_tested(tmp_path):
+    status, out, err = run(tmp_path, "verify", "cube", "--robot", "psm", "--scenario", "wedged", "--cycles", "500",
+                           "--json", "w.json")
+    assert status == 1 and "keepout: nothing was tested" in err, out
+    assert json.loads((tmp_path / "w.json").read_text())["headline"] == "Nothing was tested."
+
+
 @pytest.mark.parametrize("line", ["compare cube --poses 1e6", "verify fan.off --steps 1e12"])
 def test_a_signal_before_anything_is_finished_ends_the_command_at_once(tmp_path, line):
     write_fan(tmp_path / "fan.off", 100_000)

@@ -88,7 +88,7 @@ class PathAudit {
   Vec3 at_;
   double distance_;   // of at_ from the surface [mm]
   Side here_;         // of the surface, at at_
-  Side side_;         // last side where the tip was clear of the surface; touching: none yet
+  Side side_;         // last side where the tip was clear of the surface; `touching` before the first
   bool met_ = false;  // whether the tip has met the surface since then
 };
 

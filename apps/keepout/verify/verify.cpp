@@ -155,7 +155,8 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   for (CLI::Option* option : of_a_run) merge->excludes(option);
   command.footer(
       "Ctrl-C ends the campaign early: the finished part is printed and written.\nThe exit status "
-      "is 0 only if no step broke a guarantee of docs/certified-step.md, and with --robot\nor "
+      "is 0 only if steps were tested and none broke a guarantee of docs/certified-step.md, and "
+      "with --robot\nor "
       "--scenario a guarantee of docs/joint-space-step.md or docs/guides.md. With --motion "
       "linearized\nthere is no guarantee.\n\n--scenario without --robot draws a chain and bodies "
       "anew for each start, and without MESH\na mesh of up to 400 triangles: soup, fan, sheets, "
@@ -174,7 +175,13 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   result.print(out);  // before writing: a full disk must not hide the verdict
   write_record(outputs, result.record, options.files);
   if (result.is_broken) return EXIT_FAILURE;
-  return result.is_interrupted ? exit_interrupted : EXIT_SUCCESS;
+  if (result.is_interrupted) return exit_interrupted;
+  const Json& total = result.record.at("total");
+  const bool is_of_tips = total.contains("steps");
+  if (total.at(is_of_tips ? "steps" : "cycles") != 0) return EXIT_SUCCESS;
+  std::cerr << "keepout: nothing was tested: no start was found; is the mesh in mm, and is the "
+               "margin smaller than the mesh?\n";
+  return EXIT_FAILURE;
 }
 
 }  // namespace keepout::app

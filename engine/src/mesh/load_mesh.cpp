@@ -136,8 +136,8 @@ void settle_space(const MeshSource& source, const CoordinateNotes& notes,
   }
   if (loaded.space == unstated) {
     source.fail(
-        "does not state its space, so it cannot be told whether it is in " + wanted +
-        "; say what a file without SPACE=RAS or SPACE=LPS is in, for example --untagged LPS or "
+        "does not state its space, so keepout cannot convert it to " + wanted +
+        "; give the space of files without SPACE=RAS or SPACE=LPS, for example --untagged LPS or "
         "untagged=\"LPS\". 3D Slicer saved RAS before 4.11 and saves LPS since; most other "
         "programs for DICOM images use LPS");
   }

@@ -25,7 +25,7 @@ Vec3 random_point(Random& random, double size) {
   return size * random.uniform(0.1, 1.0) * random.direction();
 }
 
-/// A triangle about `size` large, and as flat as it is told to be.
+/// A triangle about `size` large, of the given flatness.
 struct Kind {
   const char* name;
   double height;    // of the triangle, in lengths of its base
@@ -194,7 +194,7 @@ TEST_P(PreparedTriangleOfKind, ThePlaneOfAContactExcludesTheMotion) {
   std::size_t contacts = 0;
   for_each_case(5, 30'000, GetParam().height,
                 [&](const Case& c, const PreparedTriangle& prepared, Random&) {
-                  // What the rule does: it objects an eighth of a tolerance later than the slack of
+                  // The rule objects an eighth of a tolerance later than the slack of
                   // a contact.
                   const double demand = c.level - 8.0 * c.slack;
                   if (demand <= 0.0 || keeps_clear(prepared, c.z, demand, 0.125 * c.slack)) return;

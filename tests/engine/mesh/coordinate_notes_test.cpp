@@ -197,9 +197,7 @@ TEST_F(LoadMesh, TagsInOddPlacesAreFound) {
             unstated);
   const std::string text = as_text_stl(surface);
   const std::string end = "endsolid SPACE=RAS\n";
-  EXPECT_EQ(
-      load("end.stl", replaced(text, "endsolid a name with facet in it\n", end)).stated,
-      ras);
+  EXPECT_EQ(load("end.stl", replaced(text, "endsolid a name with facet in it\n", end)).stated, ras);
   EXPECT_EQ(load("upper.stl", replaced(text, "solid a name", "SOLID SPACE=RAS a name")).stated,
             ras);
   // Two solids that disagree.

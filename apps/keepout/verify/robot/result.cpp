@@ -158,7 +158,8 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
        .complete = findings.is_complete,
        .subject = "Closed-loop motion of a whole instrument, " + robot +
                   ", each cycle judged by an independent oracle",
-       .headline = headline + counted(count("cycles"), "cycle") + ".",
+       .headline = count("cycles") == 0 ? "Nothing was tested."
+                                        : headline + counted(count("cycles"), "cycle") + ".",
        .account = account,
        .machine = this_machine(),
        .settings = {{"robot", robot},

@@ -27,7 +27,7 @@ struct InstrumentStep {
   /// The fraction of the solved motion that `increment` is. With status truncated, the solved
   /// motion may be for a part of the command only; 1 then means all of that part.
   double fraction = 0.0;
-  double share = 0.0;  // deprecated: use fraction
+  double share = 0.0;         // deprecated: use fraction
   int rounds = 0;             // number of trial motions that were solved and judged
   std::size_t rows = 0;       // constraints that limit the motion, joint limits apart
   std::size_t triangles = 0;  // largest number in reach of one body and one trial motion
@@ -69,8 +69,8 @@ struct MotionProof {
   Status status = Status::invalid_input;
   /// The motion q + s dq is proved for s in [0, fraction], with any status.
   double fraction = 0.0;
-  double share = 0.0;  // deprecated: use fraction
-  std::optional<double> distance = std::nullopt;      // as InstrumentStep::distance [length]
+  double share = 0.0;                             // deprecated: use fraction
+  std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
   /// Returns one line on what happened and what to do about it.
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
