@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "keepout/error.h"
@@ -110,7 +111,7 @@ class FreeCells {
 
   /// Returns the length of the shortest path along the grid between two reached cells, in steps. By
   /// A* (Hart, Nilsson, Raphael 1968): where the way is open, it visits few cells more than the
-  /// path has.
+  /// path has. Throws std::logic_error if no path leads from one to the other.
   std::uint32_t steps_between(Cell from, Cell to) {
     // Cells whose path through them may be as short as any that is left, and 2 steps longer: no
     // step changes that length by anything else.
@@ -121,6 +122,8 @@ class FreeCells {
     steps_[from] = 0;
     while (steps_[to] > length) {
       if (open.empty()) {
+        if (later.empty())
+          throw std::logic_error("steps_between: no path between two reached cells");
         length += 2;
         open.swap(later);
         continue;
@@ -143,11 +146,10 @@ class FreeCells {
 
   /// Returns the steps between two cells if all were free.
   std::uint32_t steps_in_the_open(Cell a, Cell b) const noexcept {
+    const Place from = place(a), to = place(b);
     std::uint32_t steps = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [low, high] = std::minmax(place(a)[i], place(b)[i]);
-      steps += high - low;
-    }
+    for (std::size_t i = 0; i < 3; ++i)
+      steps += std::max(from[i], to[i]) - std::min(from[i], to[i]);
     return steps;
   }
 
