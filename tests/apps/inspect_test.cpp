@@ -111,7 +111,7 @@ TEST_F(Inspect, PlausibleUnitsAreNamedWithTheSizeThatTheyMake) {
 
 TEST_F(Inspect, TheAnatomicalSpaceIsPrintedAndHowItIsKnown) {
   write(tetrahedron());
-  EXPECT_CONTAINS(text(), "unstated: RAS, LPS or any other");
+  EXPECT_CONTAINS(text(), "the file states neither RAS nor LPS");
   EXPECT_EQ(json().at("space"), nullptr);
   std::fstream out(file, std::ios::in | std::ios::out | std::ios::binary);
   out << std::string("3D Slicer output. SPACE=LPS").append(53, '\0');

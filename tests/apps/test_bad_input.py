@@ -175,6 +175,8 @@ files = [
     ("replay cube.off --poses /dev/zero --out s.csv", "/dev/zero:1: is longer than 65535 bytes"),
     ("replay cube.off --poses nan.txt --out old.csv", "nan.txt:2: "),
     ("report none.json", "none.json: cannot be read"),
+    (f"{simulate} --out r.pdf", "--out: expected a name that ends with .html", "'r.pdf'"),
+    (f"{to_s} --index pd_tree --index-cache store", "index_cache: only the index wide_bvh can be stored, not 'pd_tree'"),
     ("report folder", "folder: is a folder; name a record in it"),
     ("report poses.txt", "poses.txt: is no whole record"),
     ("report cut.json", "cut.json: is no whole record"),

@@ -407,7 +407,7 @@ def test_a_tool_that_never_moves_is_not_praised(tmp_path):
     status, out, _ = run(tmp_path, "simulate", "meters.off", "--strokes", "3", "--cycles", "300", "--json", "r.json",
                          "--activation", "all_faces,paper")
     record = json.loads((tmp_path / "r.json").read_text())
-    assert status == 0
+    assert status == 1
     for run_of in record["runs"][1:]:
         assert run_of["summary"]["stopped"] == run_of["summary"]["cycles"] == 900
         assert run_of["words"] == ("stood still in all 900 cycles; 3 of 3 strokes began nearer than the required "

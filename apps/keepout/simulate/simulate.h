@@ -66,8 +66,9 @@ struct SimulateOptions {
 ///
 /// Returns the exit status. It is a failure if a certified cycle of an instrument broke a guarantee
 /// of docs/joint-space-step.md, or if a timed part gave a wrong answer. It is a failure as well if
-/// a guarded tip left a guide, or if a guarded convex tool touched the surface. It is
-/// exit_interrupted if a signal stopped the simulation.
+/// a guarded tip left a guide, if a guarded convex tool touched the surface, or if nothing was
+/// tested: no guarded tool moved, or none was ever inside a guide. It is exit_interrupted if a
+/// signal stopped the simulation.
 int simulate(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

@@ -89,6 +89,13 @@ TEST_F(PlanCommandTest, EveryPlannerRuns) {
   }
 }
 
+TEST_F(PlanCommandTest, FailsIfNoPathWasFound) {
+  const ProcessOutcome outcome =
+      folder_.run("plan cortex.stl --problems 1 --seconds 1e-9 --resolution 0.002");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_CONTAINS(outcome.output, "no path was found, so nothing was tested: raise --seconds");
+}
+
 TEST_F(PlanCommandTest, NoPathOfAWholeInstrumentUnderCertifiedCheckingComesTooClose) {
   const ProcessOutcome outcome = succeeded(folder_.run(
       "plan gear --robot psm --problems 1 --seeds 2 --seconds 20 --resolution 0.02,0.01 "
