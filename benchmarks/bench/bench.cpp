@@ -59,6 +59,23 @@ std::vector<Subject> chosen_subjects(const BenchOptions& options) {
   return subjects;
 }
 
+/// Returns the options with the defaults of --sweep: all indices but brute force, on sizes of the
+/// bunny in half decades. Without --sweep, returns them as they are.
+BenchOptions with_sweep(BenchOptions options) {
+  if (!options.sweep) return options;
+  auto& [indices, activations, solvers, radii] = options.selection;
+  if (indices.empty()) {
+    indices = index_names();
+    std::erase(indices, "brute_force");
+  }
+  if (radii.empty()) radii = {5.0, 1.0};
+  if (options.meshes.empty() && options.triangles.empty()) {
+    options.triangles = {10'000, 31'623, 100'000, 316'228, 1'000'000};
+    if (options.full) options.triangles.insert(options.triangles.end(), {3'162'278, 10'000'000});
+  }
+  return options;
+}
+
 Json record_of(const Benchmark& benchmark, const Comparison& comparison) {
   Json record =
       new_record({.kind = "bench",
@@ -117,8 +134,8 @@ void add_speed_options(CLI::App& command, BenchOptions& options) {
       "--speed", options.is_speed,
       "Measure the table of required ratios, in one process on one core; takes some "
       "minutes. With --triangles: one size, for meshes of about a million");
-  for (const char* name : {"--list", "--index", "--activation", "--solver", "--mesh", "--radius",
-                           "--full", "--queries", "--seconds", "--poses", "--csv"}) {
+  for (const char* name : {"--list", "--sweep", "--index", "--activation", "--solver", "--mesh",
+                           "--radius", "--full", "--queries", "--seconds", "--poses", "--csv"}) {
     speed->excludes(name);
   }
   command
@@ -182,6 +199,10 @@ void add_bench(CLI::App& app, BenchOptions& options) {
       ->type_name("MM")
       ->check(length(Zero::refused));
   command.add_flag(
+      "--sweep", options.sweep,
+      "Each index against the number of triangles: 10000 to a million, with --full 10 million; "
+      "--csv then writes a short table. --triangles or --mesh: other sizes");
+  command.add_flag(
       "--full", options.full,
       "Up to 18 million triangles, and the skull with a million; takes tens of minutes and 14 GB");
   command.add_option("--queries", options.queries, "Most steps of each combination")
@@ -215,7 +236,8 @@ bool is_right(const Benchmark& benchmark, const Comparison& comparison) {
   return wrong_rows(benchmark) == 0 && agree(comparison);
 }
 
-int bench(const BenchOptions& options, std::ostream& out) {
+int bench(const BenchOptions& given, std::ostream& out) {
+  const BenchOptions options = with_sweep(given);
   if (options.list) {
     list_parts(out);
     return EXIT_SUCCESS;
@@ -255,7 +277,9 @@ int bench(const BenchOptions& options, std::ostream& out) {
   Json record = record_of(benchmark, {});
   record["complete"] = false;  // until the answers are compared as well
   const auto write_table = [&] {
-    if (auto* const csv = outputs->stream("--csv")) write_csv(*csv, benchmark);
+    if (auto* const csv = outputs->stream("--csv")) {
+      options.sweep ? write_short_csv(*csv, benchmark) : write_csv(*csv, benchmark);
+    }
   };
   const bool is_replaced = std::ranges::none_of(
       std::array{files.json, files.csv, files.page},

@@ -237,6 +237,10 @@ Json json_of(const Benchmark& benchmark);
 /// row has its machine, so that files can be combined.
 void write_csv(std::ostream& out, const Benchmark& benchmark);
 
+/// Writes the table of `--sweep`, in the same form: only the index, the mesh, the costs of the
+/// index, and the median and 99 % of its stages and of the step.
+void write_short_csv(std::ostream& out, const Benchmark& benchmark);
+
 /// Options of `bench --speed` only.
 struct SpeedOptions {
   std::optional<std::size_t> largest = {};  // triangles of a third mesh, if any
@@ -252,7 +256,8 @@ struct BenchOptions {
   LoadOptions load = {};               // of the named meshes
   std::vector<std::size_t> triangles;  // sizes of the bunny; empty: up to `full`
   Selection selection;
-  bool full = false;  // to 18 million triangles, and the skull; tens of minutes
+  bool sweep = false;  // every index, on sizes of the bunny in half decades; a short CSV
+  bool full = false;   // to 18 million triangles, and the skull; tens of minutes
   std::optional<std::size_t> queries;
   std::optional<double> seconds;
   Poses poses = Poses::contact;

@@ -99,7 +99,7 @@ BenchmarkRow new_row() {
     "build_s": 0.0, "build_cores": 0.0, "bytes_per_triangle": 0.0,
     "candidates_mean": 0.0, "hits_mean": 0.0, "reaching_share": 0.0,
     "planes_mean": 0.0, "unsolved_share": 0.0, "worse_share": 0.0,
-    "collect_us": null, "query_us": null, "step_us": null, "step_query_us": null,
+    "collect_us": null, "exact_us": null, "query_us": null, "step_us": null, "step_query_us": null,
     "activate_us": null, "solve_us": null, "rate_khz": null,
     "hash": "0000000000000000", "hashes_of_first": {}, "verified": false, "wrong": false, "remark": ""})");
 }
@@ -273,6 +273,24 @@ void write_csv(std::ostream& out, const Benchmark& benchmark) {
                 {"simd", benchmark.machine.simd},
                 {"keepout", benchmark.machine.keepout},
                 {"others_cores", benchmark.others_cores}});
+  }
+  print_csv(out, flat(rows));
+}
+
+void write_short_csv(std::ostream& out, const Benchmark& benchmark) {
+  Json rows = Json::array();
+  for (const BenchmarkRow& row : benchmark.rows) {
+    Json& kept = rows.emplace_back();
+    for (const char* key : {"mesh", "triangles", "index", "activation", "radius", "build_s",
+                            "bytes_per_triangle", "candidates_mean", "hits_mean"}) {
+      kept[key] = row[key];
+    }
+    for (const char* stage : {"collect_us", "exact_us", "query_us", "step_us"}) {
+      for (const char* percentile : {"p50", "p99"}) {
+        kept[stage][percentile] = row[stage].is_null() ? Json() : row[stage][percentile];
+      }
+    }
+    kept["verified"] = row["verified"];
   }
   print_csv(out, flat(rows));
 }

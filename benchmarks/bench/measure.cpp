@@ -37,7 +37,7 @@ std::uint64_t hash_of(std::span<const Hit> hits) {
 
 /// The times of each query and step. [µs]
 struct TimesOfStages {
-  std::vector<double> collect, query, step, step_query, activate, solve;
+  std::vector<double> collect, exact, query, step, step_query, activate, solve;
 };
 
 /// At least this many steps, so that medians and 99.9 % percentiles compare; but at most `patience`
@@ -141,6 +141,7 @@ std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Refe
     refine(reference.mesh(), ball, reference.candidates.view(), reference.hits);
     times.query.push_back(microseconds_since(start));
     times.collect.push_back(collected);
+    times.exact.push_back(times.query.back() - collected);
     candidates += reference.candidates.size();
     hits += reference.hits.size();
     reaching += reference.hits.empty() ? 0 : 1;
@@ -241,6 +242,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
   if (row["wrong"]) return;
   row["verified"] = true;
   row["collect_us"] = timing_of(times.collect);
+  row["exact_us"] = timing_of(times.exact);
   row["query_us"] = timing_of(times.query);
   const Timing step = timing_of(times.step);
   row["step_us"] = step;

@@ -60,7 +60,8 @@ TEST_F(BenchCommand, WritesOneRowForEachCombinationWithAllThatIsAskedOfIt) {
     EXPECT_EQ(row["step_query_us"].is_null(), searched) << row;
     EXPECT_GT(row["build_cores"], 0.0);
     EXPECT_GT(row["load_cores"], 0.0);
-    for (const char* stage : {"collect_us", "query_us", "activate_us", "solve_us", "step_us"}) {
+    for (const char* stage :
+         {"collect_us", "exact_us", "query_us", "activate_us", "solve_us", "step_us"}) {
       EXPECT_GT(row[stage]["p50"], 0.0) << stage;
       EXPECT_GE(row[stage]["max"], row[stage]["p99"]) << stage;
       EXPECT_TRUE(row[stage]["p999"].is_null()) << "300 samples do not tell";
@@ -107,6 +108,29 @@ TEST_F(BenchCommand, ResamplesTheBunny) {
   const json benchmark = read("b.json");
   for (const json& row : benchmark["rows"]) sizes.insert(row["triangles"].get<int>());
   EXPECT_EQ(sizes, (std::set<int>{60000, 70000}));
+}
+
+TEST_F(BenchCommand, SweepsOverSizesAndWritesAShortTable) {
+  succeeded(
+      folder.run("bench --sweep --triangles 10000,20000 --index wide_bvh,pd_tree --activation "
+                 "paper --radius 1 "
+                 "--queries 50 --json b.json --csv b.csv"));
+  const json benchmark = read("b.json");
+  ASSERT_EQ(benchmark["rows"].size(), 4u);
+  for (const json& row : benchmark["rows"]) {
+    EXPECT_LE(row["exact_us"]["p50"], row["query_us"]["max"]) << row;
+  }
+  std::istringstream csv(folder.contents("b.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line,
+            "mesh,triangles,index,activation,radius,build_s,bytes_per_triangle,candidates_mean,"
+            "hits_mean,collect_us_p50,collect_us_p99,exact_us_p50,exact_us_p99,query_us_p50,"
+            "query_us_p99,step_us_p50,step_us_p99,verified");
+  std::getline(csv, line);
+  EXPECT_TRUE(line.starts_with("bunny,10000,wide_bvh,paper,1")) << line;
+  EXPECT_TRUE(line.ends_with(",true")) << line;
+  folder.expect_refused("bench --sweep --speed", "--sweep");
 }
 
 TEST_F(BenchCommand, SaysWhatIsWrongWithTheArguments) {

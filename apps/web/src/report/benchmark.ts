@@ -40,6 +40,8 @@ export interface BenchmarkRow {
   readonly reaching_share: number;
   readonly unsolved_share: number;
   readonly collect_us: Timing | null;
+  /** Undefined in older records. */
+  readonly exact_us?: Timing | null;
   readonly query_us: Timing | null;
   readonly step_query_us: Timing | null;
   readonly activate_us: Timing | null;
@@ -102,7 +104,7 @@ const sphere = ({ radius }: BenchmarkRow): string =>
   radius === null ? "as far as the motion leads" : `${trimmed(radius)} mm`;
 const combination = ({ index, activation, solver }: BenchmarkRow): string =>
   [index, activation, solver].join(", ");
-const median = (timing: Timing | null): number => timing?.p50 ?? Number.NaN;
+const median = (timing: Timing | null | undefined): number => timing?.p50 ?? Number.NaN;
 /**
  * True if at most one step in a hundred has no answer: a combination that often fails is not fast.
  */
@@ -135,6 +137,7 @@ const facts = columnsOf(
   "/query_us/p50",
   "/query_us/p99",
   "/collect_us/p50",
+  "/exact_us/p50",
   "/solve_us/p50",
   "/step_us/p50",
   "/step_us/p99",
@@ -232,6 +235,17 @@ class BenchmarkPlots {
     const middle = ({ query_us }: BenchmarkRow) => median(query_us);
     const first = ({ collect_us }: BenchmarkRow) => median(collect_us);
     const last = ({ query_us }: BenchmarkRow) => query_us?.p99 ?? median(query_us);
+    const over = (title: string, y: string, of: (row: BenchmarkRow) => number) =>
+      curves({
+        title: `${title} over the size of the mesh`,
+        description: `Median of the ${y} against the number of triangles, for each index`,
+        data,
+        series: ({ index }) => index,
+        x: ["triangles", ({ triangles }) => triangles],
+        y: [`${y} [µs]`, of],
+        legend,
+        tip,
+      });
     return [
       plotSection(
         "Which index finds the triangles fastest",
@@ -240,16 +254,11 @@ class BenchmarkPlots {
           ...remarks,
         ],
         legend,
-        curves({
-          title: "Over the size of the mesh",
-          description: "Median of the query against the number of triangles, for each index",
-          data,
-          series: ({ index }) => index,
-          x: ["triangles", ({ triangles }) => triangles],
-          y: ["query [µs]", middle],
-          legend,
-          tip,
-        }),
+        over("Query", "query", middle),
+        over("Candidates only", "candidates", first),
+        ...(this.rows.some(({ exact_us }) => exact_us)
+          ? [over("Exact test", "exact test", ({ exact_us }) => median(exact_us))]
+          : []),
         rowChart({
           title: "On the largest: candidates only, median, 99 %",
           description: "Median time of a query and its 99 %, for each index, the fastest first",

@@ -27,6 +27,7 @@ const columns: readonly Column[] = [
   column("not solved [%]", "/unsolved_share", percent),
   column("worse [%]", "/worse_share", percent),
   column("candidates only [µs]", "/collect_us/p50", rounded),
+  column("exact test [µs]", "/exact_us/p50", rounded),
   column("query [µs]", "/query_us/p50", rounded),
   column("find [µs]", "/step_query_us/p50", rounded),
   column("activate [µs]", "/activate_us/p50", rounded),
