@@ -230,6 +230,8 @@ def plan_numbers(record):
         for its in of_it:
             yield f"{key}.{its['mesh']}.ms", number(1e3 * its["median_seconds"], 2)
             yield f"{key}.{its['mesh']}.checks", number(its["median_checks"])
+            if its["median_checks"]:
+                yield f"{key}.{its['mesh']}.us_per_check", number(1e6 * its["median_checking_seconds"] / its["median_checks"], 2)
             yield f"{key}.{its['mesh']}.times_certified", number(its["median_seconds"] / certified[its["mesh"]]["median_seconds"], 2)
             yield f"{key}.{its['mesh']}.solved", str(its["solved"])
 

@@ -11,6 +11,7 @@ Above each block of code a comment that readers do not see says what is to be do
     <!-- run fails -->       the same; it must fail
     <!-- run python -->      the same, if there is a Python module (--python)
     <!-- output -->          what the last run must have printed, to the letter
+    <!-- part of: PATH -->   lines of this file of the sources, which another test builds and runs
     <!-- by hand: WHY -->    nothing: WHY says what keeps a test from doing it
 
 A block without such a comment is an error. FOLDER is emptied first. COMMAND is what `keepout` runs;
@@ -25,9 +26,10 @@ import re
 import shutil
 import subprocess
 import sys
+import textwrap
 
 BLOCK = re.compile(r"^(?P<fence>`{3,})(?P<language>\w*)\n(?P<text>.*?)^(?P=fence) *$", re.M | re.S)
-ORDER = re.compile(r"<!-- (?P<what>file|run fails|run python|run|output|by hand)(: (?P<name>.*))? -->\n$")
+ORDER = re.compile(r"<!-- (?P<what>file|part of|run fails|run python|run|output|by hand)(: (?P<name>.*))? -->\n$")
 
 
 class Reader:
@@ -76,6 +78,10 @@ class Reader:
                 self.fail(line, f"{name} is not in the folder")
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text, encoding="utf-8")
+        elif what == "part of":
+            source = (self.page.resolve().parents[1] / name).read_text(encoding="utf-8")
+            if not any(textwrap.indent(text, " " * indent) in source for indent in (0, 2, 4, 6, 8)):
+                self.fail(line, f"{name} does not have these lines")
         elif what == "output":
             if self.printed is None and not self.was_left_out:
                 self.fail(line, "nothing was run before")
