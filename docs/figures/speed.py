@@ -109,6 +109,10 @@ def bench(record):
         yield f"{mesh}{triangles}.indices", index_table(of_mesh)
         yield f"{mesh}{triangles}.solvers", solver_table(of_mesh)
         yield f"{mesh}{triangles}.rules", rule_table(of_mesh)
+    for mesh, of_mesh in grouped(rows, "mesh").items():
+        if len({row["triangles"] for row in of_mesh}) > 1:
+            for radius in sorted({row["radius"] for row in of_mesh if row["radius"]}):
+                yield f"{mesh}.sweep_{radius:g}mm", sweep_table([row for row in of_mesh if row["radius"] == radius])
     yield "rows", str(len(rows))
     yield "all", table(
         ["mesh", "triangles", "radius, mm", "index", "rule", "solver", "hits, mean", "planes, mean", "candidates, µs",
@@ -138,6 +142,21 @@ def index_table(rows):
                      *of_radius("collect_us"), *of_radius("query_us"), *of_radius("step_us")])
     columns = [f"{what}, {r:g} mm, µs" for what in ("candidates", "query", "step") for r in radii]
     return table(["index", "bytes a triangle", "build, s", *columns], body)
+
+
+def sweep_table(rows):
+    """Returns each index against the number of triangles: the rule of Li et al. (2020) with our solver."""
+    kept = {}
+    for row in rows:
+        if row["solver"] == "active_set" and row["activation"] == "paper":
+            kept.setdefault(row["index"], {})[row["triangles"]] = row
+    sizes = sorted({size for by_size in kept.values() for size in by_size})
+    # Older records have no time of the exact test by itself.
+    stages = [stage for stage in ("collect_us", "exact_us", "query_us", "step_us") if any(stage in row for row in rows)]
+    names = {"collect_us": "candidates", "exact_us": "exact test", "query_us": "query", "step_us": "step"}
+    cell = lambda row: " / ".join(median(row, stage) for stage in stages) if row else "-"
+    return table(["index", *(f"{size:,} triangles, µs: {' / '.join(names[stage] for stage in stages)}" for size in sizes)],
+                 [[f"`{index}`", *(cell(by_size.get(size)) for size in sizes)] for index, by_size in kept.items()])
 
 
 def solver_table(rows):
