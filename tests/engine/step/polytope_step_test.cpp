@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The free polytope as MotionConstraint hands it out.
+// The free polytope that MotionConstraint returns.
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
