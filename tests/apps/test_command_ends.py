@@ -178,7 +178,7 @@ def test_a_signal_while_a_later_mesh_is_loaded_keeps_what_is_finished(tmp_path, 
     (tmp_path / "big.stl").write_bytes(bytes(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes())
     process = start(tmp_path, *line.split(), "--json", "r.json")
     memory = Path(f"/proc/{process.pid}/status")
-    while int(re.search(r"VmRSS:\s*(\d+) kB", memory.read_text())[1]) < 120_000:  # more than the cube needs: a third of it
+    while int(re.search(r"VmRSS:\s*(\d+) kB", memory.read_text())[1]) < 120_000:  # the cube needs a third of it
         assert process.poll() is None
         time.sleep(0.005)
     begin = time.monotonic()
