@@ -71,7 +71,7 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
     cut += step.increment.empty() ? 0.0 : std::abs(step.increment[1]);
   }
   std::printf(
-      "outside of the corridor by %.6f mm at most; %.6f mm from the bone at least; held by "
+      "at most %.6f mm outside of the corridor; at least %.6f mm from the bone; limited by "
       "the corridor in %d cycles, near the bone in %d\n",
       farthest, nearest, held, blocked);
   EXPECT_LE(farthest, corridor.band() + 1e-8);

@@ -157,7 +157,7 @@ TEST_P(HostileSources, AgreeBitForBitOverTenMillionStepsOnAllTargets) {
   }
   EXPECT_GE(tally.steps, steps_in_all / simd_targets().size());
   EXPECT_GT(tally.held, tally.steps / 4);
-  std::printf("%zu steps, %zu of them held back or led off\n", tally.steps, tally.held);
+  std::printf("%zu steps, %zu of them limited or recovering\n", tally.steps, tally.held);
 }
 
 INSTANTIATE_TEST_SUITE_P(EachTarget, HostileSources, testing::ValuesIn(simd_targets()), by_name);

@@ -156,9 +156,8 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
     }
   }
   std::printf(
-      "liver: %d refits, %d cycles; %d began with the margin and kept %.6f mm at least; %d were "
-      "led "
-      "off; %d stood still\n",
+      "liver: %d refits, %d cycles; %d began with the margin, with a least clearance of %.6f mm; "
+      "%d were recovering; %d had no motion\n",
       refits, cycles, certified, nearest, recovering, stopped);
   EXPECT_GT(recovering, refits) << "the surface moves over the bodies";
   EXPECT_GT(certified, cycles / 2);
