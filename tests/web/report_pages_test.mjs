@@ -33,7 +33,7 @@ const given = process.env.REPORT_RECORDS;
 const large = { width: 1280, height: 900 };
 empty(folder);
 
-/** Makes a page by a command, which may fail because a check fails. */
+/** Makes a page by a command. The command may find that a check fails (exit status 1). */
 function run(name, ...args) {
   const file = join(folder, `${name}.html`);
   try {
@@ -302,7 +302,7 @@ async function assertTips(tab, record) {
     }
     assert.ok(tip, `nothing is told by: ${await plot.evaluate((one) => one.ariaLabel)}`);
     await tip.evaluate((one) => one.setAttribute("id", "told"));
-    assert.ok((await assertNumbers(tab, record, "#told")) > 0, "a tip tells no number");
+    assert.ok((await assertNumbers(tab, record, "#told")) > 0, "a tooltip shows no number");
     await tip.evaluate((one) => one.removeAttribute("id"));
     told += 1;
   }
