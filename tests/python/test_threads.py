@@ -107,7 +107,7 @@ try:
     else:
         guard.simulate(np.array([[0.0, 0, 10.5]]), hands)
 except KeyboardInterrupt:
-    assert guard.step((0, 0, 14), (0, 0, -1)).ok  # none the worse for it
+    assert guard.step((0, 0, 14), (0, 0, -1)).ok  # the guard still works
     print("interrupted")
 """
 
