@@ -64,11 +64,10 @@ struct SimulateOptions {
 /// is finished, nothing is written. Throws Error, also if the report would overwrite the mesh; then
 /// there is no report.
 ///
-/// Returns the exit status, which is exit_interrupted after a signal. It is a failure if
-/// - a certified cycle of an instrument broke a guarantee of docs/joint-space-step.md,
-/// - a guarded tip left a guide, or a guarded convex tool touched the surface,
-/// - a timed part gave a wrong answer,
-/// - nothing was tested: no guarded tool moved, or no tool was ever inside a guide.
+/// Returns the exit status; after a signal, exit_interrupted. It is a failure if a certified cycle
+/// of an instrument broke a guarantee of docs/joint-space-step.md, if a guarded tip left a guide,
+/// or if a guarded convex tool touched the surface. It is a failure as well if a timed part gave a
+/// wrong answer, or if nothing was tested: no guarded tool moved, or no tool was inside a guide.
 int simulate(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app
