@@ -81,8 +81,8 @@ std::string unit_text(const LoadOptions& load, double extent) {
 
 /// Returns the anatomical space, and how it is known.
 std::string space_text(const LoadedMesh& loaded) {
+  if (loaded.space == AnatomicalSpace::unstated) return "the file states neither RAS nor LPS";
   std::string text(name(loaded.space));
-  if (loaded.space == AnatomicalSpace::unstated) return text + ": RAS, LPS or any other";
   if (loaded.stated == AnatomicalSpace::unstated) return text + ", not stated in the file";
   if (loaded.stated == loaded.space) return text + ", as stated in the file";
   return text + ", turned from " + std::string(name(loaded.stated));

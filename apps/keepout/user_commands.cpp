@@ -36,7 +36,8 @@ void add_inspect(CLI::App& app, InspectOptions& options) {
   command
       .add_option("--out", options.page,
                   "Where to write a page that shows the mesh with its faults marked")
-      ->type_name("PAGE.html");
+      ->type_name("PAGE.html")
+      ->check(name_of_page());
 }
 
 void add_convert(CLI::App& app, ConvertOptions& options) {

@@ -274,7 +274,12 @@ int plan(const PlanOptions& options, std::ostream& out) {
     return is_keepouts(run) && run["solved"] && !is_valid(run);
   };
   if (std::ranges::any_of(all, breaks_a_promise)) return EXIT_FAILURE;
-  return stop.has_come() ? exit_interrupted : EXIT_SUCCESS;
+  if (stop.has_come()) return exit_interrupted;
+  if (std::ranges::any_of(all, [](const Json& run) { return run["solved"].get<bool>(); })) {
+    return EXIT_SUCCESS;
+  }
+  std::cerr << "keepout: no path was found, so nothing was tested: raise --seconds\n";
+  return EXIT_FAILURE;
 }
 
 }  // namespace keepout::app

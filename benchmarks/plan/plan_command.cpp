@@ -74,7 +74,8 @@ void add_plan(CLI::App& app, PlanOptions& options) {
       ->type_name("FILE");
   command.footer(
       "Ctrl-C ends it early: finished runs are judged, printed and written.\n"
-      "The exit status is 0 only if no path that keepout accepted is invalid.\n"
+      "The exit status is 0 only if a path was found, and no path that keepout accepted is "
+      "invalid.\n"
       "docs/planning.md explains the choice of problems and the columns.\n\n" +
       listing("Robots", robots_under_test()));
 }

@@ -232,7 +232,8 @@ std::vector<PlanningProblem> draw_problems(TipScene& where, double clearance, st
     throw Error(scene.name() + ": only " + std::to_string(problems.size()) + " of " +
                 std::to_string(count) + " problems were found with a clearance of " +
                 std::to_string(clearance) +
-                " mm; ask for fewer, or for a smaller --tool-radius or --margin");
+                " mm; ask for fewer, or for a smaller --tool-radius or --margin. In a problem, the "
+                "straight motion must meet the mesh, so a convex space has none");
   }
   return problems;
 }

@@ -19,9 +19,11 @@ constexpr std::string_view never = "a status that this kind of result never has"
 
 // In the order of the enumeration.
 constexpr std::array outcomes{
-    Outcome{"free",
-            {"the motion is the one asked for", "the motion is the one asked for",
-             "every motion within the planes and the radius keeps the margin"}},
+    Outcome{
+        "free",
+        {"the motion is the one asked for", "the motion is the one asked for",
+         "every motion within the planes and the radius maintains the required clearance, or the "
+         "distance of the tip if that is less"}},
     Outcome{"limited",
             {"constraints limit the motion to the nearest one that they allow: `limits` names them",
              "constraints limit the motion to the nearest one that they allow: `limits` names them",
@@ -86,7 +88,8 @@ constexpr std::array outcomes{
              "by steps without them; if it is outside, the mesh is wound inside out",
              "a body is on the forbidden side: move it out by hand; if it is outside, the mesh is "
              "wound inside out",
-             never}},
+             "the tip is on the forbidden side: a step moves it out; if it is outside, the mesh is "
+             "wound inside out"}},
     Outcome{"touching",
             {"the tip touches the surface, and its free side is unknown: move it off by hand",
              "the core of a body touches the surface, and its free side is unknown: move it off by "
@@ -114,8 +117,8 @@ constexpr std::array outcomes{
              "polytope, or raise Capacity::work_units (max_work_units in Python)"}},
     Outcome{"unsupported",
             {never, never,
-             "the rule guards a whole tool, and planes around its tip would not guard the rest: "
-             "use a rule that guards a tip"}},
+             "planes around the tip would not guard the rest of a tool, nor keep to a guide: use a "
+             "rule that guards a tip, and set no guides"}},
 };
 static_assert(outcomes.size() == status_count);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "keepout/adapters/index_registry.h"
+#include "keepout/error.h"
 #include "keepout/index/index_cache.h"
 
 namespace keepout {
@@ -14,8 +15,10 @@ std::shared_ptr<const SpatialIndex> make_or_load_index(std::shared_ptr<const Mes
                                                        const std::string& name,
                                                        const std::filesystem::path& cache,
                                                        const Warn& warn) {
-  if (name == "wide_bvh" && !cache.empty()) return load_or_build(std::move(mesh), cache, warn);
-  return make_index(name, std::move(mesh));
+  if (cache.empty()) return make_index(name, std::move(mesh));
+  if (name == "wide_bvh") return load_or_build(std::move(mesh), cache, warn);
+  throw Error("index_cache: only the index wide_bvh can be stored, not '" + name +
+              "'; omit index_cache");
 }
 
 void warn_of_coarse_index(const SpatialIndex& index, double kept, const Warn& warn) {

@@ -103,7 +103,8 @@ out: a Simulation to write to; None for a new one.)";
 constexpr const char* polytope_doc =
     R"(Returns the free space around a tip as one convex polytope, for a QP, an MPC or a sampler of
 your own: a Polytope. Every motion that stays within all planes and within `radius` maintains the
-margin. The tip is not classified: around a tip inside the solid, it is the space inside.
+required clearance, or the distance of the tip if that is less. The status is 'inside' for a tip on
+the forbidden side, and 'unsupported' if there are guides or the rule guards a tool.
 
 tip: (3,) [length]; radius >= 0 [length].)";
 

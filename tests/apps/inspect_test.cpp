@@ -111,7 +111,7 @@ TEST_F(Inspect, PlausibleUnitsAreNamedWithTheSizeThatTheyMake) {
 
 TEST_F(Inspect, TheAnatomicalSpaceIsPrintedAndHowItIsKnown) {
   write(tetrahedron());
-  EXPECT_CONTAINS(text(), "unstated: RAS, LPS or any other");
+  EXPECT_CONTAINS(text(), "the file states neither RAS nor LPS");
   EXPECT_EQ(json().at("space"), nullptr);
   std::fstream out(file, std::ios::in | std::ios::out | std::ios::binary);
   out << std::string("3D Slicer output. SPACE=LPS").append(53, '\0');
@@ -179,7 +179,7 @@ TEST_F(Inspect, APageIsMadeOfTheMeshAndItsFaults) {
   std::ostringstream out;
   inspect({.mesh = file, .page = page, .command = "keepout inspect mesh.stl"}, out);
   EXPECT_CONTAINS(out.str(), "\nPage, with tables, no pictures: " + page.string() + "\n");
-  // Without the front end of pages a plain page, and the record beside it.
+  // Without the front end of pages, a plain page is written, and the record beside it.
   EXPECT_CONTAINS(folder.contents("page.html"), "boundary_edges");
   const nlohmann::json record = nlohmann::json::parse(folder.contents("page.html.json"));
   EXPECT_EQ(record.at("keepout_record"), "inspect");

@@ -189,6 +189,7 @@ void add_live(CLI::App& app, LiveOptions& options) {
           ->check(one_of({"psm"}));
   command.add_option("--out", options.page, "Where to write the page")
       ->type_name("PAGE.html")
+      ->check(name_of_page())
       ->capture_default_str();
   command.add_flag_callback(
       "--no-open", [&options] { options.opening = Opening::by_hand; },

@@ -13,6 +13,7 @@
 #include "record/json_parts.h"
 #include "record/plain_page.h"
 #include "record/report_page.h"
+#include "shared/command_line.h"
 #include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
@@ -100,7 +101,8 @@ void RecordFiles::add_to(CLI::App& command) {
       ->type_name("FILE");
   CLI::Option* out =
       command.add_option("--out", page, "Where to write a report with pictures, plots and tables")
-          ->type_name("REPORT.html");
+          ->type_name("REPORT.html")
+          ->check(name_of_page());
   if (page) out->default_str(page->string());
 }
 

@@ -10,6 +10,7 @@
 #include "record/plain_page.h"
 #include "record/record.h"
 #include "record/report_page.h"
+#include "shared/command_line.h"
 #include "shared/number_text.h"
 #include "shared/output_file.h"
 #include "shared/progress.h"
@@ -51,7 +52,8 @@ void add_report(CLI::App& app, ReportOptions& options) {
   command.add_option("FILE", options.record, "The record")->type_name(".json")->required();
   command
       .add_option("--out", options.page, "Where to write the report; default: beside the record")
-      ->type_name("REPORT.html");
+      ->type_name("REPORT.html")
+      ->check(name_of_page());
 }
 
 void report(const ReportOptions& options, std::ostream& out) {

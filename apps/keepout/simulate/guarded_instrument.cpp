@@ -194,13 +194,15 @@ class GuardedInstrument final : public SimulatedTool {
 
   SimulationResult result(const std::vector<RunTally>& runs) override {
     std::size_t cycles = 0, broken = 0;  // of the certified mode
-    std::vector<std::string> still;      // runs in which the instrument did not move
+    bool has_moved = false;
+    std::vector<std::string> still;  // runs in which the instrument did not move
     for (const RunTally& run : runs) {
       if (run.stood_still()) {
         still.push_back("'" + run.guard + "' on " + run.mesh + " at speed " + trimmed(run.speed));
       }
       if (run.guard != mode_names.front()) continue;
       cycles += run.cycles;
+      has_moved |= !run.stood_still();
       broken += run.any.below + run.breaches + run.guides_left;
     }
     // The last mesh may have no finished stroke.
@@ -240,7 +242,8 @@ class GuardedInstrument final : public SimulatedTool {
     return {.record = std::move(record),
             .columns = mode_columns(has_guides),
             .legend = columns_meaning,
-            .is_broken = broken > 0 || (has_guides && untested.size() == guides_.size())};
+            .is_broken = broken > 0,
+            .is_untested = !has_moved || (has_guides && untested.size() == guides_.size())};
   }
 
  private:

@@ -125,7 +125,7 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   const Runs done = run_strokes(*tool, meshes, has_tip ? std::vector{1.0} : options.speeds,
                                 options.strokes.count, stop);
-  auto [record, columns, legend, is_broken] = tool->result(done.runs);
+  auto [record, columns, legend, is_broken, is_untested] = tool->result(done.runs);
   print_rows(out, columns, done.runs);
   out << legend << '\n';
   PartTimings timings;
@@ -160,7 +160,8 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
     std::cerr << "keepout: parts give wrong answers: see the benchmark in the report\n";
   }
   if (is_broken || timings.is_wrong) return EXIT_FAILURE;
-  return is_complete ? EXIT_SUCCESS : exit_interrupted;
+  if (!is_complete) return exit_interrupted;
+  return is_untested ? EXIT_FAILURE : EXIT_SUCCESS;
 }
 
 }  // namespace keepout::app

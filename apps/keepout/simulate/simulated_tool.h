@@ -25,7 +25,8 @@ struct SimulationResult {
   Json record;                // see docs/records.md
   Columns<RunTally> columns;  // the columns of the table of all runs
   std::string_view legend = {};
-  bool is_broken = false;  // a guarantee was broken, or no guide was tested
+  bool is_broken = false;    // a guarantee was broken
+  bool is_untested = false;  // no guarded tool moved, or none was inside a guide
 };
 
 /// The tool that an operator moves over meshes in the closed loop of simulate(), under each of its

@@ -130,7 +130,9 @@ std::string guide_sentence(const std::vector<RunTally>& runs) {
   }
   if (left > 0) return " The tool left a guide in " + counted(left, "cycle") + ".";
   return " The tool left no guide by more than promised" +
-         (out <= 0.0 ? "." : ": it was at most " + length_text(out) + " outside.");
+         (out <= 0.0 ? "."
+                     : "; it was at most " + length_text(out) +
+                           " outside, which includes strokes that began outside.");
 }
 
 /// Returns which rules kept the tool out, which did not, and which were not tested because the tool
@@ -326,7 +328,8 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
     for (const Pose& goal : followed.stroke.goals) hand.push_back(place(goal.position));
   }
   const Columns<RunTally> columns = columns_of(scene);
-  bool is_broken = scene.has_guides && untested.size() == options.guides.size();
+  const auto guarded = std::span(runs).subspan(1);  // the first run is without a fixture
+  bool is_broken = false;
   for (std::size_t r = 0; r < runs.size(); ++r) {
     const std::string& rule = runs[r].guard;
     const bool is_free = rule == no_rule;
@@ -349,7 +352,12 @@ SimulationResult tip_result(const SimulateOptions& options, const Audit& audit,
     record["runs"].push_back(std::move(run));
   }
   for (const char* part : {"comparison", "benchmark"}) record[part] = nullptr;
-  return {.record = std::move(record), .columns = columns, .is_broken = is_broken};
+  return {
+      .record = std::move(record),
+      .columns = columns,
+      .is_broken = is_broken,
+      .is_untested = (!guarded.empty() && std::ranges::all_of(guarded, &RunTally::stood_still)) ||
+                     (scene.has_guides && untested.size() == options.guides.size())};
 }
 
 }  // namespace keepout::app

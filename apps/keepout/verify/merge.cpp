@@ -138,9 +138,7 @@ CampaignResult merged(const std::vector<std::filesystem::path>& files, const std
   sum["shards"] = shards;
   sum["command"] = command;
   sum["date"] = date_now();
-  CampaignResult result = finished(std::move(sum));
-  result.is_interrupted = false;  // the campaign may be, but not the addition
-  return result;
+  return finished(std::move(sum));
 }
 
 }  // namespace keepout::app

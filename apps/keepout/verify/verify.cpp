@@ -175,6 +175,12 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   result.print(out);  // before writing: a full disk must not hide the verdict
   write_record(outputs, result.record, options.files);
   if (result.is_broken) return EXIT_FAILURE;
+  if (!options.merge.empty()) {
+    if (result.record.at("complete").get<bool>()) return EXIT_SUCCESS;
+    std::cerr << "keepout: the campaign is incomplete: --merge needs the finished record of every "
+                 "shard\n";
+    return EXIT_FAILURE;
+  }
   if (result.is_interrupted) return exit_interrupted;
   const Json& total = result.record.at("total");
   const bool is_of_tips = total.contains("steps");

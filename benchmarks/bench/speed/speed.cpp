@@ -116,11 +116,13 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   OutputFiles outputs = options.files.open({});
   for (const char* fixture : {"bunny", effort.file}) fixture_path(fixture);  // throws if missing
 
+  const StopSignal stop(keeps_what_is_finished);
   Progress progress("bench --speed", std::size(families));
   SpeedRun run{.options = options,
                .effort = effort,
                .triangles = triangles,
                .progress = progress,
+               .stop = stop,
                .out = out,
                .mesh = "bunny, " + counted(triangles, "triangle")};
   const OnCores one(1);
@@ -128,13 +130,14 @@ int bench_speed(const BenchOptions& options, std::ostream& out) {
   print_head(run);
   out.flush();
   if (!one.holds()) out << "The system does not let this process bind itself to one core.\n";
-  const StopSignal stop(keeps_what_is_finished);
   run.bunny = with_index(bunny_of(triangles));
-  for (const auto measure : families) {
-    run.complete = !stop.has_come();
-    if (!run.complete) break;
-    measure(run);
-    progress.advance();
+  try {
+    for (const auto measure : families) {
+      measure(run);
+      progress.advance();
+    }
+  } catch (const SpeedRun::Stopped&) {
+    run.complete = false;
   }
   progress.interrupt();
   print_summary(run);

@@ -168,10 +168,13 @@ struct Effort {
 
 /// A run of the table; the families of rows are measured in turn.
 struct SpeedRun {
+  struct Stopped {};  // thrown between two rows, after a signal
+
   const BenchOptions& options;
   const Effort& effort;
   std::size_t triangles;  // of the bunny, which all rows use unless stated
   Progress& progress;
+  const StopSignal& stop;
   std::ostream& out;
   std::string mesh;  // the name of that bunny
   IndexedMesh bunny = {};
@@ -198,7 +201,11 @@ struct SpeedRun {
   }
 
   /// Shows the work that is being measured.
-  void show(const std::string& work) { progress.show(work); }
+  /// Shows the current work. Throws Stopped after a signal.
+  void show(const std::string& work) {
+    if (stop.has_come()) throw Stopped{};
+    progress.show(work);
+  }
 
   /// Stores a row and prints it.
   void add(SpeedRow row);

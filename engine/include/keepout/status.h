@@ -26,7 +26,7 @@ enum class Status : std::uint8_t {
   margin_too_small,  // rounding hides the margin or band, as lengths are too large
   mesh_changed,      // the index was refit, and the constraint does not follow the new mesh yet
   out_of_budget,     // the work budget of the cycle ended before a motion was proved
-  unsupported,       // polytopes only: the rule does not support this query
+  unsupported,       // polytopes only: the rule guards a tool, or there are guides
   // Names before version 0.3.
   fallback [[deprecated("use truncated")]] = truncated,
   yielding [[deprecated("use degraded")]] = degraded,

@@ -122,10 +122,10 @@ void settle_space(const MeshSource& source, const CoordinateNotes& notes,
     } else if (loaded.stated != unstated) {
       const std::string other(name(loaded.stated == AnatomicalSpace::ras ? AnatomicalSpace::lps
                                                                          : AnatomicalSpace::ras));
-      loaded.warnings.push_back(
-          "the file states SPACE=" + notes.space + ": taken as it stands, so tips must be in " +
-          notes.space + " too; ask for the space " + notes.space + " (--space " + notes.space +
-          ", space=\"" + notes.space + "\"), or for " + other + " to have it turned");
+      loaded.warnings.push_back("the file states SPACE=" + notes.space +
+                                ": taken as it stands, so tips must be in " + notes.space +
+                                " too. To have it turned, ask for " + other + " (space=\"" + other +
+                                "\", or 'keepout convert --space " + other + "')");
     }
     return;
   }

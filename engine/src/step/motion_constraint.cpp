@@ -206,7 +206,7 @@ Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcep
   Status status = Status::unsupported;
   if (!is_current()) {
     status = Status::mesh_changed;
-  } else if (!rule_->guards_a_tool()) {
+  } else if (!rule_->guards_a_tool() && memory_->guides.empty()) {
     budget_->renew();
     const double kept = required_clearance(options_);
     // FreePolytope::around() reports an invalid ball.
@@ -215,6 +215,14 @@ Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcep
     status = fits ? polytope_.around(tip, radius, kept, neighborhood_->hits(), *budget_,
                                      polytope_planes_)
                   : budget_->failure();
+    // The caller's motions are unknown, so no earlier classification is of use.
+    if (status == Status::free && has_sides_) {
+      const auto side = find_side(*neighborhood_, tip);
+      if (!side)
+        status = budget_->failure();
+      else if (!side->is_outside)
+        status = Status::inside;
+    }
   }
   if (status != Status::free) hold_still(polytope_planes_);
   return {status, polytope_planes_.view()};

@@ -63,7 +63,7 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
 
 TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
   for (const char* signal : {"INT", "TERM"}) {
-    // In the foreground `timeout` sends one signal; else two, and the second ends the process.
+    // Without --foreground, `timeout` sends two signals, and the second one ends the process.
     const Outcome outcome =
         run("cube.stl --steps 1e9 --shard 1/2 --json part.json",
             "timeout --foreground --preserve-status -k 30 -s " + std::string(signal) + " 2 ");
@@ -80,7 +80,8 @@ TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
     EXPECT_CONTAINS(outcome.output, ", interrupted\n");
     EXPECT_CONTAINS(outcome.output, "of the campaign's 1,000,000,000 steps are done");
   }
-  const Outcome merged = succeeded(run("--merge part.json --json merged.json"));
+  const Outcome merged = run("--merge part.json --json merged.json");
+  EXPECT_EQ(merged.status, 1);
   EXPECT_CONTAINS(merged.output, "Incomplete: ");
   EXPECT_CONTAINS(merged.output, "Missing: shard 2/2");
   EXPECT_EQ(read("merged.json")["complete"], false);
@@ -90,8 +91,10 @@ TEST_F(Verify, AMissingShardIsReported) {
   const std::string both = "cube.stl --steps 2000 --shard ";
   ASSERT_EQ(run(both + "1/3 --json 1.json").status, 0);
   ASSERT_EQ(run(both + "3/3 --json 3.json").status, 0);
-  const Outcome merged = succeeded(run("--merge 1.json 3.json"));
+  const Outcome merged = run("--merge 1.json 3.json");
+  EXPECT_EQ(merged.status, 1);
   EXPECT_CONTAINS(merged.output, "Missing: shard 2/3");
+  EXPECT_CONTAINS(merged.output, "the campaign is incomplete");
 }
 
 TEST_F(Verify, WhatDoesNotBelongTogetherIsNotMerged) {

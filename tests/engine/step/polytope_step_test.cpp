@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The free polytope as MotionConstraint hands it out.
+// The free polytope that MotionConstraint returns.
 
+#include "keepout/factory/guide_text.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/poses.h"
 #include "keepout/oracle/safety_oracle.h"
@@ -64,6 +65,31 @@ TEST(MotionConstraintPolytope, FarFromTheMeshIsTheWholeBall) {
   const Polytope polytope = guard.free_polytope(Vec3(0, 0, 70), 2.0);
   EXPECT_TRUE(polytope.ok());
   EXPECT_TRUE(polytope.planes.empty());
+}
+
+TEST(MotionConstraintPolytope, OfATipOnTheForbiddenSideAllowsNoMotion) {
+  const auto mesh = mesh_of("cube");
+  auto guard = make_motion_constraint(mesh, {});
+  const double half = mesh->bounds().high.x();
+  for (const Vec3& tip : {Vec3(0, 0, 0), Vec3(half - 0.01, 0, 0), Vec3(half - 5.0, 1, 2)}) {
+    const Polytope polytope = guard.free_polytope(tip, 2.0);
+    EXPECT_EQ(polytope.status, Status::inside);
+    EXPECT_FALSE(allows(polytope, Vec3(1e-9, 0, 0)));
+  }
+  EXPECT_TRUE(guard.free_polytope(Vec3(half + 0.01, 0, 0), 2.0).ok());
+  auto as_is = make_motion_constraint(mesh, {.inside = Inside::taken_as_is});
+  EXPECT_TRUE(as_is.free_polytope(Vec3(0, 0, 0), 2.0).ok());
+  auto open = make_motion_constraint(mesh_of("flat_plate"), {});
+  EXPECT_TRUE(open.free_polytope(Vec3(0, 0, -5), 2.0).ok());
+}
+
+TEST(MotionConstraintPolytope, IsUnsupportedWithGuides) {
+  const auto mesh = mesh_of("cube");
+  auto guard = make_motion_constraint(mesh, {});
+  guard.set_guides({guide_of_text("ball:0,0,0:60")});
+  EXPECT_EQ(guard.free_polytope(Vec3(0, 0, 70), 2.0).status, Status::unsupported);
+  guard.set_guides({});
+  EXPECT_TRUE(guard.free_polytope(Vec3(0, 0, 70), 2.0).ok());
 }
 
 TEST(MotionConstraintPolytope, FailuresAllowStandingStillOnly) {

@@ -52,6 +52,8 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
                                      double margin, Random& random, double ahead) {
   const oracle::JudgedRobot judged = robot.judged();
   const double tool = judged.bodies.back().radius;
+  // The tip starts at most `ahead` from the surface.
+  if (begin != Begin::wedged && margin + tool > ahead) return std::nullopt;
   for (int i = 0; i < tries; ++i) {
     SurfacePoint on = on_face(*scene.mesh(), random);
     // A surface without sides is approached from either side.

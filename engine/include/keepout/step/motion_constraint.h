@@ -98,8 +98,9 @@ class MotionConstraint {
   /// Returns the free space around a tip as one convex polytope, for a caller's own QP, MPC or
   /// sampler. Every motion within all planes and within `radius` maintains the required clearance;
   /// guarantee and failures: FreePolytope. The planes stay valid until the next call. After a
-  /// failure they allow only zero motion. The tip is not classified: around a tip that is inside,
-  /// the polytope is inside. Returns unsupported for a rule that guards a whole tool.
+  /// failure they allow only zero motion. Returns inside for a tip on the forbidden side, unless
+  /// tips are not classified (Inside::taken_as_is, or an open mesh). Returns unsupported for a rule
+  /// that guards a whole tool, and if there are guides, as the planes would not maintain them.
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
   /// Follows anatomy that has moved: continues with a mesh and its index. The index may be the
