@@ -237,8 +237,8 @@ Json json_of(const Benchmark& benchmark);
 /// row has its machine, so that files can be combined.
 void write_csv(std::ostream& out, const Benchmark& benchmark);
 
-/// Writes the table of `--sweep`, in the same form: only the index, the mesh, the costs of the
-/// index, and the median and 99 % of its stages and of the step.
+/// Writes the table of `--sweep`, in the same form. It has the mesh, the parts, the costs of the
+/// index, and the median and 99 % of a query, of its stages and of the step.
 void write_short_csv(std::ostream& out, const Benchmark& benchmark);
 
 /// Options of `bench --speed` only.

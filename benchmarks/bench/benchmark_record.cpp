@@ -281,8 +281,8 @@ void write_short_csv(std::ostream& out, const Benchmark& benchmark) {
   Json rows = Json::array();
   for (const BenchmarkRow& row : benchmark.rows) {
     Json& kept = rows.emplace_back();
-    for (const char* key : {"mesh", "triangles", "index", "activation", "radius", "build_s",
-                            "bytes_per_triangle", "candidates_mean", "hits_mean"}) {
+    for (const char* key : {"mesh", "triangles", "index", "activation", "solver", "radius",
+                            "build_s", "bytes_per_triangle", "candidates_mean", "hits_mean"}) {
       kept[key] = row[key];
     }
     for (const char* stage : {"collect_us", "exact_us", "query_us", "step_us"}) {
