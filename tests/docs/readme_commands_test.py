@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs every command that README.md shows: readme_commands_test.py ROOT FOLDER KEEPOUT
+"""Runs every command that README.md and the pages in PAGES show: readme_commands_test.py ROOT FOLDER KEEPOUT
 
 Runs them in an empty FOLDER, one after another, as a reader would after ./run. Missing files are prepared.
-Only the sizes are smaller, so that the test takes a minute. The commands are the lines of indented blocks
-that begin with ./run or echo, and code in the text that begins with "./run ".
+Only the sizes are smaller, so that the test takes a minute. The commands are the lines of blocks that begin
+with ./run or echo, and code in the text that begins with "./run ".
 """
 
 import os
@@ -14,7 +14,8 @@ import shutil
 import subprocess
 import sys
 
-BLOCK = re.compile(r"^    ((?:\./run|echo)\b.*)$", re.M)
+PAGES = ("README.md", "docs/benchmarking.md", "docs/comparing_accuracy.md")
+BLOCK = re.compile(r"^(?:    )?((?:\./run|echo)\b.*)$", re.M)
 INLINE = re.compile(r"(?<!`)`(\./run [^`]+)`(?!`)")
 
 # The options of each command for a short run that still shows that the command works.
@@ -22,7 +23,11 @@ SMALL = {
     "simulate": {"--strokes": "1", "--cycles": "100"},
     "verify": {"--steps": "2000"},
     "verify --scenario": {"--cycles": "100"},
+    "verify .*--robot": {"--cycles": "100"},
     "bench": {"--triangles": "20000", "--queries": "5", "--seconds": "0.01"},
+    "bench --list": {},
+    "bench --sweep": {"--triangles": "20000", "--index": "wide_bvh,pd_tree", "--queries": "5", "--seconds": "0.01"},
+    "bench --sweep --mesh": {"--index": "wide_bvh,pd_tree", "--queries": "5", "--seconds": "0.01"},
     "bench --speed": {"--quick": None, "--steps": "1000"},
     "compare": {"--poses": "6", "--problems": "30", "--pairs": "10"},
     "live": {"--no-open": None},
@@ -77,14 +82,15 @@ def main():
     environment = dict(os.environ, KEEPOUT_PREPARE=str(root / "fixtures/prepare"),
                        KEEPOUT_WEB=str(web_page(root, folder)), KEEPOUT_COMMAND=str(keepout),
                        PYTHONPATH=f"{keepout.parents[2] / 'python'}:{root}")
-    commands = commands_of((root / "README.md").read_text(encoding="utf-8"))
+    texts = [(root / page).read_text(encoding="utf-8") for page in PAGES]
+    commands = commands_of(texts[0])
     missing = [n for n in ("inspect", "convert", "replay", "simulate", "serve", "verify", "bench", "compare", "live", "plan",
                            "register", "report", "experiments")
                if not any(c.startswith(f"./run {n}") for c in commands)]
     if missing:
         sys.exit(f"README.md does not show {', '.join(missing)}: has the page changed its form?")
     faults = 0
-    for command in commands:
+    for command in dict.fromkeys(command for text in texts for command in commands_of(text)):
         small = made_small(command)
         done = subprocess.run(["bash", "-euc", small], cwd=folder, env=environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -92,7 +98,7 @@ def main():
         print(f"{'ok' if done.returncode == 0 else 'FAILED'}: {small}", flush=True)
         if done.returncode != 0:
             faults += 1
-            print(f"README.md says: {command}\nended with {done.returncode}:\n{done.stdout[-3000:]}")
+            print(f"The page says: {command}\nended with {done.returncode}:\n{done.stdout[-3000:]}")
     sys.exit(1 if faults else 0)
 
 
