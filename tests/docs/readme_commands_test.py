@@ -16,6 +16,7 @@ import sys
 
 PAGES = ("README.md", "docs/benchmarking.md", "docs/comparing_accuracy.md")
 BLOCK = re.compile(r"^(?:    )?((?:\./run|echo)\b.*)$", re.M)
+RECORDED = re.compile(r"<!--[\w.]+\.command-->.*?<!--/-->")  # of a record that a page in docs prints
 INLINE = re.compile(r"(?<!`)`(\./run [^`]+)`(?!`)")
 
 # The options of each command for a short run that still shows that the command works.
@@ -83,6 +84,7 @@ def main():
                        KEEPOUT_WEB=str(web_page(root, folder)), KEEPOUT_COMMAND=str(keepout),
                        PYTHONPATH=f"{keepout.parents[2] / 'python'}:{root}")
     texts = [(root / page).read_text(encoding="utf-8") for page in PAGES]
+    texts[1:] = [RECORDED.sub("", text) for text in texts[1:]]
     commands = commands_of(texts[0])
     missing = [n for n in ("inspect", "convert", "replay", "simulate", "serve", "verify", "bench", "compare", "live", "plan",
                            "register", "report", "experiments")
