@@ -40,6 +40,10 @@ struct TimesOfStages {
   std::vector<double> collect, exact, query, step, step_query, activate, solve;
 };
 
+double microseconds(BenchClock::duration time) {
+  return std::chrono::duration<double, std::micro>(time).count();
+}
+
 /// At least this many steps, so that medians and 99.9 % percentiles compare; but at most `patience`
 /// times the given time.
 constexpr std::size_t enough_steps = 1000;
@@ -137,11 +141,12 @@ std::size_t ask_for_triangles(const SpatialIndex& index, std::size_t count, Refe
     reference.hits.clear();
     const BenchClock::time_point start = BenchClock::now();
     index.collect(ball, reference.candidates);
-    const double collected = microseconds_since(start);
+    const BenchClock::time_point collected = BenchClock::now();
     refine(reference.mesh(), ball, reference.candidates.view(), reference.hits);
-    times.query.push_back(microseconds_since(start));
-    times.collect.push_back(collected);
-    times.exact.push_back(times.query.back() - collected);
+    const BenchClock::time_point refined = BenchClock::now();
+    times.collect.push_back(microseconds(collected - start));
+    times.exact.push_back(microseconds(refined - collected));
+    times.query.push_back(microseconds(refined - start));
     candidates += reference.candidates.size();
     hits += reference.hits.size();
     reaching += reference.hits.empty() ? 0 : 1;
