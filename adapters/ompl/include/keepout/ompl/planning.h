@@ -27,12 +27,12 @@ std::shared_ptr<ompl::base::StateValidityChecker> make_state_validity_checker(
 
 /// Returns a validator of straight motions. A motion is valid only if the certified rule proves the
 /// whole motion (proves), and its end is within the space's bounds. The last valid state of an
-/// invalid motion is the end of the proved part; if the motion leaves the bounds, it is the start.
-/// The space's longest valid segment is not used.
+/// invalid motion is the end of the proved part; if the motion leaves the bounds, the last valid
+/// state is the start. Ignores the space's longest valid segment.
 std::shared_ptr<ompl::base::MotionValidator> make_motion_validator(
     const std::shared_ptr<ompl::base::SpaceInformation>& space, std::shared_ptr<GuardPool> guards);
 
-/// Sets both of the above in the space.
+/// Sets the checker and the validator above in the space.
 void set_certified_checkers(const std::shared_ptr<ompl::base::SpaceInformation>& space,
                             const std::shared_ptr<GuardPool>& guards);
 
