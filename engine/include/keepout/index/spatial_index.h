@@ -16,7 +16,7 @@ namespace keepout {
 
 class TriangleBlocks;
 
-/// Numbers of triangles, with a declared capacity.
+/// A list of triangle numbers with a fixed capacity.
 using TriangleBuffer = Buffer<TriangleId>;
 
 /// Finds the triangles near a point. An index proposes candidates, and the exact kernel decides
@@ -45,9 +45,10 @@ class SpatialIndex {
   /// kernel.
   virtual bool is_exact() const noexcept { return false; }
 
-  /// Returns the triangle nearest to a point by the exact kernel, at any distance; ties go to the
-  /// lowest number. Returns no_triangle if the index has no such search (see find_nearest), or once
-  /// the budget is spent. Thread-safe. Precondition: the point is finite.
+  /// Returns the triangle nearest to a point by the exact kernel, at any distance. If several
+  /// triangles are equally near, returns the lowest number. Returns no_triangle if the index has no
+  /// such search (see find_nearest), or once the budget is spent. Thread-safe. Precondition: the
+  /// point is finite.
   virtual TriangleId nearest(const Vec3& /*point*/, Budget& /*budget*/) const noexcept {
     return no_triangle;
   }
@@ -63,8 +64,8 @@ class SpatialIndex {
   virtual bool traverses() const noexcept { return false; }
 
   /// Returns an index of a mesh with the same triangles and moved vertices, in a fraction of the
-  /// time of a build. Returns null if the index does not support this. This index may be in use
-  /// meanwhile. Throws Error if the corners of a triangle differ.
+  /// time of a build. Returns null if the index does not support this. Other threads may use this
+  /// index during the call. Throws Error if the corners of a triangle differ.
   virtual std::unique_ptr<SpatialIndex> refitted(std::shared_ptr<const Mesh> /*moved*/) const {
     return nullptr;
   }
@@ -91,8 +92,8 @@ class SpatialIndex {
   std::shared_ptr<const Mesh> mesh_;
 };
 
-/// The work of a query. Unlike its time it is the same on every run, so it shows if a tree became
-/// worse.
+/// The work of a query. Unlike its time, the work is the same on every run. More work for the same
+/// query shows a worse tree.
 struct QueryCounts {
   std::size_t nodes = 0;      // examined nodes, each with all its boxes
   std::size_t blocks = 0;     // leaf blocks whose triangles were compared with the ball

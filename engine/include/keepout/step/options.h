@@ -15,7 +15,7 @@ class SpatialIndex;
 
 /// The extent of the search for triangles around the tip: RuleInput::searched_region.
 enum class Query : std::uint8_t {
-  motion,  // where the solved motions may end: ActivationRule::end_region
+  motion,  // the places where motions may end: ActivationRule::end_region
   sphere   // the whole motion sphere, unless its triangles exceed capacity or budget
 };
 
@@ -24,8 +24,8 @@ inline constexpr std::array<std::string_view, 2> query_names{"motion", "sphere"}
 
 /// The tips whose distance a step reports: Step::distance.
 enum class Distances : std::uint8_t {
-  where_known,  // those whose distance the rule finds in any case: costs nothing
-  always        // all: if unknown, searched after the step with the remaining work units
+  where_known,  // those whose distance the rule finds in any case, at no cost
+  always        // all; a search after the step uses the remaining work units
 };
 
 /// The names of Distances.

@@ -19,9 +19,9 @@ struct BestStep {
 /// at least `margin` from every triangle. If a triangle is nearer at the start, the tip must not
 /// come closer to it.
 ///
-/// Branch and bound over the directions makes it the best of all motions. `cost` exceeds `bound` by
-/// at most 1e-4 |desired|, unless the search stops at its limit of cells. (This can happen if a
-/// whole curve of motions is equally good.) The cost is usually exact to 1e-6 |desired|, and the
+/// Branch and bound over the directions finds the best of all motions. `cost` exceeds `bound` by at
+/// most 1e-4 |desired|, unless the search stops at its limit of cells. (This can happen if a whole
+/// curve of motions is equally good.) The cost is usually exact to 1e-6 |desired|, and the
 /// clearance holds to 1e-12 of the problem's size. A call takes milliseconds.
 ///
 /// Preconditions: all numbers are finite, and the tip is not on a triangle. `near` contains every

@@ -19,8 +19,8 @@ namespace keepout::oracle {
 /// doubtful ones: they are within the hull, so they cannot make the distance too small. A triangle
 /// that is wholly inside is detected separately, by a point in the solid.
 ///
-/// A separating direction excludes most pairs: for any direction, no pair is nearer than the
-/// difference of its heights along it.
+/// A separating direction excludes most pairs. In any direction, the heights of a pair differ by at
+/// most the distance of the pair.
 class Hull {
  public:
   static constexpr std::size_t most_points = 64;

@@ -18,8 +18,8 @@ namespace keepout::oracle {
 /// kinematics, distances and search are its own.
 ///
 /// It is fast if an instrument moves a little at a time: each body remembers the triangles that
-/// were near, and its displacement since then. Results do not depend on this memory. One oracle for
-/// each thread.
+/// were near, and its displacement since then. Results do not depend on this memory. Use one oracle
+/// for each thread.
 class InstrumentOracle {
  public:
   /// `base`: the pose of link 0. Throws std::invalid_argument for a body without points or with

@@ -110,8 +110,8 @@ constexpr const auto& table_of(const InstrumentCapacity&) { return instrument_ca
 
 /// Returns a band for the curvature of every motion that the joint limits allow in a cycle of
 /// `period` > 0 seconds. It is an eighth of the largest second-derivative bound of any body's
-/// point, and at least `least`. Infinite without limits. Throws Error for numbers out of range.
-/// [length]
+/// point, and at least `least`. Infinite if the limits do not bound the curvature. Throws Error for
+/// numbers out of range. [length]
 double recommended_band(const Instrument& instrument, double period, double least = 0.002);
 
 }  // namespace keepout
