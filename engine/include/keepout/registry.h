@@ -14,8 +14,9 @@ namespace keepout {
 /// Returns the known name that is most similar to a mistyped one, for "did you mean". The most
 /// similar name differs by the fewest letters that are inserted, deleted, replaced or swapped with
 /// their neighbor. If these are more than a third of the letters for every name, returns the first
-/// name that contains the mistyped one. Upper and lower case are equal, and so are '_' and '-';
-/// ties go to the first name. Returns empty if no name is similar. Allocates.
+/// name that contains the mistyped one. Upper and lower case are equal, and so are '_' and '-'. If
+/// several names are equally similar, returns the first. Returns empty if no name is similar.
+/// Allocates.
 std::optional<std::string_view> nearest_name(std::string_view mistyped,
                                              std::span<const std::string_view> names);
 

@@ -28,9 +28,9 @@ struct TargetError {
 ///
 /// Its trace is FLE^2 / N (1 + 1/3 sum d_k^2 / f_k^2) (Fitzpatrick, West, Maurer 1998). There d_k
 /// is the distance of the target from the k-th principal axis, and f_k the root mean square
-/// distance of the pairs. `fle`: the localization error, root mean square [length]; by default
-/// estimated_fle(). Throws Error for a target or an `fle` that is not finite, and for an `fle` not
-/// above 0.
+/// distance of the pairs from this axis. `fle`: the localization error, root mean square [length];
+/// by default estimated_fle(). Throws Error for a target or an `fle` that is not finite, and for an
+/// `fle` not above 0.
 TargetError target_error(const RigidFit& fit, const Vec3& target, std::optional<double> fle = {});
 
 /// Returns the length to add to a guard's margin [length]. The registration error exceeds it only

@@ -36,8 +36,8 @@ struct RuleInput {
   double recovery;   // the longest retreat of a tip that is too close, in a cycle [length]
   double rounding;   // bound of the error of the tip's position [length]
   EndRegion searched_region;  // contains the ends of all motions that a solver may find
-  /// True if there are no joints, rows, damping or guides that pull points back, and the solver
-  /// ignores idle planes: the rule may leave such planes out.
+  /// True if the rule may leave out idle planes (Solver::ignores_idle_planes): the solver ignores
+  /// them, and there are no joints, rows, damping or guides that pull points back.
   bool is_projected = false;
 };
 

@@ -84,8 +84,8 @@ class PreparedTriangle {
   /// `level`, or if no plane has the whole triangle on its far side.
   Vec3 normal_around(int edge, double level) const noexcept;
 
-  /// Returns true if the prepared triangle comes before another by its corners; a total order
-  /// except for duplicates.
+  /// Returns true if the prepared triangle precedes another in lexicographic order of their
+  /// corners. This is a total order, except for duplicates.
   bool before(const PreparedTriangle& other) const noexcept;
 
  private:

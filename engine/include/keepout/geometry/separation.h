@@ -25,8 +25,9 @@ struct Separation {
 };
 
 /// Returns the distance that a plane with the unit normal n proves: min n . p over the tool minus
-/// max n . v over the triangle. For any n it is at most the distance of tool and triangle; if below
-/// 0, its negative is at least their depth. Exact to a few roundings of the lengths between them.
+/// max n . v over the triangle. For any n, this distance is at most that of tool and triangle. If
+/// it is below 0, its negative is at least their depth. Exact to a few roundings of the lengths
+/// between them.
 double separation_along(const Vec3& n, const ConvexTool& tool, const Vec3& position,
                         const Triangle& triangle) noexcept;
 

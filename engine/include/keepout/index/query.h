@@ -83,12 +83,12 @@ class Neighborhood {
   Budget* budget_;
 };
 
-/// Returns the triangle nearest to a point, and its closest point, relative to `point`; ties go to
-/// the lowest id. Bitwise identical on every index. An index without its own search
-/// (SpatialIndex::nearest) is queried with a ball around the point that grows until it touches the
-/// mesh. Far from the mesh, this ball may touch many triangles. Returns empty if these triangles
-/// exceed the capacity, or if the budget is spent. The neighborhood's hits do not change. Does not
-/// allocate. Precondition: the point is finite.
+/// Returns the triangle nearest to a point, and its closest point, relative to `point`. If several
+/// triangles are equally near, returns the one with the lowest id. Bitwise identical on every
+/// index. An index without its own search (SpatialIndex::nearest) is queried with a ball around the
+/// point that grows until it touches the mesh. Far from the mesh, this ball may touch many
+/// triangles. Returns empty if these triangles exceed the capacity, or if the budget is spent. The
+/// neighborhood's hits do not change. Does not allocate. Precondition: the point is finite.
 std::optional<Hit> find_nearest(Neighborhood& neighborhood, const Vec3& point) noexcept;
 
 /// Classifies a point as inside or outside a watertight mesh that does not intersect itself. The
@@ -104,7 +104,7 @@ class NearestTriangle {
   /// Makes a search of a mesh by an index; both must outlive this object.
   NearestTriangle(const Mesh& mesh, const SpatialIndex& index);
 
-  /// Returns the nearest triangle; ties and precondition as for find_nearest. `guess`: the first
+  /// Returns the triangle that find_nearest returns, with the same precondition. `guess`: the first
   /// radius of the search on an index without its own search. A good guess is the last distance
   /// plus the displacement since then. [length] Allocates.
   Hit operator()(const Vec3& point, double guess = 0.0);

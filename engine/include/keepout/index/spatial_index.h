@@ -53,9 +53,10 @@ class SpatialIndex {
     return no_triangle;
   }
 
-  /// Returns the index's own traversal along motions, which shows far fewer triangles than a query;
-  /// null if the index has no such traversal: see make_motion_traversal. The traversal spends work
-  /// units of the budget. Index and budget must outlive it, and the index must not be refit.
+  /// Returns the index's own traversal along motions; null if the index has no such traversal (see
+  /// make_motion_traversal). A traversal shows far fewer triangles than a query. The traversal
+  /// spends work units of the budget. Index and budget must outlive it, and the index must not be
+  /// refit.
   virtual std::unique_ptr<MotionTraversal> traverse_along_motions(Budget& /*budget*/) const {
     return nullptr;
   }

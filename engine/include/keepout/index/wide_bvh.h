@@ -11,10 +11,10 @@
 
 namespace keepout {
 
-/// keepout's fastest index, a bounding volume hierarchy (BVH): a tree of axis-aligned boxes with
-/// sixteen boxes per node and sixteen triangles per leaf, in a layout for SIMD. Single precision
-/// decides first. If its rounding leaves a doubt, the exact kernel decides. So `collect` returns
-/// exactly the triangles that touch the ball.
+/// keepout's fastest index, a bounding volume hierarchy (BVH) of axis-aligned boxes. It has sixteen
+/// boxes per node and sixteen triangles per leaf, in a layout for SIMD. Single precision decides
+/// first. If its rounding leaves a doubt, the exact kernel decides. So `collect` returns exactly
+/// the triangles that touch the ball.
 ///
 /// The order of a traversal and of the returned triangles is not specified. Results must not depend
 /// on it.

@@ -86,8 +86,8 @@ inline constexpr std::array step_options{
 /// Returns the table of the options of a struct.
 constexpr const auto& table_of(const StepOptions&) { return step_options; }
 
-/// Returns the required clearance of the tip from the surface: tool radius and margin together,
-/// which the certified rule needs above 0. [length]
+/// Returns the required clearance of the tip from the surface: tool radius + margin. The certified
+/// rule needs it above 0. [length]
 constexpr double required_clearance(const StepOptions& options) noexcept {
   return options.tool_radius + options.margin;
 }
@@ -110,7 +110,7 @@ struct Capacity {
   std::size_t nodes = 0;        // of the branch and bound; at least StepOptions::nodes
   /// Work units of one cycle: see Budget. A motion that cannot be proved within them is not
   /// returned. 0: work_units_of_traversals on an index that traverses along motions, such as
-  /// wide_bvh; work_units_of_queries on others, which return all triangles in the region.
+  /// wide_bvh, else work_units_of_queries. Other indices return all triangles in the region.
   std::size_t work_units = 0;
   std::size_t looks = 0;  // deprecated: use work_units
 

@@ -44,7 +44,7 @@ class InstrumentOracle {
   }
 
   /// Returns the distance of the body's surface from the mesh, accurate to 1e-9 of the distance of
-  /// its core and about 1e-12 of the coordinates. It is below 0 if the mesh reaches into the body,
+  /// its core plus about 1e-12 of the coordinates. It is below 0 if the mesh reaches into the body,
   /// and minus the radius only if the core touches the mesh. Infinite if it is more than `reach`.
   /// [length]
   double clearance(std::size_t body, double reach);

@@ -17,7 +17,7 @@ namespace keepout {
 
 // The functions below plan for a whole instrument, in the space of its joints. The space is a
 // RealVectorStateSpace with one dimension for each joint, in the order of the chain [rad or
-// length], and with bounds within the joints' limits. The motion between two states q and q' is q +
+// length]. Its bounds are within the joints' limits. The motion between two states q and q' is q +
 // s (q' - q), s in [0, 1]. The functions throw Error, with a remedy, for any other space. The
 // returned objects share the pool, and may be called from any thread.
 
@@ -37,8 +37,8 @@ std::shared_ptr<ompl::base::StateValidityChecker> make_state_validity_checker(
 
 /// Returns a validator of motions. A motion is valid only if the whole true motion of the joints is
 /// proved (MotionProof::is_clear), and it ends within the space's bounds. The last valid state of
-/// an invalid motion is the end of a proved part; if the motion leaves the bounds, the last valid
-/// state is the start. Ignores the space's longest valid segment.
+/// an invalid motion is the end of a proved part, or the start if the motion leaves the bounds.
+/// Ignores the space's longest valid segment.
 std::shared_ptr<ompl::base::MotionValidator> make_motion_validator(
     const std::shared_ptr<ompl::base::SpaceInformation>& space,
     std::shared_ptr<InstrumentPool> guards);

@@ -51,12 +51,12 @@ struct JudgedScene {
 /// step reported a degraded clearance. Guides are judged in the same way, with the depth in their
 /// region as clearance. Kinematics, distances and regions are those of the oracle.
 ///
-/// The judge samples a cycle at its start and end, at a random pose in each eighth of it, and, near
-/// the margin, again around the worst pose. Two neighboring samples are up to a quarter of the
-/// motion apart. So the judge can miss a dip between two samples (docs/joint-space-step.md, "How it
-/// is tested"). Over a flat surface the dip is at most M / 128, with M the second-derivative bound.
-/// Over an edge or a corner it is at most half of the path between the samples. The samples are
-/// random, so the judge misses such a dip in some cycles only.
+/// The judge samples a cycle at its start and end, and at a random pose in each eighth of it. Near
+/// the margin, it samples again around the worst pose. Two neighboring samples are up to a quarter
+/// of the motion apart. So the judge can miss a dip between two samples (docs/joint-space-step.md,
+/// "How it is tested"). Over a flat surface the dip is at most M / 128, with M the
+/// second-derivative bound. Over an edge or a corner it is at most half of the path between the
+/// samples. The samples are random, so the judge misses such a dip in some cycles only.
 class RobotJudge {
  public:
   /// `limits`: the chain that has the joint limits. It and `random` must outlive the judge.
