@@ -61,7 +61,12 @@ export const method = (...words: readonly (Node | string)[]): HTMLElement =>
 
 /** Returns cards with plots, side by side if the page is wide enough. */
 export const panels = (...figures: readonly HTMLElement[]): HTMLElement =>
-  make("div", { class: "panels wide charts", style: `--columns:${figures.length}` }, ...figures);
+  make(
+    "div",
+    // Four are two rows of two, wide enough to read.
+    { class: "panels wide charts", style: `--columns:${figures.length === 4 ? 2 : figures.length}` },
+    ...figures,
+  );
 
 /** Returns the known facts of a machine, for a list of definitions. */
 function machineFacts(pointer: string): HTMLElement[] {
