@@ -60,13 +60,10 @@ export const method = (...words: readonly (Node | string)[]): HTMLElement =>
   make("p", { class: "method" }, ...words);
 
 /** Returns cards with plots, side by side if the page is wide enough. */
-export const panels = (...figures: readonly HTMLElement[]): HTMLElement =>
-  make(
-    "div",
-    // Four are two rows of two, wide enough to read.
-    { class: "panels wide charts", style: `--columns:${figures.length === 4 ? 2 : figures.length}` },
-    ...figures,
-  );
+export const panels = (...figures: readonly HTMLElement[]): HTMLElement => {
+  const columns = figures.length === 4 ? 2 : figures.length; // four in a row are too narrow
+  return make("div", { class: "panels wide charts", style: `--columns:${columns}` }, ...figures);
+};
 
 /** Returns the known facts of a machine, for a list of definitions. */
 function machineFacts(pointer: string): HTMLElement[] {
