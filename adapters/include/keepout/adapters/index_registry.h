@@ -14,7 +14,7 @@
 
 namespace keepout {
 
-/// A spatial index, to be made by its name.
+/// An available type of spatial index, and the function that makes one.
 struct IndexBackend {
   std::string_view name;         // for make_index
   std::string_view description;  // one line, for lists
@@ -43,6 +43,7 @@ std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<
 
 }  // namespace keepout
 
-/// The table of the indices of a module.
+/// The table of the indices of a module. Each module with indices defines it, and index_backends()
+/// and make_index() read it.
 extern "C" [[gnu::visibility("default")]] const std::span<const keepout::IndexBackend>
     keepout_indices;

@@ -18,7 +18,7 @@ struct Orientation {
   std::size_t open_parts = 0;          // have edges with one triangle: free side unknown
   std::size_t non_manifold_parts = 0;  // have edges with three triangles or more: free side unknown
   std::size_t flat_parts = 0;       // closed, but enclose no volume, such as two coincident layers
-  std::size_t one_sided_parts = 0;  // no winding agrees, as on a Möbius strip: unchanged
+  std::size_t one_sided_parts = 0;  // no winding is consistent, as on a Möbius strip: unchanged
 
   std::size_t inside_out_parts = 0;  // closed, not nested: all triangles turned
   std::size_t crossing_parts = 0;    // closed, partly within a larger closed part: not nested

@@ -32,10 +32,10 @@ using HitBuffer = Buffer<Hit>;
 void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> candidates,
             HitBuffer& hits) noexcept;
 
-/// A mesh with its index and a work budget; it finds the triangles that touch a ball, exactly, on
-/// any index. The index proposes candidates, and refine() selects the hits. All memory is allocated
-/// at construction. Make one for each thread; mesh and index may be shared. If a rule uses the
-/// index's own traversal, this object only holds mesh, index and the budget of the cycle.
+/// A mesh with its index and a work budget. With any index, it finds exactly the triangles that
+/// touch a ball. The index proposes candidates, and refine() selects the hits. All memory is
+/// allocated at construction. Make one for each thread; mesh and index may be shared. If a rule
+/// uses the index's own traversal, this object only holds mesh, index and the budget of the cycle.
 class Neighborhood {
  public:
   /// Allocates a capacity of `room` candidates in a query, or of all triangles if they are fewer.

@@ -19,7 +19,7 @@ bool meet_improperly(const Mesh& mesh, TriangleId one, TriangleId other) noexcep
 /// The pairs of triangles of a mesh that meet_improperly.
 struct SelfIntersections {
   std::size_t pairs = 0;    // all of them
-  FaultPlaces places = {};  // of a bounded number; each has the corners of both triangles
+  FaultPlaces places = {};  // of at most most_places pairs, with the corners of both triangles
 };
 
 /// Finds the pairs of triangles that meet_improperly, and the places of at most `most_places` of

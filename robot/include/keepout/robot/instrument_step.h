@@ -24,8 +24,8 @@ struct DegradedClearance {
 struct InstrumentStep {
   Status status = Status::invalid_input;   // the outcome of the cycle
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
-  /// The fraction of the solved motion that `increment` is. With status truncated, the solved
-  /// motion may be for a part of the command only; 1 then means all of that part.
+  /// `increment` as a fraction of the motion that the solver found. With status truncated, the
+  /// solver may have solved for a part of the command only. Then 1 means the whole part.
   double fraction = 0.0;
   double share = 0.0;         // deprecated: use fraction
   int rounds = 0;             // number of trial motions that were solved and judged
@@ -49,7 +49,8 @@ struct InstrumentStep {
   std::span<const GuideState> guides = {};   // the state of each guide, in the order given
   Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
   /// The limits that make the motion differ from the commanded one. With a motion, these are all
-  /// constraints that limit or shorten it (not a refinement that exceeds budget or capacity).
+  /// constraints that limit or shorten it. A budget or capacity that ends only a refinement is not
+  /// one of them.
   /// Without a motion, these are the causes why no motion could be proved.
   /// joints_outside is reported with any status, singularity only without another limit.
   Limits limits = {};
