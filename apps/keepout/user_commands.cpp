@@ -13,6 +13,7 @@
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/solvers/registry.h"
 #include "live/live.h"
+#include "record/record.h"
 #include "record/report.h"
 #include "serve/request_schema.h"
 #include "serve/serve.h"

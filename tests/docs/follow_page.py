@@ -7,7 +7,7 @@
 A comment above each block of code, invisible to readers, states what to do with the block:
 
     <!-- file: NAME -->      Write it to this file. The text before the block must name the file.
-    <!-- run -->             Run it in a new shell, as a reader would. It must succeed.
+    <!-- run -->             Run it in a new shell, as a reader would; compile it if it is C++. It must succeed.
     <!-- run fails -->       Run it. It must fail.
     <!-- run python -->      Run it if there is a Python module (--python). It must succeed.
     <!-- output -->          The last run must have printed exactly this.
@@ -60,14 +60,14 @@ class Reader:
             order = ORDER.search(text, 0, block.start())
             if order is None:
                 self.fail(line, "no comment states what to do with this block: see tests/docs/follow_page.py")
-            self.obey(order["what"], (order["name"] or "").strip(), block["text"], line,
+            self.obey(order["what"], (order["name"] or "").strip(), block["language"], block["text"], line,
                       text[max(0, block.start() - 400):order.start()])
             count += 1
         if count == 0:
             self.fail(1, "there is no block of code: has the page changed its form?")
         print(f"{self.page.name}: {count} blocks")
 
-    def obey(self, what, name, text, line, before):
+    def obey(self, what, name, language, text, line, before):
         if what == "file":
             if f"`{name}`" not in before:
                 self.fail(line, f"the text before this block does not name `{name}`")
@@ -89,10 +89,19 @@ class Reader:
         elif what == "run python" and not self.python:
             self.printed, self.was_left_out = None, True
         else:
-            self.run(text, what == "run fails", line)
+            self.run(self.command(language, text), what == "run fails", line)
 
-    def run(self, text, fails, line):
-        done = subprocess.run(["bash", "-euc", text], cwd=self.folder, env=self.environment,
+    def command(self, language, text):
+        if language == "python":
+            return ["python3", "-c", text]
+        if language == "cpp":
+            (self.folder / "listing.cpp").write_text(text, encoding="utf-8")
+            folders = [f"{self.environment['CMAKE_PREFIX_PATH']}/include", "/usr/include/eigen3"]
+            return ["g++", "-std=c++20", "-fsyntax-only", *(f"-I{folder}" for folder in folders), "listing.cpp"]
+        return ["bash", "-euc", text]
+
+    def run(self, command, fails, line):
+        done = subprocess.run(command, cwd=self.folder, env=self.environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, timeout=600)
         self.printed, self.was_left_out = done.stdout, False

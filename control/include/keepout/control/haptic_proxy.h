@@ -20,7 +20,7 @@ enum class CycleStatus : std::uint8_t {
   too_far,        // the goal is too far from the proxy: wrong unit, or a jump
   stale,          // no goal arrived for too long
   lagging,        // the robot is too far from its setpoint
-  far_from_mesh,  // on engaging: too far from the mesh; unit or registration must be wrong
+  far_from_mesh,  // at engage(): too far from the mesh; check unit and registration
   stopped         // the step failed: see HapticCycle::step
 };
 
@@ -38,7 +38,7 @@ struct HapticOptions {
   double period = 0.001;     // of a cycle [s], 1e-6 to 1
   SpringDamper spring = {};  // between proxy and hand
   double top_speed = 200.0;  // of the proxy, which the robot follows [length / s], > 0
-  double farthest = 50.0;    // of the hand from the proxy; farther goals are rejected [length], > 0
+  double farthest = 50.0;    // from proxy to hand; farther goals are rejected [length], > 0
   /// The time in which the force fades out when cycles fail, and returns afterwards [s], >= period
   double fade = 0.05;
   double largest_brake = 0.0;      // of the passivity controller [N s / length]; 0: only observes
@@ -55,8 +55,8 @@ struct HapticCycle {
 
   /// Returns true if the proxy has moved by the step.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it; for a stopped cycle, that of the
-  /// step.
+  /// Returns one line on what happened and what to do about it; for a stopped cycle, the reason of
+  /// the step.
   std::string_view reason() const noexcept {
     return status == CycleStatus::stopped ? keepout::reason(step, Subject::tip)
                                           : keepout::reason(status);

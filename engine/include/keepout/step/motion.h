@@ -80,7 +80,7 @@ struct Step {
 
   /// Returns true if there is a motion that may be executed; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it; a literal.
+  /// Returns one line on what happened and what to do about it; a string literal.
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::tip); }
 };
 

@@ -29,11 +29,11 @@ struct InstrumentStep {
   double fraction = 0.0;
   double share = 0.0;         // deprecated: use fraction
   int rounds = 0;             // number of trial motions that were solved and judged
-  std::size_t rows = 0;       // constraints that limit the motion, joint limits apart
-  std::size_t triangles = 0;  // largest number in reach of one body and one trial motion
+  std::size_t rows = 0;       // constraints that limit the motion, without joint limits
+  std::size_t triangles = 0;  // largest number near one body in one trial motion
   /// The distance of the nearest body from a mesh at the start of the cycle; below 0 if the body
-  /// reaches through the surface. Empty if no body is within margin + max(band, slowing_within), or
-  /// if the work budget ended first. [length]
+  /// intersects the surface. Empty if no body is within margin + max(band, slowing_within), or if
+  /// the work budget ended first. [length]
   std::optional<double> distance = std::nullopt;
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // the number of the mesh
@@ -57,8 +57,8 @@ struct InstrumentStep {
 
   /// Returns true if the increment may be executed; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it. It also reports a joint of a free
-  /// motion that starts outside its position limits.
+  /// Returns one line on what happened and what to do about it. For a free motion, it also reports
+  /// a joint that starts outside its position limits.
   std::string_view reason() const noexcept;
 };
 
