@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "user_commands.h"
 
+#include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -14,6 +15,7 @@
 #include "live/live.h"
 #include "record/record.h"
 #include "record/report.h"
+#include "serve/request_schema.h"
 #include "serve/serve.h"
 #include "shared/command_line.h"
 #include "shared/named_mesh.h"
@@ -236,6 +238,11 @@ void add_serve(CLI::App& app, ServeOptions& options) {
   add_activation(command, service.constraint.activation);
   add_constraint_options(command, service.constraint);
   add_convex_tool(command, service.constraint);
+  // CLI11 prints the text of this exception, and requires no mesh.
+  command.add_flag_callback(
+      "--schema",
+      [&service] { throw CLI::CallForVersion(request_schema(service.limits), EXIT_SUCCESS); },
+      "Print the JSON Schema of requests, with these --joints and --rows, and end");
   command.footer(protocol_help());
 }
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the stubs of the built module from the signatures that pybind11 puts into docstrings: write_stubs.py OUT,
+"""Writes the stubs of the built module, with its docstrings: write_stubs.py OUT,
 with PYTHONPATH at the module."""
 
 import ast
+import inspect
 import re
 import sys
 from pathlib import Path
@@ -12,7 +13,8 @@ from keepout import _results
 
 HEADER = """\
 # SPDX-License-Identifier: BSD-3-Clause
-# Shapes, units and failures are in the docstrings of the module: help(keepout.MotionConstraint).
+# Written by python/stubs/write_stubs.py from the built module.
+{}
 from collections.abc import Sequence
 from os import PathLike
 from typing import Literal, overload
@@ -82,8 +84,25 @@ def type_of(text, known, owner, name, sequence="list"):
     return text
 
 
-def function(line, owner, indent, decorators):
-    """Returns the stub of a function from its line of a docstring. `owner`: its class, or "keepout"."""
+def body(text):
+    """Returns what follows the colon of a stub: its docstring, or dots."""
+    return "\n" + text if text else " ...\n"
+
+
+def docstring(text, indent):
+    """Returns a docstring as a stub has it; empty if there is no text."""
+    lines = inspect.cleandoc(text or "").replace("\\", r"\\").replace('"""', r"\"\"\"").splitlines()
+    if not lines:
+        return ""
+    if lines[-1].endswith('"'):  # it would join the quotes that end the docstring
+        lines[-1] = lines[-1][:-1] + r"\""
+    quoted = f'"""{lines[0]}"""' if len(lines) == 1 else "\n".join([f'"""{lines[0]}', *lines[1:], '"""'])
+    return "".join((indent + line).rstrip() + "\n" for line in quoted.splitlines())
+
+
+def function(line, description, owner, indent, decorators):
+    """Returns the stub of a function from its line in a docstring and the description below it. `owner`: its class, or
+    "keepout"."""
     made = ast.parse(f"def {line}: ...").body[0]
     arguments = made.args
     scope = owner if made.name == "__init__" else made.name
@@ -98,26 +117,36 @@ def function(line, owner, indent, decorators):
             if isinstance(default, ast.Constant) and default.value is None and "None" not in argument.annotation.id:
                 argument.annotation.id += " | None"
     result = type_of(ast.unparse(made.returns), RESULTS, owner, made.name)
-    return "".join(f"{indent}@{name}\n" for name in decorators) + \
-        f"{indent}def {made.name}({ast.unparse(arguments)}) -> {result}: ...\n"
+    signature = f"{indent}def {made.name}({ast.unparse(arguments)}) -> {result}:"
+    return "".join(f"{indent}@{name}\n" for name in decorators) + signature + \
+        body(docstring(description, indent + "    "))
 
 
 def functions(doc, owner, indent="    ", decorators=()):
     """Returns the stub of a function, or several if it is overloaded."""
-    first, *rest = doc.splitlines()
-    overloads = [line.split(" ", 1)[1] for line in rest if re.match(r"\d+\. \w+\(", line)]
+    first, _, text = doc.partition("\n")
+    # After "Overloaded function.": pairs of a line such as "1. step(...)" and the text of this overload.
+    _, *overloads = re.split(r"^\d+\. (?=\w+\()(.*)$", text, flags=re.MULTILINE)
     if overloads:
-        return "".join(function(line, owner, indent, ("overload", *decorators)) for line in overloads)
-    return function(first, owner, indent, decorators)
+        return "".join(function(line, text, owner, indent, ("overload", *decorators))
+                       for line, text in zip(overloads[::2], overloads[1::2]))
+    return function(first, text, owner, indent, decorators)
 
 
-def prop(owner, name, member, options):
-    """Returns the stub of a property. Its type comes from its getter, an option, or "float64" in its docstring."""
+def prop(owner, name, type_, options):
+    """Returns the stub of a property. Its type comes from its getter, an option, or "float64" in its docstring. A
+    former name has the type of its present name."""
+    doc = vars(type_)[name].__doc__ or ""
+    former = re.match(r"Deprecated: use (\w+)\.", doc)
+    typed = former[1] if former else name
+    member = vars(type_)[typed]
     signature = re.search(r"-> (.*)", member.fget.__doc__ or "")
-    text = signature[1] if signature else options[name]
+    text = signature[1] if signature else options[typed]
     if text == "numpy.ndarray":
         text = f"NDArray[np.{re.search(r'float64|uint32', member.__doc__)[0]}]"
-    return f"    @property\n    def {name}(self) -> {type_of(text, RESULTS, owner, name)}: ...\n"
+    # The docstring of an option begins with its name, for help().
+    doc = docstring(doc.removeprefix(f"{name}: "), "        ")
+    return f"    @property\n    def {name}(self) -> {type_of(text, RESULTS, owner, typed)}:" + body(doc)
 
 
 def class_of(owner, type_, options):
@@ -126,16 +155,14 @@ def class_of(owner, type_, options):
     lines = ""
     for name, member in vars(type_).items():
         if isinstance(member, property):
-            former = re.match(r"Deprecated: use (\w+)\.", member.__doc__ or "")
-            present = former[1] if former else name
-            lines += prop(owner, present, vars(type_)[present], options).replace(f"def {present}(", f"def {name}(")
+            lines += prop(owner, name, type_, options)
         elif name in ("__init__", "__len__") or not name.startswith("_"):
             doc = getattr(type_, name).__doc__
             if doc.startswith(f"{name}("):
                 static = ("staticmethod",) if isinstance(member, staticmethod) else ()
                 lines += functions(doc, owner, decorators=static)
     bases = f"({base.__name__})" if base.__name__ in keepout.__all__ or base is ValueError else ""
-    return f"class {owner}{bases}:\n{lines or '    ...' + chr(10)}"
+    return f"class {owner}{bases}:" + body(docstring(vars(type_).get("__doc__"), "    ") + lines)
 
 
 def main(out):
@@ -150,7 +177,7 @@ def main(out):
             text += "\n" + class_of(name, member, options.get(name, {}))
         elif callable(member):
             text += "\n" + functions(member.__doc__, "keepout", "")
-    Path(out).write_text(HEADER + imported + text, encoding="utf-8")
+    Path(out).write_text(HEADER.format(docstring(keepout.__doc__, "")) + imported + text, encoding="utf-8")
 
 
 main(*sys.argv[1:])

@@ -58,6 +58,15 @@ def test_summary_record_and_page_say_the_same(made: Path) -> None:
         assert (made / "experiments.html").stat().st_size > 1000
 
 
+def test_the_record_is_valid(made: Path) -> None:
+    jsonschema = pytest.importorskip("jsonschema", reason="needs python3-jsonschema")
+    validator = jsonschema.Draft202012Validator(json.loads((ROOT / "docs/schemas/record.json").read_text()))
+    record = json.loads((made / "experiments.json").read_text(encoding="utf-8"))
+    assert not list(validator.iter_errors(record))
+    del record["experiments"][0]["claims"]
+    assert list(validator.iter_errors(record))
+
+
 def test_the_command_makes_a_page_of_a_record(tmp_path: Path) -> None:
     claims = [Claim("depth", paper, "1 mm", "0 mm", "certified", "p = 0.01") for paper in "1-"]
     found = {"e3": ("E3 <Path>", Findings("Smoother.", claims))}

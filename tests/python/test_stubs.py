@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests that the stubs describe the module."""
 
+import ast
 import inspect
 import os
 import sys
@@ -83,3 +84,24 @@ def test_all_that_is_public_is_in_the_stubs():
     assert all(f'"{name}"' in stubs for name in keepout.__all__)
     assert (package / "py.typed").exists()
     assert inspect.ismodule(keepout)
+
+
+def test_the_stubs_have_the_docstrings_of_the_module():
+    """Each docstring of the module must be in the stubs, without the signatures that pybind11 writes above it."""
+    stubs = ast.parse((package / "__init__.pyi").read_text())
+    assert ast.get_docstring(stubs) == inspect.getdoc(keepout)
+    compared = 0
+    for node in stubs.body:
+        if not isinstance(node, (ast.ClassDef, ast.FunctionDef)):
+            continue
+        of = getattr(keepout, node.name)
+        members = [(node, of)] + [(member, getattr(of, member.name)) for member in getattr(node, "body", [])
+                                  if isinstance(node, ast.ClassDef) and isinstance(member, ast.FunctionDef)]
+        for stub, member in members:
+            told = ast.get_docstring(stub) or ""
+            full = inspect.getdoc(member) or ""
+            assert told in full, (node.name, stub.name)
+            if "\n\n" in full or isinstance(member, (type, property)):
+                assert told or stub.name == "__init__", (node.name, stub.name)
+            compared += bool(told)
+    assert compared > 150

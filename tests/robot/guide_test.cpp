@@ -39,7 +39,8 @@ double farthest_out(const Bench& bench, const Guide& guide, const std::vector<do
 }
 
 // In the second cycle the solver does not converge on the first problem with the guide's row. The
-// next problem lets the point use the band, although the guide does not pull the point back.
+// next problem lets the point use the band. This is a relaxation, although the point starts inside
+// its region.
 TEST(Guide, ThatLetsAPointUseItsBandIsReportedAsRelaxed) {
   constexpr double band = 0.01;
   for (const bool fails : {false, true}) {

@@ -58,8 +58,8 @@ std::string attribute(const TiXmlElement* element, const char* name) {
               "', and a link has one parent: remove one of them");
 }
 
-/// Throws Error if a link has two parents, or is below itself. urdfdom accepts the first fault. For
-/// the second it states no place, and leaks memory.
+/// Throws Error if a link has two parents, or is below itself. urdfdom accepts a link with two
+/// parents. If a link is below itself, urdfdom does not say where, and leaks memory.
 void require_tree(const std::map<std::string, const TiXmlElement*>& joints) {
   struct Above {
     std::string link;

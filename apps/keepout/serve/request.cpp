@@ -15,8 +15,7 @@
 namespace keepout::app {
 namespace {
 
-constexpr std::size_t longest_id = 128;  // [bytes]
-constexpr int deepest = 8;               // more levels than any request needs
+constexpr int deepest = 8;  // more levels than any request needs
 
 [[noreturn]] void refuse_as_json(const std::string& why) {
   throw Refusal{"not_json", "the line is not JSON: " + why};

@@ -15,6 +15,8 @@ namespace keepout::app {
 
 using Json = nlohmann::ordered_json;
 
+inline constexpr std::size_t longest_id = 128;  // of a request [bytes]
+
 /// The limits of a request.
 struct RequestLimits {
   std::size_t joints = 7;      // columns of a Jacobian

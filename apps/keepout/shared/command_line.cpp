@@ -64,7 +64,7 @@ std::string unknown_option(const CLI::App& app, const CLI::App& command, const s
 std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
   const std::string told = error.what();
   const std::string kind = error.get_name();
-  // A mistyped option is the most likely cause of any other missing argument.
+  // If an option is mistyped, this is the most likely cause of the error.
   const std::vector<std::string> extra = app.remaining(true);
   const auto option = std::find_if(extra.begin(), extra.end(), is_option);
   if (option != extra.end()) return unknown_option(app, command, *option);
@@ -72,7 +72,7 @@ std::string in_words(const CLI::App& app, const CLI::App& command, const CLI::Pa
   if (&command == &app && kind == "RequiredError") {
     return "a command is missing; there are " + enumerated(command_names(app));
   }
-  // Its get_name() is the command's.
+  // get_name() of an ExtrasError returns the name of the command.
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     return "'" + extra.front() + "' is one argument too many for " + command.get_name();
   }

@@ -44,7 +44,7 @@ std::vector<std::string_view> words_in(std::string_view line) {
 /// Returns the number that a word contains. Throws Error if it is not a finite number.
 double number_in(std::string_view word) {
   const std::string quoted = in_quotes(word);
-  // from_chars does not accept a plus sign, but would accept "-1" after one.
+  // from_chars does not accept a plus sign. Removing it from "+-1" would leave a valid number.
   if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);

@@ -42,8 +42,8 @@ double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Returns true if the polygon turns left at every corner, and once around: it changes direction
-/// along each axis at most twice.
+/// Returns true if the polygon is convex: it never turns right, and it makes only one full turn.
+/// One full turn changes the direction along each axis at most twice.
 bool is_convex(const std::vector<Vec2>& points) {
   const std::size_t n = points.size();
   int turns[2] = {0, 0};
@@ -110,7 +110,8 @@ bool cut_polygon(std::span<const VertexId> polygon, std::span<const Vec3> vertic
   const std::vector<Vec2> points = projected(polygon, vertices);
   std::vector<std::size_t> left(polygon.size());
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
-  // Both triangles at a repeated corner have no area, so a reflex corner would pass as convex.
+  // Repeated points must be removed first. With them, is_convex() would compute an area of 0 at a
+  // reflex corner, and accept it.
   if (!is_convex(without_doubled(points))) {
     if (polygon.size() > most_ear_corners) return false;
     while (left.size() > 3) {
@@ -147,7 +148,7 @@ void Polygons::end_polygon() {
 void Polygons::cut_into(MeshFile& mesh, const MeshSource& source) const {
   std::vector<Corners>& triangles = mesh.surface.triangles;
   const std::size_t count = triangles.size() + corners_.size() - 2 * ends_.size();
-  // Three vertices for each triangle must have numbers.
+  // A VertexId must be able to number three vertices for each triangle.
   if (count > no_triangle / 3 || mesh.surface.vertices.size() >= no_triangle) {
     source.fail("has too many triangles to read; split or decimate it");
   }

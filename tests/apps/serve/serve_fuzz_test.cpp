@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstdlib>
+#include <fstream>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -18,6 +20,7 @@
 #include "factory/tools_by_name.h"
 #include "keepout/factory/make_motion_constraint.h"
 #include "serve/answer.h"
+#include "serve/request_schema.h"
 #include "serve/service.h"
 #include "temporary_folder.h"
 
@@ -525,6 +528,36 @@ TEST(ServeFuzz, BytesThatAreNoTextAreAnsweredOnceALine) {
     ASSERT_TRUE(fault.empty()) << fault;
   }
   EXPECT_EQ(service.refusals(), service.lines());
+}
+
+// Writes the schema of requests, and garbled requests with the kinds of their errors, to the file
+// that KEEPOUT_LINES names. tests/apps/test_schemas.py compares them.
+TEST(ServeFuzz, WritesRequestsForTheTestOfTheSchema) {
+  const TemporaryFolder folder;
+  const char* const named = std::getenv("KEEPOUT_LINES");
+  const auto file = named != nullptr ? std::filesystem::path(named) : folder.path() / "lines";
+  std::ofstream out(file);
+  const app::ServiceSettings of = settings();
+  app::Service service{cube(), of};
+  app::Client client{service};
+  out << Json::parse(app::request_schema(of.limits)).dump() << '\n';
+  std::mt19937_64 random(11);
+  Garbler garbler(random, service.requests.fields());
+  for (std::size_t written = 0; written < 3000;) {
+    const std::string line = garbler.line();
+    const bool is_line = line.size() < longest_line && line.find('\n') == std::string::npos;
+    const Json request = is_line ? parsed(line) : Json();
+    if (!request.is_object()) continue;
+    std::string answer;
+    app::take_turn(client, line + '\n', answer);
+    const Json told = Json::parse(answer);
+    out << Json{{"request", line},
+                {"error", told.contains("error") ? told["error"]["kind"] : Json()}}
+               .dump()
+        << '\n';
+    ++written;
+  }
+  EXPECT_TRUE(out.flush());
 }
 
 }  // namespace

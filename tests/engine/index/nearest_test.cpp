@@ -10,7 +10,7 @@
 namespace keepout {
 namespace {
 
-/// Returns a surface whose coordinates are not floats, so the leaves store them rounded.
+/// Returns a surface whose coordinates do not fit in a float, so the leaves store them rounded.
 Surface in_odd_numbers(Surface surface) {
   for (Vec3& vertex : surface.vertices) vertex = vertex / 3.0 + Vec3(0.1, -200.0 / 7.0, 1e3 / 3.0);
   return surface;

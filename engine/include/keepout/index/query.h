@@ -27,8 +27,8 @@ inline constexpr std::size_t work_of_hit = 4;
 /// A list of hits with a fixed capacity.
 using HitBuffer = Buffer<Hit>;
 
-/// Fills `hits` with the candidates that touch the ball by the exact kernel (distance <= radius).
-/// Hits are sorted by id, so that results do not depend on the order of a traversal.
+/// Fills `hits` with the candidates that touch the ball. The exact kernel decides this: distance <=
+/// radius. Hits are sorted by id, so that results do not depend on the order of a traversal.
 void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> candidates,
             HitBuffer& hits) noexcept;
 

@@ -64,7 +64,7 @@ inline constexpr std::array step_options{
     option<&StepOptions::damping>(
         "damping", "", {0.0, 1e30},
         "Weight of |u|^2 in the objective; a Jacobian with more than three columns needs it, about "
-        "1e-6 of a squared column."),
+        "1e-6 of the squared norm of a column."),
     option<&StepOptions::recovery>("recovery", "length", not_negative,
                                    "Longest retreat in a cycle of a tip too close or inside."),
     option<&StepOptions::deepest>("deepest", "length", zero_or_length,

@@ -60,10 +60,10 @@ inline constexpr std::array instrument_options{
         "slowing_time", "s", above_zero(1e9),
         "Time constant of that approach: a cycle uses up at most period / slowing_time of the "
         "distance left to the margin."),
-    option<&InstrumentOptions::damping>("damping", "length^2", not_negative,
-                                        "Weight of |dq|^2 in the objective of the flange, for "
-                                        "singular poses. A prismatic joint counts as a radian if "
-                                        "it moves by orientation_weight, or by 1 if that is 0."),
+    option<&InstrumentOptions::damping>(
+        "damping", "length^2", not_negative,
+        "Weight of |dq|^2 in the objective of the flange, for singular poses. A displacement of a "
+        "prismatic joint by orientation_weight (by 1 if that is 0) counts like 1 rad."),
     option<&InstrumentOptions::orientation_weight>(
         "orientation_weight", "length/rad", not_negative,
         "Weight of the rotation of the flange relative to its displacement; 0: only its origin is "
@@ -73,8 +73,8 @@ inline constexpr std::array instrument_options{
         "Most re-linearizations of the planes of rows for a better motion."),
     option<&InstrumentOptions::check_sides>(
         "check_sides",
-        "True if bodies that no step has moved to their position must be on the free side of a "
-        "watertight mesh."),
+        "True if bodies must be on the free side of a watertight mesh. A body that a step moved to "
+        "its position is not checked."),
     option<&InstrumentOptions::certified, certified_motion_names>(
         "certified",
         "Motion that is certified: the one that the joints make, or a linearized one, which is "

@@ -25,7 +25,8 @@ struct InstrumentStep {
   Status status = Status::invalid_input;   // the outcome of the cycle
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
   /// `increment` as a fraction of the motion that the solver found. With status truncated, the
-  /// solver may have solved for a part of the command only. Then 1 means the whole part.
+  /// solver may have solved for a part of the command only. Then 1 is the whole of that part, not
+  /// of the command.
   double fraction = 0.0;
   double share = 0.0;         // deprecated: use fraction
   int rounds = 0;             // number of trial motions that were solved and judged
@@ -38,9 +39,10 @@ struct InstrumentStep {
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // the number of the mesh
   /// The least clearance fraction of all pairs of a body and a mesh. It is 1 if each pair maintains
-  /// its certified clearance (InstrumentConstraint: F), and below 1 if a mesh approaches faster
-  /// than a body can retreat. It is 0 if no clearance could be certified for a body, or if a mesh
-  /// moves and there is no motion. It is meaningless if there is no motion and no mesh moves.
+  /// its certified clearance (F in the guarantee of InstrumentConstraint), and below 1 if a mesh
+  /// approaches faster than a body can retreat. It is 0 if no clearance could be certified for a
+  /// body, or if a mesh moves and the step returns no motion. It is meaningless if the step returns
+  /// no motion and no mesh moves.
   double clearance_fraction = 1.0;
   double level = 1.0;  // deprecated: use clearance_fraction
   /// The pairs of a body and a mesh whose clearance fraction is below 1; empty if the cycle did not
@@ -49,9 +51,8 @@ struct InstrumentStep {
   std::span<const GuideState> guides = {};   // the state of each guide, in the order given
   Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
   /// The limits that make the motion differ from the commanded one. With a motion, these are all
-  /// constraints that limit or shorten it. A budget or capacity that ends only a refinement is not
-  /// one of them.
-  /// Without a motion, these are the causes why no motion could be proved.
+  /// constraints that limit or shorten it. If a budget or a capacity ends only a refinement, it is
+  /// not one of them. Without a motion, these are the causes why no motion could be proved.
   /// joints_outside is reported with any status, singularity only without another limit.
   Limits limits = {};
 
