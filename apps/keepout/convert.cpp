@@ -162,7 +162,9 @@ void print_text(const ConvertOptions& options, const LoadedMesh& loaded, const C
   }
   print_row(out, "space",
             loaded.space == AnatomicalSpace::unstated
-                ? "unstated"
+                ? loaded.stated_name.empty()
+                      ? "unstated"
+                      : "no longer stated: " + loaded.stated_name + " is neither RAS nor LPS"
                 : std::string(name(loaded.space)) + ", stated in the file written");
 }
 

@@ -64,6 +64,12 @@ TargetError target_error(const RigidFit& fit, const Vec3& target, std::optional<
                 "; leave it out to estimate it");
   }
   const double error = fle.value_or(fit.estimated_fle());
+  constexpr double negligible = 1e-6;  // of the spread of the points
+  if (!fle && error * std::sqrt(fit.looseness.trace()) < negligible) {
+    throw Error(
+        "the residuals are 0 to rounding, as if the points were not measured: they say nothing "
+        "about the localization error; give fle");
+  }
   const Vec3 p = target - fit.center;
   Mat3 turning;
   turning << 0.0, -p.z(), p.y(), p.z(), 0.0, -p.x(), -p.y(), p.x(), 0.0;

@@ -35,7 +35,9 @@ int link_of(std::string_view field) {
   if (link >= 0.0 && link <= Chain::most_joints && link == std::floor(link)) {
     return static_cast<int>(link);
   }
-  throw Error(in_quotes(field) + " is not the number of a link");
+  throw Error(in_quotes(field) +
+              " is not the number of a link: 0 is the base, and a chain has at most " +
+              std::to_string(Chain::most_joints) + " more");
 }
 
 /// The name before the sign, or else the form, and the fields of the rest.

@@ -13,6 +13,16 @@ std::string_view InstrumentStep::reason() const noexcept {
   return keepout::reason(status, Subject::instrument);
 }
 
+std::string_view MotionProof::reason() const noexcept {
+  if (status == Status::free) return "the whole motion is proved";
+  if (status == Status::limited) return "only `fraction` of the motion is proved";
+  if (status == Status::recovering) {
+    return "a body is nearer than the margin at the start; on `fraction` of the motion no body "
+           "comes closer by more than the band";
+  }
+  return keepout::reason(status, Subject::instrument);
+}
+
 /// Notes that a guide ended a search.
 void JointCycle::note_guide(std::size_t guide) noexcept {
   stopping_limits_.add(Limit::guide);

@@ -199,6 +199,9 @@ TEST(TargetError, SaysWhatIsWrongWithItsArguments) {
   for (const double bad : {0.0, -1.0, nan}) {
     expect_refused([&] { target_error(fit, {0, 0, 0}, bad); }, "fle must be above 0");
   }
+  // Residuals of 0 are not those of a measurement.
+  expect_refused([&] { target_error(fit, {0, 0, 0}); }, "the residuals are 0 to rounding");
+  expect_refused([&] { registration_margin(fit, one); }, "give fle");
   expect_refused([&] { registration_margin(fit, {}); }, "no targets");
   for (const double bad : {0.0, 1.0, nan}) {
     expect_refused([&] { registration_margin(fit, one, bad); }, "confidence must be above 0");

@@ -105,7 +105,10 @@ CLI::Validator name_of_page() {
 }
 
 void RecordFiles::add_to(CLI::App& command) {
-  command.add_option("--json", json, "Where to write all results as JSON: see docs/records.md")
+  command
+      .add_option("--json", json,
+                  std::string("Where to write all results as JSON: see docs/records.md") +
+                      (page ? "; by default beside the report if that has no pictures" : ""))
       ->type_name("FILE");
   CLI::Option* out =
       command.add_option("--out", page, "Where to write a report with pictures, plots and tables")

@@ -113,6 +113,7 @@ void settle_space(const MeshSource& source, const CoordinateNotes& notes,
   loaded.stated = notes.space == name(AnatomicalSpace::ras)   ? AnatomicalSpace::ras
                   : notes.space == name(AnatomicalSpace::lps) ? AnatomicalSpace::lps
                                                               : unstated;
+  loaded.stated_name = notes.space;
   loaded.space = notes.space.empty() ? options.untagged : loaded.stated;
   const bool is_another = !notes.space.empty() && loaded.stated == unstated;
   if (options.space == unstated) {

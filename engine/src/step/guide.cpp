@@ -71,6 +71,10 @@ Guide Guide::axis(std::string name, int link, const Vec3& axis, const Vec3& dire
 
 Guide Guide::remote_center(std::string name, const LinkPoint& from, const LinkPoint& to,
                            const Vec3& center, double tolerance) {
+  if (!(tolerance >= shortest_length && tolerance <= longest_length)) {
+    throw Error("guide '" + name + "' has a tolerance of " + text_of(tolerance) +
+                ", and needs a number from 1e-15 to 1e15");
+  }
   return {Kind::shaft, std::move(name), from, to, Region::ball(center, tolerance)};
 }
 

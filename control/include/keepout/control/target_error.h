@@ -30,7 +30,7 @@ struct TargetError {
 /// is the distance of the target from the k-th principal axis, and f_k the root mean square
 /// distance of the pairs from this axis. `fle`: the localization error, root mean square [length];
 /// by default estimated_fle(). Throws Error for a target or an `fle` that is not finite, and for an
-/// `fle` not above 0.
+/// `fle` not above 0. Also throws Error without an `fle` if the residuals are 0 to rounding.
 TargetError target_error(const RigidFit& fit, const Vec3& target, std::optional<double> fle = {});
 
 /// Returns the length to add to a guard's margin [length]. The registration error exceeds it only

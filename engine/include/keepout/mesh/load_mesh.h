@@ -59,8 +59,9 @@ struct LoadedMesh {
   std::size_t vertices_in_file = 0;  // before the weld; in STL, three for each triangle
   AnatomicalSpace space = AnatomicalSpace::unstated;   // of the loaded coordinates
   AnatomicalSpace stated = AnatomicalSpace::unstated;  // as stated in the file: SPACE=...
-  double scale = 1.0;    // the factor by which the lengths of the file were multiplied
-  bool flipped = false;  // true if the winding was reversed
+  std::string stated_name = {};  // the text after SPACE=, also if it is neither RAS nor LPS
+  double scale = 1.0;            // the factor by which the lengths of the file were multiplied
+  bool flipped = false;          // true if the winding was reversed
   /// Warnings about omitted data, suspicious contents of the file, and faults of the mesh that
   /// affect a constraint. Sentences that begin with the name of the file.
   std::vector<std::string> warnings = {};

@@ -75,7 +75,7 @@ struct MotionProof {
   std::optional<double> distance = std::nullopt;  // as InstrumentStep::distance [length]
 
   /// Returns one line on what happened and what to do about it.
-  std::string_view reason() const noexcept { return keepout::reason(status, Subject::instrument); }
+  std::string_view reason() const noexcept;
   /// Returns true if each body stays at least margin - band away on all of the motion.
   bool is_clear() const noexcept { return status == Status::free && fraction == 1.0; }
 };
