@@ -88,7 +88,7 @@ def mend_theme(app, failure):
             ("scripts/furo.js", 'import Gumshoe from "./gumshoe-patched.js";',
              (static / "scripts/gumshoe-patched.js").read_text())):
         text = (static / file).read_text()
-        if asked not in text:
+        if asked not in text and put not in text:
             raise ExtensionError(f"{file} has no '{asked}' any longer: is mend_theme still needed?")
         (static / file).write_text(text.replace(asked, put))
 
