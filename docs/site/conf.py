@@ -38,11 +38,17 @@ default_role = "literal"
 autodoc_default_options = {"members": True, "undoc-members": True}
 
 STYLE = """
-code.literal { overflow-wrap: anywhere; }
+code.literal { overflow-wrap: break-word; }
+td:not(:first-child):has(code) { min-width: 9rem; overflow-wrap: anywhere; }
+table.docutils td { vertical-align: top; }
 .table-wrapper { position: relative; }
 .katex-display { overflow-x: auto; overflow-y: hidden; }
 """
-
+DARK = """
+if (document.body.dataset.theme === "auto" && matchMedia("(prefers-color-scheme: dark)").matches) {
+  document.body.dataset.theme = "dark";
+}
+"""
 
 
 def adapt(app, docname, source):
@@ -80,15 +86,18 @@ def shorten(app, what, name, thing, options, *parts):
 
 
 def mend_theme(app, failure):
-    """Debian's theme names a style from the root of a web server, and loads a module, which no page from the disk may."""
+    """Debian's theme names a style from the root of a web server, loads a module, which no page from the disk may, and
+    has lost the rule for readers who prefer a dark page."""
+    if failure:
+        return
     static = Path(app.outdir, "_static")
     normalize = Path("/usr/share/javascript/normalize.css/normalize.css").read_text()
     for file, asked, put in (
             ("styles/furo.css", "@import url(/javascript/normalize.css/normalize.css);", normalize + STYLE),
             ("scripts/furo.js", 'import Gumshoe from "./gumshoe-patched.js";',
-             (static / "scripts/gumshoe-patched.js").read_text())):
+             (static / "scripts/gumshoe-patched.js").read_text() + DARK)):
         text = (static / file).read_text()
-        if asked not in text and put not in text:
+        if asked not in text:
             raise ExtensionError(f"{file} has no '{asked}' any longer: is mend_theme still needed?")
         (static / file).write_text(text.replace(asked, put))
 
