@@ -179,7 +179,7 @@ def _safety(by_mode: ByMode) -> Table:
           *_greatest(rows, "deepest_registered_mm", "deepest_mm", "registration_error_mm", "beyond_registration_mm"),
           str(sum(not row["finished"] for row in rows))] for mode, rows in by_mode.items()],
         "The fixture guards its setpoint in the registered frame. The tip in the true frame also has the "
-        "error of registration. Greatest values of all trials.",
+        "error of registration. All distances are the greatest of all trials.",
     )
 
 
@@ -192,7 +192,8 @@ def _tests_table(by_mode: ByMode, against: list[Against]) -> Table:
           *(a.measure.text(a.measure.values(by_mode[mode])) for mode in (modes.NO_FIXTURE, a.mode)),
           *(f"{p:.2g}" for p in (a.student, a.welch, a.holm)),
           hypothesis_tests.in_words(a.holm, a.effect).split(", ", 1)[1]] for a in against],
-        f"Holm over these {len(against)} comparisons. g is positive if the value is greater without a fixture.",
+        f"The Holm correction is over these {len(against)} comparisons. g is positive if the value is greater without a "
+        "fixture.",
     )
 
 
@@ -203,7 +204,7 @@ def _boxes(experiment: str, measure: Measure, by_mode: ByMode) -> Figure:
     return Figure(
         f"{experiment}_{measure.member}",
         measure.name[0].upper() + measure.name[1:],
-        "A point is a trial; boxes are quartiles.",
+        "Each point is a trial. The boxes show quartiles.",
         figures.svg(fig),
     )
 
@@ -218,8 +219,8 @@ def _headline(by_mode: ByMode, against: list[Against]) -> str:
 
     sure = [told(a) for a in against if a.mode == "certified" and a.holm < 0.05]
     return (
-        f"certified: {len(certified)} trials, {entered} of which entered in the frame of the fixture. Measures "
-        f"that differ from no fixture after Holm: {'; '.join(sure) or 'none for certain'}."
+        f"certified: {len(certified)} trials, {entered} of which entered in the frame of the fixture. Significant "
+        f"differences from no fixture, after Holm: {'; '.join(sure) or 'none'}."
     )
 
 
@@ -250,5 +251,5 @@ def _sweep_table(rows: list[Row], members: tuple[str, ...]) -> Table:
          "setpoint passes through", "deepest setpoint [mm]", "deepest tip [mm]",
          *(member.removesuffix("_mm").removesuffix("_s").replace("_", " ") for member in members)],
         lines,
-        "Means of trials; depths are the greatest.",
+        "All values are means of trials, but depths are the greatest of all trials.",
     )

@@ -177,7 +177,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
             certified=told("certified"),
             best=figures.label(best) if best else "none",
             sure=_mcnemar(counted[AS_PUBLISHED], counted["certified"]),
-            note="best: of the modes that never entered, the one nearest to the best safe steps",
+            note="best: the mode with the least excess of all modes in which the tip never entered",
         ),
         Claim(
             about="free motion that is lost (IV-A)",
@@ -186,12 +186,12 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
             certified=_number(100 * _lost(counted["certified"]), 1, " %"),
             best=figures.label(min(safe, key=lambda m: _lost(counted[m]))) if safe else "none",
             sure=_sign_test(closed, loops),
-            note="planes of all triangles in the sphere, even if the motion does not reach them",
+            note="the rule adds planes of all triangles in the sphere, also of those that the motion does not reach",
         ),
     ]
-    headline = (f"Closed shapes never entered, and loops in which the tip entered. "
-                f"The paper's rule as printed: {told(AS_PUBLISHED)}, and it loses "
-                f"{claims[1].reproduction} of the free motion. Certified: {told('certified')}, and "
+    headline = (f"Counts of closed shapes that the tip never entered, and of loops in which it entered. "
+                f"The paper's rule as printed: {told(AS_PUBLISHED)}; it loses "
+                f"{claims[1].reproduction} of the free motion. Certified: {told('certified')}; "
                 f"it loses {claims[1].certified}.")
     tables = [_overview(modes, counted, told), _by_shape(shapes, closed, modes, loops)]
     return Findings(headline, claims, tables, [_picture(shapes, modes, loops)])
@@ -257,8 +257,8 @@ def _overview(
             _number(100 * _excess(loops), 1, " %") if mode in (*FIXTURES, AS_PUBLISHED) else "-",
         ])
     note = (f"Closed shapes that the tip never entered, and loops of {CYCLES} cycles in which it entered. "
-            "Lost: free motion that the rule did not allow. Excess: by how much limited safe steps fall "
-            "short of the best safe step, relative to the desired motion.")
+            "Lost: free motion that the rule did not allow. Excess: how much more limited safe steps differ from the "
+            "desired motion than the best safe step does, relative to the desired motion.")
     columns = ["mode", "never entered, entered", "deepest [mm]", "least clearance [mm]", "lost",
                "excess"]
     return Table("Modes over all closed shapes", columns, rows, note)
@@ -275,7 +275,8 @@ def _by_shape(shapes: list[str], closed: list[str], modes: list[str], loops: Loo
         [shape if shape in closed else f"{shape} (open)", *(cell(loops[shape, m]) for m in modes)]
         for shape in shapes
     ]
-    note = "Loops with a crossing of all loops, and the greatest depth of the tip. Open shapes do not count."
+    note = ("Number of loops with a crossing / number of loops, and the greatest depth of the tip. "
+            "Open shapes do not count.")
     columns = ["shape", *map(_label, modes)]
     return Table("Loops in which the tip crossed the surface", columns, rows, note)
 
@@ -292,7 +293,7 @@ def _picture(shapes: list[str], modes: list[str], loops: Loops) -> Figure:
     ax.set_xlim(-0.6, len(modes) - 0.4)
     ax.set_ylim(len(shapes) - 0.4, -0.6)
     caption = ("The area of a dot is the fraction of loops in which the tip crossed the surface. "
-               "No dot means that it never did.")
+               "Without a dot, the tip never crossed it.")
     return Figure("e1_crossings", "Loops in which the tip entered", caption, figures.svg(fig))
 
 

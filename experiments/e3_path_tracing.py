@@ -57,8 +57,8 @@ MEASURES = (
     Measure(
         "spectral_arc_length", "spectral arc length, 20 Hz", "", published.SAL, higher_is_better=True,
         why="the simulated free hand is smoother than the paper's, because it makes too few corrections in depth. "
-        "A tip that leans on a skull of CT voxels feels their steps; the paper's skull is a smooth print. "
-        "The paper does not give the duration of a trace, and the arc length grows with it",
+        "A tip that leans on a skull of CT voxels follows the steps of the voxels; the paper's skull is a smooth print. "
+        "The arc length grows with the duration of a trace, which the paper does not give",
     ),
     Measure("sparc", "SPARC, 10 Hz", "", higher_is_better=True),
     Measure("absolute_depth_mm", "distance from the planned depth", "mm"),
@@ -90,6 +90,6 @@ def _overlay(rows: list[Row]) -> Figure:
     return Figure(
         f"{NAME}_overlay",
         "Trajectories on the section of the skull",
-        "Height of the tip over the planned outside of the skull, five trials a mode.",
+        "The height of the tip over the planned outer surface of the skull, in five trials of each mode.",
         figures.svg(fig),
     )

@@ -84,17 +84,19 @@ MEASURES = (
     Measure(
         "deviation_mm", "cutting path deviation", "mm", published.PATH_DEVIATION, samples="deviations_mm",
         why="the free hand is fitted to the paper's. A corridor of 1 mm on each side seldom limits a hand with an "
-        "error of 0.6 mm. The paper's surgeon deviates less with it, probably from effects that are not simulated, "
-        "such as attention that depth no longer needs. The table of sweeps has narrower corridors",
+        "error of 0.6 mm. The paper's surgeon deviates less with the fixture, probably by effects that are not "
+        "simulated: for example, depth no longer needs attention. The table of sweeps has narrower corridors",
     ),
     Measure(
         "absolute_depth_mm", "absolute penetration depth", "mm", published.PENETRATION_DEPTH, samples="depths_mm",
-        why="the free hand is fitted to the paper's. With a fixture the rest is under-cut, from the bending of robot "
-        "and tool, and the error of registration. The paper's rule also stays away from ridges",
+        why="the free hand is fitted to the paper's. With a fixture, the remaining depth error is under-cut. "
+        "It comes from the bending of robot and tool, and from the error of registration. "
+        "The paper's rule also stays away from ridges",
     ),
     Measure(
         "duration_s", "duration", "s", published.DURATION,
-        why="the free hand is fitted to the paper's; a hand that leans on a fixture need not wait to see its depth",
+        why="the free hand is fitted to the paper's. A hand that leans on a fixture need not wait "
+        "until the eye sees the depth",
     ),
     Measure("greatest_deviation_mm", "greatest deviation", "mm"),
     Measure("over_cut_mm", "greatest over-cut", "mm"),

@@ -256,7 +256,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     table = Table(
         "A grid of distances, and the mesh itself",
         ["anatomy", "mode", "error mean / 99 % / max [mm]", "walls lost, < 1 / 2 / 4 cells",
-         "memory, box / all [MB]", "built in [s]", "step [us]", "entered / passed", "deepest [mm]",
+         "memory, box / all [MB]", "built in [s]", "step [µs]", "entered / passed", "deepest [mm]",
          "thicker walls: entered"],
         [[
             row["anatomy"], figures.label(row["mode"]), _errors(row), _lost(row),
@@ -265,19 +265,19 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
             f"{row['entered']} / {row['passed']} of {row['loops']}", f"{row['deepest']:.2f}",
             f"{row['thicker_entered']} of {row['thicker_loops']}",
         ] for row in rows],
-        f"In a box of {2 * HALF_BOX:g} mm with the most thin walls. Errors within {NEAR:g} mm of "
-        "the surface. A wall is lost if the field is free half-way through it. The tip pushes at "
-        f"walls thinner than {THIN:g} mm; in the last column they are {THIN:g} to {THICKEST:g} mm thick. "
-        "Passed: the tip entered and came out again. Grids are stepped in Python, the other rules "
-        "in C++, called from Python.",
+        f"The values are for a box of {2 * HALF_BOX:g} mm, placed where most thin walls are. Errors are those within "
+        f"{NEAR:g} mm of the surface. A wall is lost if the field is free in the middle of the wall. The tip pushes "
+        f"at walls thinner than {THIN:g} mm; in the last column, at walls of {THIN:g} to {THICKEST:g} mm. "
+        "Passed: the tip entered and came out again. Steps with grids run in Python. Those of the other rules run in "
+        "C++, called from Python.",
     )
     fields = [row for row in rows if row["mode"] in CELLS]
     ours = [row for row in rows if row["mode"] == "certified"]
     entered, loops = sum(row["entered"] for row in fields), sum(row["loops"] for row in fields)
     headline = (
-        f"At walls thinner than {THIN:g} mm, a pushed tip entered in {entered} of {loops} loops "
-        f"under distance fields, {max(row['deepest'] for row in fields):.2f} mm deep at "
-        f"most, and under certified in {sum(row['entered'] for row in ours)} of {sum(row['loops'] for row in ours)}.")
+        f"An operator pushed a tip at walls thinner than {THIN:g} mm. Under distance fields, the tip entered in "
+        f"{entered} of {loops} loops, at most {max(row['deepest'] for row in fields):.2f} mm deep. Under certified, "
+        f"it entered in {sum(row['entered'] for row in ours)} of {sum(row['loops'] for row in ours)}.")
     return Findings(headline, _claims(rows), [table], [_figure(rows)])
 
 
@@ -310,8 +310,8 @@ def _claims(rows: list[Row]) -> list[Claim]:
             f"loops at thin walls that enter: {figures.label(mode)} {said[mode]}", "-",
             said["paper"], said["certified"], best,
             f"p = {p:.2g}, field against certified (Fisher, Holm)",
-            "p assumes independent loops, but some push at the same wall, and all modes use the same walls: "
-            "only a rough guide")
+            "p is only approximate. It assumes independent loops, but some loops push at the same wall, and all modes "
+            "use the same walls")
         for mode, p in zip(CELLS, holm(p_values))
     ]
 
@@ -342,5 +342,5 @@ def _figure(rows: list[Row]) -> Figure:
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0))
     return Figure(
         "error_and_memory", "Error and memory of a distance field",
-        "The error of the field within 2 mm of the surface, and its memory. The certified rule queries the mesh: "
-        "its distances do not depend on a voxel.", figures.svg(fig))
+        "Left: the error of the field within 2 mm of the surface. Right: the memory of the field. The certified rule "
+        "queries the mesh, so its distances do not depend on a voxel.", figures.svg(fig))

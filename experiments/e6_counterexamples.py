@@ -72,7 +72,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
 
     fewest = min(len(p) for p in passed.values())
     return Findings(
-        f"The paper's rule: {said('paper')} ({', '.join(passed['paper']) or 'none'}); certified: "
+        f"The paper's rule: {said('paper')} ({', '.join(passed['paper']) or 'none'}). Certified: "
         f"{said('certified')}.",
         claims=[
             Claim(
@@ -95,8 +95,8 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
                     + [cell(of[e, m]) for m in FIXTURES]
                     for e in examples
                 ],
-                "Grids coarser than a mesh of a few millimeters cannot represent it. On CE4 the tip starts on the "
-                "surface, which counts as held.",
+                "These meshes are a few millimeters large, so coarse grids cannot represent them. "
+                "On CE4 the tip starts on the surface, which counts as held.",
             )
         ],
     )

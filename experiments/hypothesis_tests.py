@@ -2,7 +2,7 @@
 """Tests if two modes differ, by how much, and how certain that is.
 
 The p values of Li et al. (2020) are of Student's test, which assumes that both modes have the same variance. Welch's
-test does not, and is the one to trust. Samples are whole trials, one number each. Values at every millimeter of one
+test does not, and is the one to trust. A sample has one number for each trial. Values at every millimeter of one
 cut are not independent; a test that treats them as independent gives p values that are too small.
 """
 from __future__ import annotations
@@ -67,9 +67,10 @@ def _test(a: Summary, b: Summary, *, equal_var: bool) -> MeanTest:
 
 
 def hedges_g(a: Summary, b: Summary) -> float:
-    """Returns (a - b) / pooled deviation, times 1 - 3 / (4 dof - 1), because small samples exaggerate it.
+    """Returns (a - b) / pooled deviation, times the correction 1 - 3 / (4 dof - 1).
 
-    Hedges, "Distribution theory for Glass's estimator of effect size", 1981. NaN without spread.
+    The correction is needed because small samples exaggerate the effect. Returns NaN without spread. Source: Hedges,
+    "Distribution theory for Glass's estimator of effect size", 1981.
     """
     if a.sd == b.sd == 0.0:
         return float("nan")

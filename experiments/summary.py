@@ -5,8 +5,9 @@ from __future__ import annotations
 from .experiment import Findings
 
 _POOLED = (
-    "A pooled p is that of the paper's test, which treats dependent samples as independent. "
-    "The evidence is from whole trials and Holm-corrected, where it says so."
+    "The table calls Li et al. (2020) *the paper*. A pooled p is the result of the paper's test, which treats "
+    "dependent samples as independent. Evidence marked *trials* compares whole trials, and its p is corrected "
+    "after Holm."
 )
 
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# Dependencies point one way, and public headers show nobody else's but Eigen's.
+# Tests that dependencies point one way, and that public headers include only our headers, Eigen and the standard
+# library.
 # Run as: cmake -D SOURCE=... -P layering_test.cmake
 cmake_minimum_required(VERSION 3.25)
 
-# Fails for each file of a folder in which a line matches the expression.
+# Fails for each line of a folder's files that matches the expression.
 function(forbid folder expression why)
   set_property(GLOBAL APPEND PROPERTY folders_with_rules ${folder})
   file(GLOB_RECURSE files "${SOURCE}/${folder}/*.h" "${SOURCE}/${folder}/*.cpp")
@@ -30,7 +31,7 @@ forbid(fixtures "${include}keepout/(adapters|solvers|factory|control|urdf)/" "fi
 forbid(control "${include}keepout/(adapters|solvers|factory|fixtures|robot)/" "control knows only the engine")
 forbid(robot "${include}keepout/(adapters|solvers|factory|fixtures|control)/" "robot knows only the engine")
 
-# One folder a library: what two of them share is in adapters/src.
+# Each library has its own folder. Code that several of them share is in adapters/src.
 set(libraries bullet ccd cgal embree fcl ompl urdf)
 foreach(library IN LISTS libraries)
   set(others ${libraries})
@@ -40,7 +41,7 @@ foreach(library IN LISTS libraries)
          "one library's adapter knows no other's")
 endforeach()
 
-# Planning is a library of its own, which knows the engine, robots and OMPL alone.
+# Planning is its own library, which depends on the engine, robots and OMPL only.
 forbid(adapters/ompl "${include}keepout/(adapters|solvers|factory|fixtures|control|urdf)/" "planning knows only the engine and robots")
 forbid(engine "${include}(ompl/|keepout/ompl/)" "the engine knows no planner")
 forbid(solvers "${include}(ompl/|keepout/ompl/)" "solvers know no planner")
@@ -48,20 +49,20 @@ forbid(factory "${include}(ompl/|keepout/ompl/)" "the factory knows no planner")
 forbid(robot "${include}(ompl/|keepout/ompl/)" "robots know no planner")
 forbid(adapters/src "${include}(ompl/|keepout/ompl/)" "the other adapters know no planner")
 
-# The reader of robots is a library of its own as well, above robot; who wants one asks for it.
+# The URDF reader is an optional library of its own, above robot.
 forbid(adapters/urdf "${include}keepout/(adapters|solvers|factory|fixtures|control|ompl)/" "the reader knows only the engine and robots")
 foreach(part engine solvers control robot factory)
   forbid(${part} "${include}(urdf_[a-z]+/|tinyxml|keepout/urdf/)" "the library reads no description of robots")
 endforeach()
 
-# Code that includes headers under the GPL stays in its own folder, which is a module.
+# Code that includes headers under the GPL stays in its own folder, a module.
 foreach(part engine solvers control robot factory fixtures oracle adapters/include adapters/src
         adapters/bullet adapters/ccd adapters/embree adapters/fcl adapters/ompl adapters/urdf)
   forbid(${part} "${include}CGAL/"
          "the library is not to depend on the GPL")
 endforeach()
 
-# The oracle takes the data of the engine, and none of its geometry. Judges take steps as well, as data.
+# The oracle uses the data types of the engine, but none of its geometry. Judges also use steps, as data.
 forbid(oracle "${include}keepout/(adapters|solvers|factory)/" "the oracle knows no other part")
 forbid(oracle "${include}keepout/(index|activation)/" "the oracle shares no algorithm with the engine")
 forbid(oracle "${include}keepout/geometry/(closest_point|orientation)" "the oracle has a geometry of its own")
@@ -78,7 +79,7 @@ foreach(part engine adapters solvers control robot factory fixtures)
   forbid(${part} "${include}keepout/(judges|oracle)/" "the oracle is for tests and the command")
 endforeach()
 
-# In public headers: ours, Eigen's, and the standard library's, whose names have no dot or slash.
+# Public headers include only our headers, Eigen's, and the standard library's, whose names have no dot or slash.
 foreach(part engine adapters adapters/ompl adapters/urdf solvers control robot factory fixtures oracle oracle/judges)
   file(GLOB_RECURSE headers "${SOURCE}/${part}/include/*.h")
   foreach(header IN LISTS headers)
@@ -91,7 +92,7 @@ foreach(part engine adapters adapters/ompl adapters/urdf solvers control robot f
   endforeach()
 endforeach()
 
-# Within the engine: geometry below mesh, mesh below index, index below activation, all below step.
+# The layers of the engine, from the bottom: geometry, mesh, index, activation, step.
 set(below "${include}(keepout/|(\\.\\./)+)")
 foreach(kind include/keepout src)
   forbid(engine/${kind}/geometry "${below}(mesh|index|activation|step)/" "geometry is the ground")
@@ -100,19 +101,19 @@ foreach(kind include/keepout src)
   forbid(engine/${kind}/activation "${below}step/" "a rule knows no step")
 endforeach()
 
-# Within the index: the two trees stand on their common parts, and do not know each other.
+# In the index, the two trees use their common parts, but not each other.
 forbid(engine/src/index/tree_parts "${include}(\\.\\./(pd_tree|wide_bvh)/|keepout/index/(pd_tree|wide_bvh))" "common parts know no tree")
 forbid(engine/src/index/pd_tree "${include}(\\.\\./wide_bvh/|keepout/index/wide_bvh)" "one tree knows no other")
 forbid(engine/src/index/wide_bvh "${include}(\\.\\./)+pd_tree/|${include}keepout/index/pd_tree" "one tree knows no other")
 
-# Within the command: main and its smaller commands know every folder; a folder knows those that are
-# named here.
+# In the command, main and its smaller commands may include every folder. A folder may include only the folders listed
+# here.
 set(folders live operators page record serve shared simulate verify)
 set(known_to_shared)
 set(known_to_page shared)
 set(known_to_record shared page)
 set(known_to_serve shared)
-set(known_to_operators shared simulate verify)  # what operators look at: an audit, and scenes
+set(known_to_operators shared simulate verify)  # for audits and scenes
 set(known_to_verify operators shared record)
 set(known_to_live shared page verify)
 set(known_to_simulate operators shared record verify)
@@ -123,7 +124,7 @@ foreach(folder IN LISTS folders)
   forbid(apps/keepout/${folder} "${include}\"(commands\\.h|\\.\\./|(${others}|bench|compare|plan)/)" "of the command, ${folder} knows only: ${known_to_${folder}}")
 endforeach()
 
-# Comparisons include the command, and the command includes no comparison.
+# Comparisons may include the command, but the command includes no comparison.
 set(known_to_bench compare simulate)
 set(known_to_compare)
 set(known_to_plan operators verify)
@@ -134,16 +135,16 @@ foreach(folder bench compare plan)
   forbid(benchmarks/${folder} "${include}\"(commands\\.h|\\.\\./|(${others})/)" "of what compares, ${folder} knows only: ${known_to_${folder}}")
 endforeach()
 
-# What a page calls is the library, what is found wrong with a mesh, and no study.
+# A page uses the library and the mesh diagnostics, but no study.
 forbid(apps/web "${include}\"(bench|compare|live|operators|plan|record|serve|simulate|verify)/" "a page knows no study")
 forbid(apps/web "${include}keepout/(judges|oracle)/" "the oracle is for tests and the command")
 
-# What tests, shows and compares is above everything, and nothing may need it.
+# Tests, examples and comparisons are the top layer: no other part may depend on them.
 forbid(examples "${include}(keepout/(fixtures|judges|oracle)/|\"\\.\\./)" "an example is a program of a user")
 forbid(benchmarks/native "${include}\"(\\.\\./|shared/|bench/|verify/)" "experiments know the libraries, and not the command")
 forbid(benchmarks/python "${include}keepout/(fixtures|judges|oracle)/" "the loop that Python is held to is the library's")
 
-# Every folder with sources has a rule, but for those that may include everything: tests and docs.
+# Every folder with sources has a rule, except tests and docs, which may include everything.
 get_property(ruled GLOBAL PROPERTY folders_with_rules)
 foreach(parent "" apps/ apps/keepout/ adapters/ benchmarks/)
   file(GLOB entries RELATIVE "${SOURCE}" "${SOURCE}/${parent}*")

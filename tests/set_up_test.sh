@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What ./run and ./test say before they build: no colours in pipes, and a clear word to a second user.
-# The first ./run shows a page before it builds the rest.
+# Tests what ./run and ./test print before they build: no colors in pipes, and an error for another user. The first
+# ./run shows a page before it builds the rest.
 #   set_up_test.sh SOURCE WORK
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
@@ -16,30 +16,30 @@ said=$(. "$source/cmake/set_up.sh"; say building 2>&1)
 [ "$said" = "==> building" ] || fault "in a pipe it says: $(printf %q "$said")"
 
 said=$(. "$source/cmake/set_up.sh"; KEEPOUT_QUIET=1; say building 2>&1)
-[ -z "$said" ] || fault "although it is told to be quiet it says: $said"
+[ -z "$said" ] || fault "although KEEPOUT_QUIET is set, it says: $said"
 
-# Nobody, when the test is run by root, who may write everywhere.
+# Root may write everywhere. If root runs the test, it calls the programs as another user.
 chmod -R a+rX,go-w "$work"
 if [ "$(id -u)" -eq 0 ]; then
   as_other=(setpriv --reuid=65534 --regid=65534 --clear-groups)
-  "${as_other[@]}" test -r "$work/run" || { echo "not to be seen by others: not tested"; exit 0; }
+  "${as_other[@]}" test -r "$work/run" || { echo "skipped: another user cannot read the folder"; exit 0; }
 else
   as_other=()
   chmod a-w "$work/build/release"
 fi
-# Through a symbolic link to the file as well.
+# Calls the programs directly and by a symbolic link.
 mkdir "$work/links"
 for program in run test; do
   ln -s "../$program" "$work/links/$program"
   for called in "$work/$program" "$work/links/$program"; do
-    told=$("${as_other[@]}" bash "$called" 2>&1) && fault "$called goes on in what is not its user's"
+    told=$("${as_other[@]}" bash "$called" 2>&1) && fault "$called continues in a folder of another user"
     [[ $told == *"may not write to $work"*"belongs to $(id -un)"*"chown -R"* ]] ||
       fault "$called says: $told"
   done
 done
 chmod -R u+w "$work"
 
-# With programs that only say what they are called with: the order of ./run.
+# Tests the order of ./run, with programs that only print their arguments.
 rm -rf "$work"
 mkdir -p "$work"/{cmake,fixtures,apps/web}
 cp "$source/run" "$work"
@@ -85,7 +85,7 @@ said=$(PAGES_FAIL=1 "$work/run" 2>&1)
 [[ $said == *"going on: reports will be plain pages"*keepout_first_page* ]] ||
   fault "without pages the first run says: $said"
 
-# A mistake in the arguments of the experiments is reported before anything is built.
+# ./run reports an error in the arguments of the experiments before it builds anything.
 for mistake in --ful "--only e1,,e2" "--only e9" "--seed -1"; do
   # shellcheck disable=SC2086
   told=$("$work/run" experiments $mistake 2>&1) && fault "./run experiments $mistake goes on: $told"

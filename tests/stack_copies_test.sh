@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
-# No function that is compiled for one SIMD target copies a table of constants to the stack. GCC 12
-# does so with a table that is declared in a function and read at a place that is not known before:
-# all of it, on each call. Seen in the machine code: as `rep movs`, or as constants that fill places
-# of the stack next to each other, a register each. Constants that are put aside lie scattered.
+# Tests that no function for one SIMD target copies a table of constants to the stack. GCC 12 copies the whole table on
+# each call if it is declared in a function and read at a variable index. In the machine code, this is `rep movs`, or
+# constants stored at adjacent places of the stack, one per register. Spilled constants are not adjacent.
 #   stack_copies_test.sh BUILD LIBRARY...
-# BUILD is "Release" where the compiler optimises as for users; elsewhere the test is skipped.
+# The test is skipped unless BUILD is "Release", the optimization that users get.
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
 build=$1
@@ -19,7 +18,7 @@ if ! grep -q 'x86-64' <<< "$(objdump --file-headers "$1")"; then
   exit $skipped
 fi
 
-# Highway calls the namespace of a target N_AVX2, and so on; N_SCALAR is ordinary code.
+# Highway names the namespaces of its targets N_AVX2 and so on. N_SCALAR is ordinary code.
 for library in "$@"; do
   objdump --disassemble --demangle --no-show-raw-insn "$library"
 done | awk '
@@ -42,7 +41,7 @@ done | awk '
     sub(/^[0-9a-f]+ </, "", name)
     is_wide = name ~ /::N_(SSE2|SSSE3|SSE4|AVX2|AVX3[A-Z0-9_]*)::/
     seen[name ~ /::N_AVX2::/ ? "AVX2" : "other"] += is_wide
-    split("", constant)  # registers that hold one
+    split("", constant)  # registers that contain a constant
     next
   }
   !is_wide { next }
@@ -63,7 +62,7 @@ done | awk '
   }
   match($3, /%[xyz]mm[0-9]+$/) { delete constant[substr($3, RSTART)] }
   END {
-    enough = 5  # places in a row; of those put aside up to three were seen
+    enough = 5  # adjacent places; up to three adjacent spilled constants were seen
     for (first in filled) {
       split(first, at, SUBSEP)
       for (count = 1; (at[1], at[2], at[3], at[4] + count * at[2]) in filled;) ++count

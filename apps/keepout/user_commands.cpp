@@ -12,6 +12,7 @@
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/solvers/registry.h"
 #include "live/live.h"
+#include "record/record.h"
 #include "record/report.h"
 #include "serve/serve.h"
 #include "shared/command_line.h"

@@ -113,7 +113,7 @@ def bench(record):
     yield "all", table(
         ["mesh", "triangles", "radius, mm", "index", "rule", "solver", "hits, mean", "planes, mean", "candidates, µs",
          "query, µs", "step, µs", "99 %", "verified"],
-        [[row["mesh"], f"{row['triangles']:,}", row["radius"] or "as far as motions lead", f"`{row['index']}`",
+        [[row["mesh"], f"{row['triangles']:,}", row["radius"] or "as far as each motion goes", f"`{row['index']}`",
           f"`{row['activation']}`", f"`{row['solver']}`", number(row["hits_mean"]), number(row["planes_mean"]),
           median(row, "collect_us"), median(row, "query_us"), median(row, "step_us"), number(row["step_us"]["p99"]),
           "yes" if row["verified"] else "**no**"] for row in rows], left=6)
@@ -153,7 +153,7 @@ def solver_table(rows):
 
 
 def rule_table(rows):
-    body = [[f"`{row['activation']}`", f"{row['radius']:g}" if row["radius"] else "as far as motions lead",
+    body = [[f"`{row['activation']}`", f"{row['radius']:g}" if row["radius"] else "as far as each motion goes",
              number(row["planes_mean"]), median(row, "step_us"), number(row["step_us"]["p99"])]
             for row in rows if row["index"] == "wide_bvh" and row["solver"] == "active_set"]
     return table(["rule", "radius, mm", "planes, mean", "step, µs", "99 %"], body)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Takes docs/pictures/live.jpg: the page of `keepout live` with the brain, whose license allows it, while
- * a mouse drags the hand into it.
+ * Makes docs/pictures/live.gif: the page of `keepout live` with the brain, whose license allows it, while a
+ * mouse drags the operator's handle into it. Needs Pillow (python3-pil).
  *
  *   apps/web/build tests && KEEPOUT_WEB=build/web node docs/pictures/live.mjs KEEPOUT [BROWSER]
  */
@@ -32,12 +32,22 @@ const { x, y } = await tab.evaluate(() => {
 });
 await tab.mouse.move(x, y);
 await tab.mouse.down();
-for (let i = 0; i <= 120; ++i) {
-  await tab.mouse.move(x - Math.min(1.1 * i, 84), y + 22 * Math.sin(i / 16));
-  await new Promise((done) => setTimeout(done, 30));
+const frames = 56;
+for (let i = 0; i < frames; ++i) {
+  const turn = (2 * Math.PI * i) / frames;
+  await tab.mouse.move(x - 42 * (1 - Math.cos(turn)), y + 26 * Math.sin(2 * turn), { steps: 3 });
+  await new Promise((done) => setTimeout(done, 150));
+  await tab.screenshot({ path: join(folder, `${String(i).padStart(3, "0")}.png`) });
 }
-await new Promise((done) => setTimeout(done, 1500));
-const picture = fileURLToPath(new URL("live.jpg", import.meta.url));
-await tab.screenshot({ path: picture, type: "jpeg", quality: 82 });
 await browser.close();
+const gif = `
+import glob, sys
+from PIL import Image
+frames = [Image.open(name).convert("RGB").resize((800, 475), Image.LANCZOS) for name in sorted(glob.glob(sys.argv[1]))]
+colors = frames[len(frames) // 2].quantize(96)
+frames = [frame.quantize(palette=colors, dither=Image.Dither.NONE) for frame in frames]
+frames[0].save(sys.argv[2], save_all=True, append_images=frames[1:], duration=100, loop=0, optimize=True)
+`;
+const picture = fileURLToPath(new URL("live.gif", import.meta.url));
+execFileSync("/usr/bin/python3", ["-c", gif, join(folder, "*.png"), picture]);
 rmSync(folder, { recursive: true });

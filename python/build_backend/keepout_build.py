@@ -7,6 +7,11 @@ objects:
 
     pip install . --config-settings build-dir=build/release
     KEEPOUT_BUILD_DIR=build/release pip install .
+
+A portable wheel contains all libraries but glibc, and no modules of other libraries. It runs on machines
+with the same Python and with a glibc that is not older. Needs patchelf, and a Debian system:
+
+    pip wheel . --no-deps --wheel-dir dist --config-settings portable=yes
 """
 
 import base64
@@ -42,10 +47,13 @@ def metadata():
     )
 
 
-def tag():
-    """Returns the tag of the Python and the machine that the extension is built for."""
+def tag(glibc=None):
+    """Returns the tag of the Python and the machine that the extension is built for. `glibc`: the
+    oldest version, such as "2.36", that a portable wheel runs with."""
     python = f"cp{sys.version_info.major}{sys.version_info.minor}"
     platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
+    if glibc:
+        platform = platform.replace("linux", f"manylinux_{glibc.replace('.', '_')}")
     return f"{python}-{python}-{platform}"
 
 
@@ -90,6 +98,34 @@ def build_package(settings, staging):
         sys.exit(f"keepout: {build} was configured for another Python than {sys.executable}")
 
 
+def output_of(*command):
+    return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True).stdout
+
+
+def bundle(staging):
+    """Puts the libraries that the module needs, and their licenses, beside it. Returns the oldest
+    version of glibc that has all needed symbols."""
+    (module,) = staging.glob("keepout/_core*.so")
+    shutil.rmtree(staging / "keepout" / "keepout-modules", ignore_errors=True)
+    folder = staging / "keepout.libs"
+    folder.mkdir()
+    of_glibc = re.compile(r"(libc|libm|libdl|librt|libpthread|ld-linux.*)\.so")
+    binaries = [module]
+    for name, path in re.findall(r"(\S+) => (/\S+)", output_of("ldd", module)):
+        if of_glibc.match(name):
+            continue
+        shutil.copy(os.path.realpath(path), folder / name)
+        binaries.append(folder / name)
+        package = output_of("dpkg", "-S", os.path.realpath(path)).split(":")[0]
+        shutil.copy(f"/usr/share/doc/{package}/copyright", folder / f"{package}.copyright")
+    run("patchelf", "--set-rpath", "$ORIGIN/../keepout.libs", module)
+    for binary in binaries[1:]:
+        run("patchelf", "--set-rpath", "$ORIGIN", binary)
+    symbols = "".join(output_of("objdump", "-T", binary) for binary in binaries)
+    versions = set(re.findall(r"GLIBC_(\d+\.\d+)", symbols))
+    return max(versions, key=lambda version: [int(part) for part in version.split(".")])
+
+
 def digest(data):
     return base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
 
@@ -106,6 +142,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     with tempfile.TemporaryDirectory() as folder:
         staging = Path(folder)
         build_package(config_settings, staging)
+        is_portable = (config_settings or {}).get("portable") == "yes"
+        tags = tag(bundle(staging) if is_portable else None)
         contents = {
             path.relative_to(staging).as_posix(): path.read_bytes()
             for path in sorted(staging.rglob("*"))
@@ -113,14 +151,14 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         }
     contents[f"{info}/METADATA"] = metadata().encode()
     contents[f"{info}/WHEEL"] = (
-        f"Wheel-Version: 1.0\nGenerator: keepout\nRoot-Is-Purelib: false\nTag: {tag()}\n".encode()
+        f"Wheel-Version: 1.0\nGenerator: keepout\nRoot-Is-Purelib: false\nTag: {tags}\n".encode()
     )
     contents[f"{info}/LICENSE"] = (root / "LICENSE").read_bytes()
     record = f"{info}/RECORD"
     lines = [f"{name},sha256={digest(data)},{len(data)}\n" for name, data in contents.items()]
     contents[record] = ("".join(lines) + f"{record},,\n").encode()
 
-    name = f"keepout-{version()}-{tag()}.whl"
+    name = f"keepout-{version()}-{tags}.whl"
     with zipfile.ZipFile(Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
         for file, data in contents.items():
             entry = zipfile.ZipInfo(file)  # dated 1980: the same source gives the same wheel

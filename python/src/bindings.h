@@ -23,7 +23,8 @@ namespace keepout::python {
 
 namespace py = pybind11;
 
-/// A mesh as Python holds it: with the messages on its file, and the normals after their first use.
+/// The mesh of a keepout.Mesh, with the messages from loading its file. Also stores the normals
+/// after their first use.
 struct MeshHandle : LoadedMesh {
   std::vector<Vec3> normals = {};  // one for each triangle; empty before their first use
 };
@@ -71,8 +72,8 @@ struct FreeSpace : Planes {
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::polytope); }
 };
 
-/// A step that stays valid after the next one: its own lists replace the views of the engine's step
-/// that have the same names.
+/// A step that stays valid after the next one. Its members hide the views of Step with the same
+/// names, and own their contents.
 struct StepResult : Step {
   std::vector<double> increment;
   Planes planes;
@@ -115,7 +116,7 @@ void bind_step_result(Class& type, const char* ok_doc) {
           "'recovery'.")
       .def_property_readonly(
           "limits", [](const Result& self) { return names_of(self.limits); },
-          "The causes that kept the motion from being the commanded one: a tuple of names such as\n"
+          "The causes of a difference from the commanded motion: a tuple of names such as\n"
           "'mesh' or 'joint_velocity'.");
 }
 

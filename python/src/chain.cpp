@@ -222,7 +222,7 @@ void bind_chain(py::module_& module) {
              "\n"
              "base: the first link; empty for the root.\n"
              "tip: the link of the flange; empty for the only leaf below `base`.\n"
-             "scale: a meter in the unit of the mesh.\n"
+             "scale: the length of a meter in the unit of the mesh.\n"
              "\n"
              "Link 0 is at the origin of the mesh. To move it, make Chain(chain.joints, base=...,\n"
              "flange=chain.flange).");

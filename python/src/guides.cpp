@@ -20,7 +20,7 @@ tube or ball. Directions may have any length above 0.)";
 
 constexpr const char* guide_doc =
     R"(A guidance constraint (guidance virtual fixture): keeps a tip, or a part of an instrument, in
-a convex region. Guides compose; each holds on the whole executed motion.
+a convex region. Several guides may act together; each holds on the whole executed motion.
 
 Made by point, axis, remote_center, orientation or of_text, for InstrumentGuard.set_guides.
 MotionConstraint.set_guides accepts only point(name, region), a guide for the tip.
@@ -175,7 +175,7 @@ void bind_guides(py::module_& module) {
       .def_property_readonly("region", &Guide::region,
                              "The region; for an axis, it bounds the tips of unit vectors.")
       .def_property_readonly("band", &Guide::band,
-                             "By how much the region may be left, because motions are curved\n"
+                             "Curvature allowance: how far a motion may leave the region\n"
                              "[length or rad].")
       .def("__repr__", [](const Guide& self) {
         return py::str("<keepout.Guide '{}' of {} {}>")

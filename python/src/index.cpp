@@ -163,8 +163,8 @@ void bind_index(py::module_& module) {
 
   py::class_<IndexHandle, std::shared_ptr<IndexHandle>>(
       module, "Index",
-      "Finds the triangles near a place. Any number of motion constraints, in any threads, may\n"
-      "share one.\n"
+      "Finds the triangles near a point. Any number of motion constraints, in any threads, may\n"
+      "share an index.\n"
       "\n"
       "name: one of indices().\n"
       "cache: a directory that keeps built indices for the next start; only wide_bvh uses it.")

@@ -75,7 +75,7 @@ void bind_instrument(py::module_& module) {
       .def("recommended_band", &recommended_band, py::arg("period"), py::arg("least") = 0.002,
            "Returns a band for InstrumentGuard that covers the curvature of every motion within\n"
            "the joint limits in a cycle of `period` [s]; at least `least` [length]. Infinite\n"
-           "without limits.")
+           "if the limits do not bound the curvature.")
       .def("__repr__", [](const Instrument& self) {
         return py::str("<keepout.Instrument: {} bodies on {} joints>")
             .format(self.bodies().size(), self.chain().size());

@@ -191,8 +191,8 @@ constexpr const char* guard_doc =
     R"(Keeps a whole instrument out of a mesh, in joint space. A step returns the joint increment
 nearest to the desired one that provably keeps each body clear during the actual joint motion.
 
-Several threads may use a guard; they wait for each other. Parallel loops should have a guard each
-and share the Index.
+Several threads may use a guard; they wait for each other. Make one guard for each parallel loop;
+the guards may share the Index.
 
 index, index_cache: as in MotionConstraint. A max_... is a capacity: a cycle that needs more ends
 with Status.over_capacity.)";
@@ -215,7 +215,7 @@ increment: (n,), of the joints.
 weights: (n,), above 0, the cost of each joint's deviation from it; None: all 1.)";
 
 constexpr const char* prove_doc =
-    R"(Returns the certified part of a motion, for planners: a MotionProof. Searches for no better
+    R"(Returns the certified part of a motion, for planners: a MotionProof. Does not search for a better
 motion and ignores joint limits. Does not affect the steps. A number that is not finite gives
 Status.invalid_input.
 
@@ -243,22 +243,23 @@ std::unique_ptr<InstrumentGuard> make_instrument_guard(
 
 void bind_meshes(py::class_<InstrumentGuard>& type) {
   type.def("follow", &InstrumentGuard::follow, py::arg("index"), py::kw_only(), py::arg("mesh") = 0,
-           "Replaces a mesh by its deformed successor: an Index of it, such as\n"
-           "index.refitted(mesh). All bodies are classified again; a body that the surface came\n"
-           "too close to recovers.\n"
+           "Follows a mesh that has deformed. Takes an Index of the deformed mesh, such as\n"
+           "index.refitted(mesh). All bodies are classified again. A body that is now too close\n"
+           "recovers.\n"
            "\n"
            "mesh: the number of the mesh, which keeps its pose.")
       .def("add_mesh", &InstrumentGuard::add_mesh, py::arg("index"), py::kw_only(),
            py::arg("margin") = 0.0,
-           "Adds a mesh to keep out of, that of an Index. Returns its number; the first mesh\n"
-           "has number 0. At most 8 meshes.\n"
+           "Adds the mesh of an Index, and returns its number. The first mesh has number 0. At\n"
+           "most 8 meshes.\n"
            "\n"
-           "margin: for this mesh [length]; 0 for that of the guard.")
+           "margin: for this mesh [length]; 0: the margin of the guard.")
       .def("place", &InstrumentGuard::place, py::arg("mesh"), py::arg("pose"),
            py::arg("linear") = py::none(), py::arg("angular") = py::none(),
            "Sets the pose of a mesh at the start of the next cycle, and its velocity: of its\n"
-           "frame's origin [length/s], and of the rotation about that origin [rad/s]. Rebuilds\n"
-           "nothing. The mesh moves with that velocity until it is placed again. Raises Error\n"
+           "frame's origin [length/s], and of the rotation about that origin [rad/s]. The\n"
+           "index is not rebuilt. The mesh moves with that velocity until it is placed again. "
+           "Raises Error\n"
            "for an invalid pose or velocity; steps then return Status.invalid_input until a\n"
            "valid one is set.\n"
            "\n"

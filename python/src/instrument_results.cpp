@@ -12,15 +12,15 @@ void bind_instrument_results(py::module_& module) {
       "The result of one cycle of an instrument. Arrays are read-only views of it.");
   bind_step_result(step, "True if the increment may be executed; it may be zero.");
   step.def_readonly("fraction", &Result::fraction,
-                    "The fraction of the motion found that `increment` is; below 1 if the\n"
-                    "motion was truncated.")
+                    "`increment` as a fraction of the motion that the solver found; below 1\n"
+                    "if the motion was truncated.")
       .def_readonly("rounds", &Result::rounds, "The number of trial motions that were judged.")
       .def_readonly("rows", &Result::rows,
                     "The number of rows that limit the motion, without joint limits.")
       .def_readonly(
           "distance", &Result::distance,
-          "From the nearest body to the mesh at the start of the cycle [length]; negative if\n"
-          "the body reaches through the surface. None if no body is within margin +\n"
+          "The distance from the nearest body to the mesh at the start of the cycle [length];\n"
+          "below 0 if the body intersects the surface. None if no body is within margin +\n"
           "max(band, slowing_within), or if the work budget ended first.")
       .def_property_readonly(
           "nearest",

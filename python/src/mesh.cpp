@@ -180,9 +180,9 @@ void bind_load_mesh(py::module_& module) {
 Repairs nothing: see Mesh.inspect. Each doubt about the mesh is a UserWarning and an item of
 Mesh.warnings; each requested change is an item of Mesh.notices.
 
-space: 'RAS' or 'LPS', the space in which you need the coordinates. They are turned if the file
+space: 'RAS' or 'LPS', the space in which you need the coordinates. They are converted if the file
 states the other one (SPACE=...). None: coordinates stay as in the file.
-untagged: the space of a file that does not state one; ignored if it does.
+untagged: the space of a file that does not state one; ignored if the file states a space.
 unit: 'm', 'cm', 'mm', 'um' or 'in', the unit of the lengths in the file, which are scaled to mm.
 None: mm.
 scale: the factor from lengths in the file to mm, above 0, instead of a unit.
@@ -214,7 +214,7 @@ void bind_inspection(py::module_& module) {
       .def_readonly("inconsistent_edges", &Inspection::inconsistent_edges,
                     "Number of edges whose two triangles have opposite windings.")
       .def_readonly("pinched_vertices", &Inspection::pinched_vertices,
-                    "Number of vertices that alone connect parts of the surface.")
+                    "Number of vertices that are the only connection of parts of the surface.")
       .def_readonly("repeated_vertex_triangles", &Inspection::repeated_vertex_triangles,
                     "Number of triangles that use a vertex twice.")
       .def_readonly("collinear_triangles", &Inspection::collinear_triangles,
@@ -279,8 +279,8 @@ void bind_mesh(py::module_& module) {
       "length everywhere, usually mm.\n"
       "\n"
       "vertices: (n, 3), finite [length]. triangles: (m, 3) integers from 0, m > 0.\n"
-      "weld: merge vertices of equal coordinates, which renumbers them; a surface whose triangles\n"
-      "do not share their vertices looks open otherwise. Warns as load_mesh does.")
+      "weld: merges vertices of equal coordinates, and renumbers them. Without it, a surface\n"
+      "whose triangles do not share their vertices looks open. Warns like load_mesh.")
       .def(py::init(&mesh_from), py::arg("vertices"), py::arg("triangles"), py::kw_only(),
            py::arg("weld") = false)
       .def_property_readonly(
@@ -312,8 +312,8 @@ void bind_mesh(py::module_& module) {
           },
           "(2, 3) float64: the lowest and the highest corner of the bounding box [length].")
       .def_readonly("warnings", &MeshHandle::warnings,
-                    "What is odd about the mesh, or the file that it came from: a list of "
-                    "sentences, which Mesh and\nload_mesh show as Python's warnings, too.")
+                    "Warnings about the mesh, or the file that it came from: a list of "
+                    "sentences. Mesh and\nload_mesh also issue them as Python's warnings.")
       .def_readonly("notices", &MeshHandle::notices,
                     "Requested changes that load_mesh made (scaled, turned, flipped): a list of\n"
                     "sentences, which also go to the logger 'keepout' at level INFO.")

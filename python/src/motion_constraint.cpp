@@ -25,7 +25,7 @@ py::str repr(const Guard& guard) {
 
 constexpr const char* class_doc =
     R"(Keeps a tool tip out of a mesh, step by step. Several threads may use a constraint; they wait
-for each other. Parallel loops should have a constraint each and share the Index.
+for each other. Make one constraint for each parallel loop; the constraints may share the Index.
 
 index: a name of indices(), or an Index of this mesh.
 index_cache: a directory that keeps built indices for the next start.
@@ -56,9 +56,9 @@ std::unique_ptr<Guard> make_guard(const py::object& mesh, const py::object& inde
 }
 
 constexpr const char* step_doc =
-    R"(Returns the allowed motion nearest to the desired one: a Step. The constraint remembers where
-the last step ended; it classifies a tip from elsewhere again. A number that is not finite gives
-Status.invalid_input.
+    R"(Returns the allowed motion nearest to the desired one: a Step. The constraint remembers the
+path of the last step. If the tip is not on it, the step classifies the tip again. A number that is
+not finite gives Status.invalid_input.
 
 tip: (3,), in the frame of the mesh [length].
 desired: (3,), the desired increment [length].
@@ -77,8 +77,9 @@ desired: (n, 3) [length].
 threads: 1 to 1024; None: one for each processor.
 out: a Steps to write to; None for a new one.
 
-A single tip or desired increment, (3,), serves all of the other. Float64 and C-contiguous arrays
-are not copied. A pose that is not finite has Status.invalid_input and zero motion.)";
+A single tip or desired increment, (3,), serves all rows of the other array. Float64 and
+C-contiguous arrays are not copied. A pose that is not finite has Status.invalid_input and zero
+motion.)";
 
 constexpr const char* replay_doc =
     R"(Returns the steps of 'keepout replay', one after another: a Steps. Runs without Python's
@@ -132,7 +133,7 @@ void bind_motion_constraint(py::module_& module) {
   type.def("step", &Guard::step, py::arg("tip"), py::arg("desired"),
            py::arg("jacobian") = py::none(), py::arg("rows") = py::none(), step_doc)
       .def("follow", &Guard::follow, py::arg("index"),
-           "Replaces the mesh by its moved successor: an Index of it, such as\n"
+           "Follows a mesh that has moved. Takes an Index of the moved mesh, such as\n"
            "index.refitted(mesh). All tips are classified again. If a tip is not classified\n"
            "(open mesh, or inside='taken_as_is'), keepout does not detect that a surface has\n"
            "moved over it.")

@@ -72,10 +72,12 @@ probability `confidence`, the error is smaller [length]. This holds at the targe
 points of the convex hull of several targets, such as the corners of the box in which the tool
 works.
 
-targets: (3,) or (n, 3), in the frame of the mesh. fle: root mean square localisation error of a
-pair [length]; None: estimated from the residuals, which takes a larger margin where they are few.
-A UserWarning says if the residuals contradict it: see RigidFit.doubt_of; and of RigidFit.doubt.
-It does not cover what all pairs have in common, nor what moves later.)";
+targets: (3,) or (n, 3), in the frame of the mesh. fle: root mean square localization error of a
+pair [length]; None: estimated from the residuals, which gives a larger margin for few pairs.
+
+Warns if the residuals contradict fle (RigidFit.doubt_of), or if they suggest a mistake
+(RigidFit.doubt). The length does not cover motion after the registration, or errors that all pairs
+share.)";
 
 }  // namespace
 
@@ -99,11 +101,12 @@ void bind_registration(py::module_& module) {
                              "[length].")
       .def_readonly("scale", &RigidFit::scale,
                     "Ratio of the spread of the model's points to that of the measured points.")
-      .def_readonly("doubt", &RigidFit::doubt,
-                    "Which mistake the residuals speak of: a unit, an order, a reflection; or ''.")
+      .def_readonly(
+          "doubt", &RigidFit::doubt,
+          "The mistake that the residuals suggest: a unit, an order or a reflection; else ''.")
       .def(
           "doubt_of", &RigidFit::doubt_of, py::arg("fle"),
-          "Returns why a localisation error of a pair contradicts the residuals, or ''. It does if "
+          "Returns why a localization error of a pair contradicts the residuals, or ''. It does if "
           "fewer than\none in a thousand registrations with that error have so large an FRE. fle: "
           "root mean square, above 0\n[length].")
       .def("__repr__", [](const RigidFit& self) {
@@ -116,9 +119,8 @@ void bind_registration(py::module_& module) {
       "target_error", &covariance, py::arg("fit"), py::arg("target"), py::arg("fle") = py::none(),
       "(3, 3) float64: covariance of the error of a registration at a target (3,), in the mesh's\n"
       "frame [length^2]. The square root of its trace is the target registration error, TRE, root\n"
-      "mean square; that of its largest eigenvalue the deviation in the worst direction. fle: as "
-      "in\n"
-      "registration_margin.");
+      "mean square; the root of its largest eigenvalue is the deviation in the worst\n"
+      "direction. fle: as in registration_margin.");
   module.def("registration_margin", &margin, py::arg("fit"), py::arg("targets"),
              py::arg("confidence") = 0.99, py::arg("fle") = py::none(), margin_doc);
 }

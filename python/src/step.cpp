@@ -111,14 +111,14 @@ void bind_step(py::module_& module) {
       .def_property_readonly(
           "active",
           [](const py::object& self) { return view(self.cast<const StepResult&>().active, self); },
-          "(a,) uint32: the positions of the planes that limit the motion; from len(planes) on,\n"
-          "rows.")
+          "(a,) uint32: the indices of the planes that limit the motion; those from len(planes)\n"
+          "on are rows.")
       .def_readonly("triangles", &StepResult::triangles,
                     "The number of triangles that the step depends on.")
       .def_readonly(
           "distance", &StepResult::distance,
-          "From the tip at the start of the step to the nearest triangle [length]; None if\n"
-          "unknown: see the option distances.")
+          "The distance from the tip at the start of the step to the nearest triangle [length];\n"
+          "None if unknown: see the option distances.")
       .def("__repr__", [](const StepResult& self) {
         const Vec3& u = self.motion;
         return py::str("<keepout.Step: {}, motion ({}, {}, {})>")

@@ -15,11 +15,11 @@ namespace keepout {
 /// all bodies beside the first mesh, and so on.
 ///
 /// Clearances are distances from the body's surface; the distance from its core is larger by the
-/// radius. In increasing order:
+/// radius. These are the clearances of a pair, in increasing order:
 ///
-///     demand <= full_demand <= target = margin - band    that a proof must maintain
-///     row_margin = margin                                that rows demand
-///     vicinity - radius                                  within which triangles are listed
+///     demand <= full_demand <= target = margin - band    for proofs: they maintain the demand
+///     row_margin = margin                                for rows
+///     vicinity - radius                                  for lists of triangles
 ///
 /// If a body is slowed down (slow_down), full_demand and row_margin are larger.
 class PairWatch {
@@ -38,8 +38,9 @@ class PairWatch {
   PairWatch(CycleMemory& memory, const CycleConstants& cycle) noexcept
       : memory_(memory), cycle_(cycle) {}
 
-  /// Measures all pairs. Beside meshes that move, a pair that forbids all motion is dropped, and
-  /// the status stays free: the other bodies may have to retreat.
+  /// Measures all pairs. If meshes move, drops each pair whose body touches the mesh, is inside it,
+  /// or has too many triangles nearby. The status then stays free, because the other bodies may
+  /// have to retreat.
   Opening open() noexcept;
 
   /// Returns the number of pairs.
@@ -118,8 +119,8 @@ class PairWatch {
   /// Returns the triangles that may be nearer than `distance` to the body's core at the start of
   /// the cycle, nearest first. Empty if they are not known because the budget or the capacity
   /// ended. Precondition: triangles are known up to `distance`. After open() they are known up to
-  /// vicinity(), which includes the row margin of a recovering body; after judge(), up to the reach
-  /// of the trial. [length]
+  /// vicinity(), which includes the row margin of a recovering body. After judge() they are also
+  /// known up to radius + demand + the largest displacement of the trial motion. [length]
   std::span<NearTriangle> nearer_than(std::size_t p, double distance) noexcept {
     return memory_.pairs[p].triangles.nearer_than(distance, memory_.budget);
   }
@@ -127,7 +128,8 @@ class PairWatch {
   /// near any more, or if the triangles nearby are not known (judge() then reports the cause).
   NearTriangle* find(std::size_t p, TriangleId id) noexcept;
 
-  /// Remembers the certified clearances for the next cycle: lowers those of degraded pairs.
+  /// Stores the certified clearances for the next cycle. For a degraded pair, stores its demand if
+  /// that is lower.
   void remember_clearances() noexcept;
   /// Remembers the end of the executed motion, which must be the trial motion.
   void remember_end() noexcept;

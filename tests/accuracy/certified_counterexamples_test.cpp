@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the paper's rule fails, the certified one holds: whatever the order and the winding.
+// The certified rule is safe where the rule of Li et al. (2020) fails, with any order and winding
+// of the triangles.
 
 #include "accuracy/certified_loop.h"
 #include "accuracy/segment_crossing.h"
@@ -14,7 +15,7 @@ MotionConstraintSettings settings_of(const Counterexample& example, double margi
   return {.options = {.radius = example.radius, .margin = margin}, .capacity = {.planes = 100}};
 }
 
-/// What the same desire, again and again, comes to.
+/// Returns the steps of a loop that repeats one desired motion.
 std::vector<Cycle> cycles(const Surface& surface, const Counterexample& example, double margin) {
   auto guard = make_motion_constraint(mesh_of(surface), settings_of(example, margin));
   std::vector<Cycle> out;
@@ -60,7 +61,7 @@ TEST_P(CertifiedCounterexample, IsTheSameWithAllWindings) {
   for (const double margin : margins) {
     const std::vector<Cycle> expected = cycles(example.surface, example, margin);
     for (unsigned flips = 1; flips < 1u << count; ++flips) {
-      // All of a closed mesh turned inside out is another mesh: its free side is the inside.
+      // A closed mesh with all triangles flipped is another mesh: its free side is the inside.
       if (example.name == "CE5_closed_octahedron" && flips + 1 == 1u << count) continue;
       Surface surface = example.surface;
       for (std::size_t t = 0; t < count; ++t) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same motions, bit for bit, whatever finds, numbers or winds the triangles.
+// Motions are bitwise identical with any index, SIMD target, numbering and winding of the
+// triangles.
 
 #include "accuracy/certified_loop.h"
 #include "keepout/adapters/index_registry.h"
@@ -30,7 +31,7 @@ std::vector<Guide> corridor_and_ball(const Start& start) {
           Guide::point("ball", Region::ball(start.tip - start.press, 0.9))};
 }
 
-/// Closed loops, each from its own place, that press into the surface half of the time.
+/// Runs a closed loop from each start, which presses into the surface half of the time.
 std::vector<Cycle> loops(MotionConstraint& guard, const std::vector<Start>& starts, int count,
                          GuidesOf guides_of = no_guides) {
   std::vector<Cycle> out;
@@ -50,7 +51,7 @@ std::vector<Cycle> loops(MotionConstraint& guard, const std::vector<Start>& star
   return out;
 }
 
-/// For a surface that no tip is placed on: then the winding plays no part.
+/// Runs the loops with a new guard for the surface.
 std::vector<Cycle> loops(const Surface& surface, MotionConstraintSettings with,
                          const std::vector<Start>& starts, int count,
                          GuidesOf guides_of = no_guides) {
@@ -92,8 +93,7 @@ TEST_P(CertifiedDeterminism, TheIndexDoesNotMatter) {
   }
 }
 
-/// From the mesh to the motion: the index is built, the tips are placed and the motions found on
-/// that processor alone.
+/// Builds the index, classifies the tips and computes the motions on each SIMD target alone.
 TEST_P(CertifiedDeterminism, TheProcessorDoesNotMatter) {
   const Surface surface = GetParam().make();
   const std::vector<Start> starts = starts_on(surface, 4);
@@ -122,6 +122,7 @@ TEST_P(CertifiedDeterminism, TheNumberingDoesNotMatter) {
   }
 }
 
+// Without the classification of tips, which depends on the winding.
 TEST_P(CertifiedDeterminism, TheWindingDoesNotMatter) {
   const Surface surface = GetParam().make();
   const std::vector<Start> starts = starts_on(surface, 10);
@@ -161,7 +162,8 @@ TEST_P(CertifiedDeterminism, OneCycleDoesNotDependOnThoseBefore) {
   ASSERT_EQ(loops(guard, starts, 100), expected);
 }
 
-/// Counts the cycles of two guards that differ, by more than rounding or in the status.
+/// Counts cycles in which the statuses of two guards differ. Fails if their motions differ by more
+/// than `most`.
 struct Differences {
   void add(const Step& one, const Step& two, double most) {
     ++cycles;
@@ -199,7 +201,7 @@ double on_grid(double x) { return std::ldexp(std::round(std::ldexp(x, 20)), -20)
 Vec3 on_grid(const Vec3& p) { return {on_grid(p.x()), on_grid(p.y()), on_grid(p.z())}; }
 
 TEST_P(CertifiedDeterminism, TheOriginHardlyMatters) {
-  // On a grid of a millionth, a mesh can be moved without a change to any difference.
+  // On a grid of 2^-20, a translation of the mesh changes no difference of coordinates.
   Surface surface = GetParam().make();
   const bool is_far = GetParam().name == "far_cube";
   for (Vec3& v : surface.vertices) v = on_grid(v);
@@ -217,7 +219,8 @@ TEST_P(CertifiedDeterminism, TheOriginHardlyMatters) {
       tip = on_grid(tip + one.motion);
     }
   }
-  // To snap a tip at its margin to the grid is to put it too close, now and then by a tolerance.
+  // Rounding to the grid can move a tip to within rounding of a threshold, where the statuses may
+  // differ.
   EXPECT_LE(differences.other_status, is_far ? differences.cycles : differences.cycles / 100);
 }
 

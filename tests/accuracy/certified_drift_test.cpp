@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A million cycles in contact: what a cycle may lose never adds up.
+// Runs a million cycles in contact: the losses within tolerance do not accumulate.
 
 #include "accuracy/certified_loop.h"
 
@@ -39,7 +39,7 @@ TEST_P(CertifiedDrift, TheMarginIsKeptInEveryCycleOfManyUnderPressure) {
       if (step.status == Status::recovering) ++recovering;
       if (step.status == Status::truncated) ++other;
       const Vec3 next = tip + step.motion;
-      // Of the whole way.
+      // The oracle checks the whole segment, not only its end.
       const double tau = loop.tolerance(tip);
       const oracle::Finding way = loop.oracle().check(tip, next, margin - 3.0 * tau, 1.5 * margin);
       ASSERT_FALSE(way.crosses);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much of the motion asked for the certified step gives away, against the best step there is:
-// excess = (cost - best cost) / length of the increment asked for.
+// Measures how much worse the certified step is than the best possible step: excess = (cost - best
+// cost) / length of the desired increment.
 
 #include <numeric>
 
@@ -20,7 +20,7 @@ namespace {
 using oracle::best_step;
 using oracle::BestStep;
 
-/// A tip in or near contact, and what it is asked to do there.
+/// A tip in or near contact, its desired increment, and the cost of the best step.
 struct State {
   Vec3 tip;
   Vec3 desired;
@@ -53,8 +53,8 @@ MotionConstraint guard(const Scene& scene, int refinements, int nodes) {
                                              .inside = Inside::taken_as_is});
 }
 
-/// Steps in all directions, from a tenth of an edge to ten edges long, from where a hand has pushed
-/// the tip against the surface; about half of them are free.
+/// Returns states with steps in all directions, 0.1 to 10 edges long. Each tip has first been
+/// pushed against the surface. About half of the steps are free.
 Scene make_scene(std::shared_ptr<const Mesh> mesh, std::size_t count) {
   const double edge = mean_edge(*mesh);
   Scene scene{.mesh = mesh, .margin = 1e-2 * edge, .radius = 20.0 * edge, .states = {}};
@@ -85,9 +85,9 @@ Scene make_scene(std::shared_ptr<const Mesh> mesh, std::size_t count) {
 
 struct Excess {
   double mean, p95, worst;
-  double limited;       // share of steps that something holds back
-  double limited_mean;  // of these alone
-  std::size_t stuck;    // stood still although a twentieth of the increment or more could be had
+  double limited;       // fraction of steps that are not free
+  double limited_mean;  // mean excess of these steps
+  std::size_t stuck;    // steps without motion, with a best cost below 95 % of the increment
 };
 
 Excess excess_of(const Scene& scene, int refinements, int nodes) {
@@ -99,7 +99,8 @@ Excess excess_of(const Scene& scene, int refinements, int nodes) {
     EXPECT_TRUE(step.ok()) << step.reason();
     const double length = state.desired.norm();
     const double cost = (step.motion - state.desired).norm();
-    EXPECT_GE(cost, state.bound - 1e-6 * length) << "better than can be: one of the two is wrong";
+    EXPECT_GE(cost, state.bound - 1e-6 * length)
+        << "below the oracle's bound: one of the two is wrong";
     excess.push_back((cost - state.best_cost) / length);
     limited += step.status != Status::free;
     stuck += step.motion.norm() < 1e-6 * length && state.best_cost < 0.95 * length;
@@ -147,7 +148,7 @@ TEST_P(CertifiedExcess, IsSmallAndNoUsefulMotionIsMissed) {
   EXPECT_LE(refined.mean, plain.mean + 1e-9);
   EXPECT_LE(refined.limited_mean, 0.006);
   EXPECT_LE(searched.mean, 0.002);
-  EXPECT_GE(refined.limited, 0.25) << "too easy to mean anything";
+  EXPECT_GE(refined.limited, 0.25) << "too few limited steps for a meaningful test";
   EXPECT_LE(searched.mean, refined.mean + 1e-9);
 }
 

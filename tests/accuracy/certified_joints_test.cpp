@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Joints, rows of the caller's own, and too little room: as safe, and honest about it.
+// With joints, the caller's own rows or too little capacity, each step is as safe, and its status
+// reports each failure.
 
 #include <span>
 
@@ -23,7 +24,7 @@ TipJacobian::Matrix random_jacobian(Eigen::Index joints, Random& random) {
   return jacobian;
 }
 
-/// |u_i| <= limit.
+/// Rows that limit each joint increment: |u_i| <= limit.
 struct JointLimits {
   JointLimits(Eigen::Index joints, double limit)
       : matrix(2 * joints, joints), bounds(static_cast<std::size_t>(2 * joints), -limit) {
@@ -37,7 +38,7 @@ struct JointLimits {
   std::vector<double> bounds;
 };
 
-/// How far the worst row is from being satisfied.
+/// Returns the largest violation of a row.
 double violation(const ExtraRows& rows, std::span<const double> u) {
   double worst = 0.0;
   const auto n = static_cast<Eigen::Index>(u.size());
@@ -58,7 +59,7 @@ class CertifiedJoints : public testing::TestWithParam<const char*> {
     double worst = 0.0, violation = 0.0, joints_off = 0.0;
   };
 
-  /// Cycles under pressure with joints of all sorts.
+  /// Runs cycles that press into the surface, with random Jacobians of 3 to 7 joints.
   Count run(double limit) {
     Count count;
     Random random(3);
@@ -98,7 +99,7 @@ class CertifiedJoints : public testing::TestWithParam<const char*> {
     EXPECT_GT(count.limited, count.cycles / 10);
     EXPECT_LE(count.worst, 3.0);
     EXPECT_LE(count.violation, 1e-10);
-    EXPECT_LE(count.joints_off, 1e-10) << "the joints do something else than what is said";
+    EXPECT_LE(count.joints_off, 1e-10) << "the increment does not make the reported motion";
     EXPECT_LE(count.truncated, count.cycles / 50);
     EXPECT_LE(count.not_ok, count.cycles / 50);
   }
@@ -164,8 +165,8 @@ TEST(CertifiedRows, MoreThanRoomWasMadeForAreAStatus) {
 
 TEST(CertifiedCapacity, WithoutRoomForAllTrianglesAShorterWayIsGone) {
   MotionConstraintSettings few = settings();
-  few.index = "pd_tree";       // on a wide_bvh the rule searches by itself, and lists no triangles
-  few.capacity.triangles = 8;  // a motion of 6 has up to some 60 in reach: the edges are 2.2 long
+  few.index = "pd_tree";       // with a wide_bvh the rule gathers no triangles
+  few.capacity.triangles = 8;  // a motion of 6 has up to about 60 in reach: edges are 2.2 long
   few.options.radius = 6.0;
   Loop loop(make_shape("sphere"), few);
   Random random(5);

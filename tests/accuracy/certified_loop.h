@@ -12,7 +12,8 @@
 
 namespace keepout::test {
 
-/// A mesh and its guard, judged by the oracle, which shares no code with the engine.
+/// A mesh, its guard, and the oracle that judges the steps. The oracle shares no code with the
+/// engine.
 class Loop {
  public:
   Loop(Surface surface, const MotionConstraintSettings& settings)
@@ -41,8 +42,8 @@ class Loop {
     return closest_point(mesh_->triangle(nearest), tip).offset.normalized();
   }
 
-  /// Returns the loss of distance on the motion from `from` to `to` against the margin or, if that
-  /// is less, the distance at the start. In tolerances; at most 3 are promised.
+  /// Returns the loss of clearance on the motion from `from` to `to`, in tolerances; at most 3 are
+  /// promised. The reference is the margin or, if that is less, the distance at the start.
   double loss(const Vec3& from, const Vec3& to) {
     const double due = std::min(margin(), distance(from));
     const double tau = tolerance(from);
@@ -66,7 +67,7 @@ struct Cycle {
   bool operator==(const Cycle&) const = default;
 };
 
-/// Fails unless the step is safe, or moves nothing. Counts the steps that move.
+/// Fails if the step is unsafe, or has a motion although it failed. Counts the steps that move.
 inline void expect_safe(Loop& loop, const Vec3& tip, const Step& step, int& moved) {
   if (!step.ok()) {
     ASSERT_TRUE(step.motion.isZero(0.0)) << name(step.status);
@@ -83,7 +84,7 @@ void shuffle(std::vector<T>& items, Random& random) {
   for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random.below(i)]);
 }
 
-/// The same triangles: vertices and triangles in another order, corners begun at another.
+/// Returns the same triangles, with vertices and triangles shuffled and corners rotated.
 inline Surface renumbered(const Surface& surface, Random& random) {
   std::vector<VertexId> new_vertex(surface.vertices.size());
   std::iota(new_vertex.begin(), new_vertex.end(), VertexId{0});
@@ -102,7 +103,7 @@ inline Surface renumbered(const Surface& surface, Random& random) {
   return out;
 }
 
-/// The same triangles, each wound one way or the other.
+/// Returns the same triangles, each flipped at random.
 inline Surface rewound(Surface surface, Random& random) {
   for (Corners& c : surface.triangles) {
     if (random.below(2) == 0) std::swap(c[1], c[2]);
@@ -110,10 +111,10 @@ inline Surface rewound(Surface surface, Random& random) {
   return surface;
 }
 
-/// `distance` off the surface, all of it, on the free side: places where a tip may be.
+/// Returns up to `count` tips on the free side whose distance from the whole surface is `distance`.
 inline std::vector<Vec3> places(Loop& loop, std::size_t count, double distance, Random& random) {
   std::vector<Vec3> out;
-  // Narrow places are none: but for those the first attempt does.
+  // Points in narrow places are too close and are dropped. Otherwise one attempt suffices.
   for (int attempt = 0; attempt < 1'000 && out.size() < count; ++attempt) {
     for (const Vec3& p : surface_points(loop.mesh(), count, distance, random)) {
       if (out.size() < count && loop.distance(p) > (1.0 - 1e-9) * distance) out.push_back(p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tip that is inside or too close gets out, and no deeper on its way.
+// A tip that is inside or too close recovers, and comes no deeper on its way.
 
 #include <sstream>
 
@@ -21,12 +21,12 @@ struct Scene {
 
 void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
 
-// A tip that all planes leave in its place comes to rest a little closer than where margins count.
+// A tip counts as recovered within this many tolerances of the margin, where no plane moves it.
 constexpr double almost = 3.0;
 
-/// The best that a motion can do against the directions in which it shall not go back: the most
-/// that the least of their components can be, of all unit vectors. It is the distance of their
-/// convex hull from the origin. (Gilbert's algorithm; the value returned is attained.)
+/// Returns the best retreat from several surfaces: the maximum over all unit vectors of the least
+/// component along `away`. It is the distance of the convex hull of `away` from the origin. Uses
+/// Gilbert's algorithm; the returned value is attained.
 double best_retreat(const std::vector<Vec3>& away) {
   Vec3 nearest = away.front();
   double best = -1.0;
@@ -44,7 +44,8 @@ double best_retreat(const std::vector<Vec3>& away) {
   return best;
 }
 
-/// Signed distances, by the oracle: the side is asked for anew only when the surface was crossed.
+/// Signed distances from the oracle. The side is classified again only if a motion crosses the
+/// surface.
 class Side {
  public:
   Side(Loop& loop, const Vec3& tip, Forbidden forbidden) : loop_(&loop), forbidden_(forbidden) {
@@ -86,7 +87,7 @@ class CertifiedRecovery : public testing::TestWithParam<Scene> {
     const Scene& scene = GetParam();
     std::vector<Vec3> out;
     while (out.size() < scene.poses) {
-      // Half of them too close, half of them anywhere inside.
+      // In a solid, half of the tips are too close, and half are anywhere inside.
       const double offset =
           random.uniform(scene.forbidden == Forbidden::nowhere ? -1.0 : -3.0, 1.0) * scene.margin;
       const Vec3 near = surface_points(loop.mesh(), 1, offset, random)[0];
@@ -98,7 +99,7 @@ class CertifiedRecovery : public testing::TestWithParam<Scene> {
     return out;
   }
 
-  /// How well a tip that stays too close could still retreat from all that is within the margin.
+  /// Returns best_retreat() from all triangles within the margin of a tip; 1 without any.
   static double room_left(Loop& loop, const PdTree& tree, TriangleBuffer& near, const Vec3& tip) {
     near.clear();
     const double within = loop.margin() + 4.0 * loop.tolerance(tip);
@@ -119,7 +120,7 @@ class CertifiedRecovery : public testing::TestWithParam<Scene> {
     const PdTree tree(loop.shared_mesh());
     TriangleBuffer near(loop.mesh().triangle_count());
     Random random(3);
-    double slowest = 0.0;  // but for the last bit
+    double slowest = 0.0;  // to 99.9 % of the margin
     std::size_t stuck = 0, odd = 0, narrow = 0;
     std::ostringstream oddities;
     for (const Vec3& start : poses(loop, random)) {
@@ -127,7 +128,7 @@ class CertifiedRecovery : public testing::TestWithParam<Scene> {
       Side side(loop, tip, scene.forbidden);
       double before = side.signed_distance(tip);
       const double due = (scene.margin - before) / scene.recovery;
-      // The last bit between two walls is gained by a share a cycle.
+      // Between two walls, a cycle gains only a fraction of the distance that is missing.
       const auto most = static_cast<int>(2.0 * due) + 400;
       int cycle = 0, all_but_out = 0, idle = 0;
       for (; cycle < most; ++cycle) {
@@ -159,7 +160,7 @@ class CertifiedRecovery : public testing::TestWithParam<Scene> {
         slowest = std::max(slowest, all_but_out - due);
         continue;
       }
-      // Only where all ways lead nearer to something that is too close already.
+      // A tip may stop only if each direction approaches a triangle that is already too close.
       const double room = side.wrong() ? 1.0 : room_left(loop, tree, near, tip);
       if (room < 0.05) {
         ++narrow;
@@ -172,7 +173,8 @@ class CertifiedRecovery : public testing::TestWithParam<Scene> {
     }
     EXPECT_EQ(stuck, 0u) << oddities.str();
     EXPECT_EQ(odd, 0u) << "not recovering: " << oddities.str();
-    // A narrow fold is left along it; between walls too narrow, only the desires lead out.
+    // A tip leaves a narrow fold along the fold. Between walls that are too close together, only
+    // the desired motions move it out.
     if (scene.margin <= 0.5) {
       EXPECT_LE(slowest, 120.0) << "cycles beyond depth by recovery";
     }
@@ -204,7 +206,8 @@ INSTANTIATE_TEST_SUITE_P(
     by_name);
 
 TEST(CertifiedRecoveryInAGap, NarrowerThanTwoMarginsIsHonest) {
-  // Gaps of 1 between plates of 1: with a margin of 0.7 there is no way out but through the sides.
+  // The plates and the gaps between them are 1 thick. With a margin of 0.7, the only way out is
+  // through the sides.
   Loop loop(make_shape("thin_plates"),
             {.options = {.radius = 1.0, .margin = 0.7, .recovery = 0.1}});
   const Box& bounds = loop.mesh().bounds();
@@ -219,7 +222,7 @@ TEST(CertifiedRecoveryInAGap, NarrowerThanTwoMarginsIsHonest) {
     tip = next;
     before = after;
   }
-  EXPECT_LT(before, 0.7) << "there is no such place";
+  EXPECT_LT(before, 0.7) << "no place in the gap has this clearance";
 }
 
 TEST(CertifiedRecoveryInAGap, OfMoreThanTwoMarginsItsMiddleIsFound) {
@@ -234,7 +237,7 @@ TEST(CertifiedRecoveryInAGap, OfMoreThanTwoMarginsItsMiddleIsFound) {
 }
 
 TEST(CertifiedRecoverySide, AnInsideOutMeshIsLedOutOfOnItsOwnFreeSide) {
-  // Free within, forbidden without.
+  // The free side is inside, the forbidden side is outside.
   Loop loop(make_shape("concave_sphere"),
             {.options = {.radius = 1.0, .margin = 0.3, .recovery = 0.5, .deepest = 1e3}});
   Vec3 tip(0.0, 0.0, 53.0);
@@ -265,7 +268,7 @@ TEST(CertifiedRecoverySide, ATipThatIsTakenAsItIsStaysOnItsSide) {
 }
 
 // A tip that is too close retreats by at least one tolerance per cycle, even if `recovery` is
-// smaller. Otherwise the loss by rounding in one cycle would add up with that of the next.
+// smaller. Otherwise the rounding losses of the cycles would accumulate.
 
 TEST(LeastRetreat, IsATolerance) {
   Random random(9);

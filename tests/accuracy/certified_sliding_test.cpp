@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact as a hand feels it: no bumps at inner edges, nothing held back that leads away.
+// Sliding is smooth: inner edges make no bumps, and no motion away from the surface is limited.
 
 #include <Eigen/Geometry>
 
@@ -36,7 +36,7 @@ TEST_P(CertifiedSliding, OverAFlatPlateIsSmoothAndUnhindered) {
   double lowest = 1e9, highest = -1e9, slowest = 0.0, sideways = 0.0;
   std::size_t other = 0;
   for (int cycle = 0; cycle < 10'000; ++cycle) {
-    // Off the rim, at an angle that does not repeat.
+    // The motion turns back at the rim, at an angle that does not repeat.
     const Vec3 local = frame.transpose() * tip;
     for (int axis = 0; axis < 2; ++axis) {
       if (std::abs(local[axis]) > 45.0 && local[axis] * frame.col(axis).dot(along) > 0.0) {
@@ -51,7 +51,7 @@ TEST_P(CertifiedSliding, OverAFlatPlateIsSmoothAndUnhindered) {
     const double press = 0.05 + 0.4 * (0.5 + 0.5 * std::sin(0.1 * cycle));
     const Vec3 desired = along - press * up;
     const Step step = loop.step(tip, desired);
-    if (cycle < 20) {  // still on its way down
+    if (cycle < 20) {  // not in contact yet
       ASSERT_TRUE(step.ok());
       tip += step.motion;
       continue;
@@ -68,8 +68,8 @@ TEST_P(CertifiedSliding, OverAFlatPlateIsSmoothAndUnhindered) {
   EXPECT_EQ(other, 0u) << "cycles that were not simply limited";
   EXPECT_LE(highest - lowest, 1e-9 * size);
   EXPECT_NEAR(lowest, plate.margin, 1e-9 * size);
-  EXPECT_LE(slowest, 1e-9) << "share of the way along that was lost";
-  EXPECT_LE(sideways, 1e-9) << "share of the way along that was turned";
+  EXPECT_LE(slowest, 1e-9) << "fraction of the tangential motion that was lost";
+  EXPECT_LE(sideways, 1e-9) << "fraction of the tangential motion that was deflected";
 }
 
 INSTANTIATE_TEST_SUITE_P(Plates, CertifiedSliding,
@@ -85,8 +85,8 @@ INSTANTIATE_TEST_SUITE_P(Plates, CertifiedSliding,
 
 class CertifiedRetreat : public testing::TestWithParam<Shape> {};
 
-/// Whether a motion comes no nearer to any triangle around. By the closest points: the distances
-/// are convex, so what does not fall at first never will.
+/// Returns true if a motion comes no nearer to any triangle. A distance is convex along the motion:
+/// if it does not decrease at first, it never does.
 bool leads_away(const std::vector<Vec3>& away, const Vec3& motion) {
   return std::all_of(away.begin(), away.end(),
                      [&](const Vec3& n) { return n.dot(motion) >= 1e-9 * motion.norm(); });
@@ -134,7 +134,7 @@ TEST_P(CertifiedRetreat, IsNeverSlowed) {
     }
   }
   EXPECT_GT(contacts, 5u);
-  // Surrounded on all sides, as in a furrow or a soup, there may be no retreat.
+  // In a furrow or a triangle soup there may be no retreat.
   if (GetParam().kind == ShapeKind::solid) {
     EXPECT_GT(retreats, 100u);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever a solver answers, a certified motion keeps its distance.
+// A certified motion maintains its clearance, whatever a solver returns.
 
 #include "accuracy/certified_loop.h"
 #include "guards.h"
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double radius = 1.0, margin = 0.25;
 
-/// Right but for a relative noise.
+/// A solver with relative noise in its solutions.
 class Sloppy final : public Solver {
  public:
   explicit Sloppy(double noise) : noise_(noise), random_(1) {}
@@ -38,7 +38,7 @@ class Sloppy final : public Solver {
   std::vector<double> u_;
 };
 
-/// Says whatever comes to its mind.
+/// A solver with arbitrary solutions and statuses.
 class Liar final : public Solver {
  public:
   Liar() : random_(2) {}
@@ -50,7 +50,7 @@ class Liar final : public Solver {
     const double size = std::pow(10.0, random_.uniform(-12.0, 1.0));
     for (std::size_t i = 0; i < n; ++i) u_[i] = size * random_.uniform(-1.0, 1.0);
     switch (random_.below(8)) {
-      case 0:  // what was asked for, whatever the planes say
+      case 0:  // the desired motion, even if it violates planes
         for (std::size_t i = 0; i < std::min<std::size_t>(n, 3); ++i) u_[i] = problem.desired[i];
         break;
       case 1:
@@ -73,7 +73,6 @@ class Liar final : public Solver {
   std::vector<double> u_;
 };
 
-/// Returns a guard that asks this solver.
 MotionConstraint guard_with(const std::shared_ptr<const Mesh>& mesh, std::unique_ptr<Solver> solver,
                             double damping = 0.0) {
   return guard_of<PdTree>(mesh, {.radius = radius, .margin = margin, .damping = damping},
@@ -86,7 +85,7 @@ class CertifiedSolver : public testing::TestWithParam<Shape> {
       : loop(GetParam().make(),
              {.options = {.radius = radius, .margin = margin}, .capacity = {.planes = 200}}) {}
 
-  /// Presses into the surface, whatever `guard` does; the worst loss in tolerances.
+  /// Runs cycles that press into the surface. Returns the worst loss, in tolerances.
   template <class Judge>
   double run(MotionConstraint& guard, bool joints, int cycles, const Judge& judge) {
     Random random(7);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The set-up of the cutting experiment of Li et al. (2020), section V-B: a manipulator with joint
-// limits cuts along a plane, in a corridor of 1 mm to each side, over a skull that it must not
-// touch. The judge has kinematics and distances of its own.
+// The set-up of the cutting experiment of Li et al. (2020), section V-B. A manipulator with joint
+// limits cuts along a plane, within 1 mm to each side, over a skull that it must not touch. The
+// judge uses independent kinematics and distances.
 
 #include <cstdio>
 
@@ -49,7 +49,7 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
   int blocked = 0;
   double cut = 0.0;
   for (int cycle = 0; cycle < test::trials(20'000); ++cycle) {
-    // Strokes to and fro along the plane, pressed on the bone, by a hand that wanders sideways.
+    // The operator strokes back and forth along the plane, presses on the bone and drifts sideways.
     const double way = cycle / 400 % 2 == 0 ? 1.0 : -1.0;
     const Twist hand{
         .linear = Vec3(std::sin(cycle / 170.0), way, -0.5) * 0.4 + 0.2 * random.direction(),
@@ -71,14 +71,14 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
     cut += step.increment.empty() ? 0.0 : std::abs(step.increment[1]);
   }
   std::printf(
-      "outside of the corridor by %.6f mm at most; %.6f mm from the bone at least; held by "
+      "at most %.6f mm outside of the corridor; at least %.6f mm from the bone; limited by "
       "the corridor in %d cycles, near the bone in %d\n",
       farthest, nearest, held, blocked);
   EXPECT_LE(farthest, corridor.band() + 1e-8);
   EXPECT_GE(nearest, kept);
   EXPECT_GT(held, test::trials(1000));
   EXPECT_GT(blocked, test::trials(1000));
-  EXPECT_GT(cut, test::trials(1.0)) << "and yet it moves";
+  EXPECT_GT(cut, test::trials(1.0)) << "the robot hardly moves";
 }
 
 }  // namespace

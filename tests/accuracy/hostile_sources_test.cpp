@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ten million hostile steps of the certified rule, each made with the traversal of a tree and with
-// all hits around: status, motion, increment, planes and distance are the same, bit for bit, on
-// every SIMD target.
+// Makes ten million hostile steps of the certified rule, each with the traversal of a tree and with
+// all hits around. Status, motion, increment, planes and distance are bitwise identical on every
+// SIMD target.
 
 #include <cstdio>
 #include <functional>
@@ -27,8 +27,8 @@ const TipJacobian::Matrix& five_joints() {
   return jacobian;
 }
 
-/// Lengths and options that a rule has to bear: margins from just above the least one, eight
-/// tolerances, to a tenth of the mesh; motions from a hundredth of the margin to far across it.
+/// Random lengths and options. Margins range from just above the least allowed, eight tolerances,
+/// to a tenth of the mesh. Motions range from a hundredth of the margin to far beyond it.
 struct Setting {
   StepOptions options;
   double tolerance;  // of the certified rule, near the origin [length]
@@ -54,7 +54,7 @@ struct Setting {
   }
 };
 
-/// Corners of a mesh, and points of its edges and, as many as of both, of its faces.
+/// Returns corners of a mesh, points on its edges, and twice as many points on its faces.
 std::vector<Vec3> points_on(const Mesh& mesh, Random& random) {
   constexpr std::size_t of_a_kind = 5000;
   std::vector<Vec3> points = surface_points(mesh, 2 * of_a_kind, 0.0, random);
@@ -65,11 +65,12 @@ std::vector<Vec3> points_on(const Mesh& mesh, Random& random) {
   return points;
 }
 
-/// Over a point of the mesh, so far off that the steps of the ladder of tolerances are all met.
+/// Returns a tip near a point of the mesh. Its distance covers each multiple of the tolerance at
+/// which the rule changes its behavior.
 Vec3 hostile_tip(const Mesh& mesh, const SpatialIndex& index, const Vec3& on,
                  const Setting& setting, Random& random) {
   const double margin = setting.options.margin;
-  const double steps = 0.25 * std::floor(random.uniform(-2.0, 24.0));  // of the ladder
+  const double steps = 0.25 * std::floor(random.uniform(-2.0, 24.0));  // [tolerances]
   const double far[] = {margin - steps * setting.tolerance, margin * random.uniform(0.0, 1.5),
                         random.uniform(0.0, 12.0) * setting.tolerance, 0.0};
   const double clearance = far[random.below(4)];
@@ -80,7 +81,7 @@ Vec3 hostile_tip(const Mesh& mesh, const SpatialIndex& index, const Vec3& on,
   return off + closest.offset * (1.0 - clearance / closest.distance);
 }
 
-/// Into the surface, along it, off it, straight along an axis, or anywhere.
+/// Returns a unit vector: into the surface, along it, at an angle into it, along an axis, or any.
 Vec3 hostile_way(const Mesh& mesh, const Vec3& tip, const SpatialIndex& index, Random& random) {
   NearestTriangle nearest(mesh, index);
   const Vec3 down = nearest(tip).closest.offset;
@@ -101,13 +102,13 @@ Vec3 hostile_way(const Mesh& mesh, const Vec3& tip, const SpatialIndex& index, R
   }
 }
 
-/// How many steps there were, and how many of them were held back or led off.
+/// Counts the steps, and those that are limited or recovering.
 struct Tally {
   std::size_t steps = 0;
   std::size_t held = 0;
 };
 
-/// Strokes on one mesh; the tip goes where it is let.
+/// Runs strokes on one mesh. The tip makes the returned motions.
 void attack(Sources& sources, std::size_t steps, Random& random, Tally& tally) {
   const std::size_t end = tally.steps + steps;
   const std::vector<Vec3> points = points_on(*sources.mesh, random);
@@ -141,7 +142,7 @@ class HostileSources : public testing::TestWithParam<std::string_view> {
   ~HostileSources() override { use_simd_target(simd_targets().front()); }
 };
 
-// A part of the ten million for each target.
+// Each target makes a part of the ten million steps.
 TEST_P(HostileSources, AgreeBitForBitOverTenMillionStepsOnAllTargets) {
   use_simd_target(GetParam());
   const std::vector<std::string> shapes = names_of_shapes();
@@ -156,7 +157,7 @@ TEST_P(HostileSources, AgreeBitForBitOverTenMillionStepsOnAllTargets) {
   }
   EXPECT_GE(tally.steps, steps_in_all / simd_targets().size());
   EXPECT_GT(tally.held, tally.steps / 4);
-  std::printf("%zu steps, %zu of them held back or led off\n", tally.steps, tally.held);
+  std::printf("%zu steps, %zu of them limited or recovering\n", tally.steps, tally.held);
 }
 
 INSTANTIATE_TEST_SUITE_P(EachTarget, HostileSources, testing::ValuesIn(simd_targets()), by_name);

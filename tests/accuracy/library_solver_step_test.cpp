@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole step with a solver of a library agrees with the step with our own, or stands still and
-// says so.
+// A step with a solver of a library agrees with a step with active_set, or has no motion and a
+// status.
 
 #include "accuracy/certified_loop.h"
 #include "keepout/solvers/registry.h"
@@ -23,7 +23,7 @@ class LibrarySolverStep : public testing::TestWithParam<std::string> {
     if (!here) GTEST_SKIP() << "this build was made without nlopt_slsqp";
   }
 
-  /// Closed loops in contact, led by active_set; each step taken by the other solver as well.
+  /// Runs closed loops in contact with active_set. The other solver computes each step as well.
   Counts run(const Shape& shape, bool joints) {
     const auto mesh = mesh_of(shape.make());
     MotionConstraintSettings settings{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Anatomy that moves under a running loop: no step is made on what it was.
+// Anatomy moves during a running loop: no step uses an outdated mesh.
 
 #include <atomic>
 #include <chrono>
@@ -25,7 +25,7 @@ MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh,
   return make_motion_constraint(mesh, index, {.options = {.radius = radius, .margin = margin}});
 }
 
-/// Fails if a step breaks a promise. Returns the place of the tip after it.
+/// Fails if a step breaks a promise. Returns the next position of the tip.
 Vec3 stepped(MotionConstraint& guard, oracle::TipJudge& judge, const Vec3& tip,
              const Vec3& desired) {
   const Motion motion{.tip = tip, .desired = desired};
@@ -74,7 +74,7 @@ TEST(MovingAnatomy, IsFollowedOnAnIndexThatIsRefit) {
   }
 }
 
-/// What makes the next index ready while the loop goes on with the last one.
+/// Prepares the next index in a thread, while the loop runs with the last one.
 class Watcher {
  public:
   struct Anatomy {
@@ -143,7 +143,7 @@ TEST(MovingAnatomy, IsFollowedTenTimesASecondUnderARunningLoop) {
 }
 
 TEST(MovingAnatomy, WatchesOfTheCallersOwnAreOfTheMeshTheyWereMadeOn) {
-  // The wall of a cube comes over a tip that a step has left on the free side, close by.
+  // A wall of the cube moves over a tip that the last step left nearby, on the free side.
   const Surface cube = make_cube(5.0);
   const auto mesh = mesh_of(cube);
   const auto tree = std::make_shared<WideBvh>(mesh);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A psm beside real anatomy that swings by 50 mm/s and turns by 30 degrees a second under it, as
-// breath and pulse move it. The judge has kinematics and distances of its own.
+// A psm above real anatomy that moves at up to 50 mm/s and turns at up to 30 degrees per second, as
+// with breathing and pulse. The judge uses independent kinematics and distances.
 
 #include <cstdio>
 
@@ -20,7 +20,7 @@ constexpr double amplitude = 3.0;                        // [mm]
 constexpr double rate = fastest / amplitude;             // [rad/s]
 constexpr double fastest_turn = std::numbers::pi / 6.0;  // [rad/s]
 
-/// The frame of anatomy that swings along one axis and about another, both through a place.
+/// A frame that oscillates along one axis and about another, both through `place`.
 struct Swing {
   Vec3 place;
   Vec3 along;
@@ -32,7 +32,7 @@ struct Swing {
     const Vec3 way = amplitude * std::sin(rate * time) * along;
     return {place + way - rotation * place, rotation};
   }
-  /// That leads from there to where it is a cycle later.
+  /// Returns the velocity that moves the frame to its pose one cycle later.
   Twist velocity(double time) const {
     const Pose now = at(time);
     const Pose then = at(time + cycle_time);
@@ -64,7 +64,7 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
                                {.period = cycle_time});
     std::vector<double> q{0, 0, 0, 0, 0, 0};
     const ChainState state = test::state_of(chain, q);
-    q[2] = state.flange().position.z() - top.z() - 6.0;  // above the surface, however it swings
+    q[2] = state.flange().position.z() - top.z() - 6.0;  // above the surface at each time
     oracle::RobotJudge judge({oracle::judged_psm(), chain.base(), {{tree}}}, chain, samples, q,
                              guard.options(), guard.tolerance());
     for (int cycle = 0; cycle < 1000; ++cycle, ++cycles) {
@@ -99,13 +99,13 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
   EXPECT_LE(named + stopped, cycles / 100);
 }
 
-// A liver that breath deforms. The index is refit ten times a second, and the constraint follows
-// it. Between two refits each cycle is certified on the mesh as it is. After each refit the
-// constraint measures the distances of the bodies anew.
+// Breathing deforms a liver. The index is refit ten times per second, and the constraint follows
+// it. Between two refits, each cycle is certified on the present mesh. After each refit, the
+// constraint measures the distances of the bodies again.
 TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
   const auto still = load_mesh(fixture_path("liver")).mesh;
   const Vec3 top = highest_vertex(*still);
-  // It swells towards the port, most at the top, by 3 mm.
+  // The liver swells towards the port by up to 3 mm, most at the top.
   const auto at = [&](double time) {
     Surface now = surface_of(*still);
     const double swell = 3.0 * std::sin(2.0 * std::numbers::pi * 0.25 * time);
@@ -132,7 +132,8 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
   for (int refit = 1; refit <= refits; ++refit) {
     mesh = at(0.1 * refit);
     tree->refit(mesh);
-    ASSERT_EQ(guard.step(q, Twist{}).status, Status::mesh_changed) << "nothing on what it was";
+    ASSERT_EQ(guard.step(q, Twist{}).status, Status::mesh_changed)
+        << "no motion on the outdated mesh";
     guard.follow(mesh, tree);
     oracle::RobotJudge judge({oracle::judged_psm(),
                               chain.base(),
@@ -155,11 +156,10 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
     }
   }
   std::printf(
-      "liver: %d refits, %d cycles; %d began with the margin and kept %.6f mm at least; %d were "
-      "led "
-      "off; %d stood still\n",
+      "liver: %d refits, %d cycles; %d began with the margin, with a least clearance of %.6f mm; "
+      "%d were recovering; %d had no motion\n",
       refits, cycles, certified, nearest, recovering, stopped);
-  EXPECT_GT(recovering, refits) << "it came over them";
+  EXPECT_GT(recovering, refits) << "the surface moves over the bodies";
   EXPECT_GT(certified, cycles / 2);
 }
 

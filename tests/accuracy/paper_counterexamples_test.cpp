@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the paper's rule does where some reading of it fails: on record, for comparison with rules
-// that do not.
+// Records what the rule of Li et al. (2020) does where some reading of it fails, for comparison
+// with other rules.
 
 #include <map>
 
@@ -20,23 +20,23 @@ struct Record {
 };
 
 const std::map<std::string_view, Record> records{
-    // Coplanar edges count as convex: held.
+    // Safe, because coplanar edges count as convex.
     {"CE1_coplanar_tie", {1, false, {0, 0, -0.1}}},
     // A boundary edge has no neighbor, so no condition holds.
     {"CE2_boundary", {0, true, {0, 0.05, -0.15}}},
-    // With the sign of the convexity corrected: held.
+    // Safe with the corrected sign of the convexity.
     {"CE3_obtuse_valley", {2, false, {-0.625, 0, 0.325}}},
-    // On the ridge both faces speak: held, though a motion along either face is lost as well.
+    // Both faces of the ridge add a plane: safe, but motions along either face are lost as well.
     {"CE4_on_a_ridge", {2, false, {0, 0, 0}}},
-    // The nearest point of the triangle in the way is on a ridge: its neighbor is nearer and takes
-    // its place, but the neighbor's own plane does not cover it.
+    // The nearest point of the blocking triangle is on a ridge. A nearer neighbor replaces the
+    // triangle, but the neighbor's plane does not cover it.
     {"CE5_closed_octahedron", {2, true, {0.6411158, 1.7530604, 0.8382149}}},
     {"CE6b_saddle", {1, true, {0.641005, 1.750159, 0.837938}}},
-    // The motion asked for was free; the plane turns it into the mesh.
+    // The desired motion was free; the plane deflects it into the mesh.
     {"CE6c_larger_saddle", {1, true, {3.7044157, 7.4638551, 2.7698837}}},
-    // The motion asked for was free; a thousandth of it is left.
+    // The desired motion was free; a thousandth of it remains.
     {"CE7_lock_up", {3, false, {0.0001, 0.0008, 0.0005}}},
-    // Held, since Condition 3 is asked at vertices too.
+    // Safe, because Condition 3 is checked at vertices too.
     {"CE8_vertex_branch", {4, false, {2.605882, 0.929412, -0.929412}}},
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What docs/safety.md promises beside the certified step itself: each was broken once.
+// Promises of docs/safety.md beside the certified step itself. Each of them was broken once.
 
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -17,7 +17,7 @@
 namespace keepout::test::promises {
 namespace {
 
-// Lengths beyond what is computed with are refused, whatever they are of.
+// Every length outside the supported range is rejected.
 
 TEST(Range, LengthsOutsideAreRefusedWithAWordOnThem) {
   for (const double unit : {1e-80, 1e-29, 1e-17, 1e17, 1e19, 1e25}) {
@@ -65,7 +65,7 @@ TEST_P(RangeWithin, StepsAreCertifiedInWhateverUnit) {
 INSTANTIATE_TEST_SUITE_P(Units, RangeWithin, testing::Values(1e-13, 1e-9, 1e-3, 1e3, 1e9, 1e12));
 
 #if defined(__SSE2__)
-/// Where the processor takes denormal numbers for 0, as loops of audio and control often have it.
+/// The processor treats denormal numbers as 0, as audio and control loops often configure it.
 TEST(RangeWithin, StepsAreTheSameWithoutDenormals) {
   for (const double unit : {1e-13, 1.0}) {
     const MotionConstraintSettings settings{
@@ -90,7 +90,7 @@ TEST(RangeWithin, StepsAreTheSameWithoutDenormals) {
 }
 #endif
 
-// Once its index is of another mesh a guard moves nothing.
+// A guard returns no motion after its index has been refit to another mesh.
 
 class AfterRefit : public testing::TestWithParam<const char*> {};
 
@@ -122,7 +122,7 @@ TEST_P(AfterRefit, NoStepMovesAndNoPolytopeIsFound) {
 
 INSTANTIATE_TEST_SUITE_P(Rules, AfterRefit, testing::Values("certified", "paper", "all_faces"));
 
-/// Fails if a guard moves after its mesh has moved, or did not move before.
+/// Fails if a guard moves after a refit of its index, or does not move before it.
 void expect_standstill_after_refit(const MotionConstraintSettings& settings,
                                    const std::vector<Guide>& guides) {
   const Surface cube = make_cube(5.0);
@@ -140,7 +140,7 @@ void expect_standstill_after_refit(const MotionConstraintSettings& settings,
 }
 
 TEST(AfterRefit, NoStepMovesWithGuides) {
-  const Vec3 out(-1.0, 0.0, 0.0);  // the guide leads the tip back
+  const Vec3 out(-1.0, 0.0, 0.0);  // the guide pulls the tip back
   expect_standstill_after_refit({.options = {.radius = 5.0, .margin = 0.2}},
                                 {Guide::point("side", Region::half_space(out, out))});
 }
@@ -151,7 +151,7 @@ TEST(AfterRefit, NoStepMovesAConvexTool) {
                                 {});
 }
 
-// What a running guard holds on to cannot be replaced behind its back.
+// The mesh and the index that a running guard uses cannot be replaced.
 
 TEST(WhatAGuardRestsOn, IsNotAssignedTo) {
   EXPECT_FALSE(std::is_copy_assignable_v<WideBvh>);
@@ -159,8 +159,6 @@ TEST(WhatAGuardRestsOn, IsNotAssignedTo) {
   EXPECT_FALSE(std::is_copy_assignable_v<Mesh>);
   EXPECT_FALSE(std::is_move_assignable_v<Mesh>);
 }
-
-// An index of another mesh is not accepted.
 
 TEST(IndexOfAnotherMesh, IsRefused) {
   const auto mesh = mesh_of(make_cube(5.0));
@@ -174,10 +172,11 @@ TEST(IndexOfAnotherMesh, IsRefused) {
   }
 }
 
-// What is far off, and used by no triangle, changes nothing; nor does the origin.
+// Vertices that no triangle uses do not change a step. A distant origin changes it only by
+// rounding.
 
 TEST(CoordinatesOf, VerticesThatNoTriangleUsesChangeNothing) {
-  Surface surface = enlarged(make_shape("gear"), 1.0 / 3.0);  // in no floats
+  Surface surface = enlarged(make_shape("gear"), 1.0 / 3.0);  // not exact in single precision
   Surface with_one_more = surface;
   with_one_more.vertices.emplace_back(3e7 / 7.0, -3e7, 3e7);
   const MotionConstraintSettings settings{.options = {.radius = 1.0, .margin = 0.01}};
@@ -225,10 +224,10 @@ TEST(CoordinatesOf, AMeshTooLargeForItsMarginIsWarnedOf) {
   EXPECT_CONTAINS(warnings[0], "keep more than");
 }
 
-// However little a tip is led off that is too close, it comes no closer.
+// A tip that is too close comes no closer, however small `recovery` is.
 
-/// Pushes a tip towards what is nearest to it by what a plane may be missed by without a word,
-/// again and again. Returns how much nearer it came, in tolerances.
+/// Pushes a tip towards the nearest triangle in each cycle, by less than the violation of a plane
+/// that a step accepts. Returns the loss of distance, in tolerances.
 double creep(Loop& loop, Vec3 tip, const Vec3& inwards, int cycles, Random& random) {
   NearestTriangle nearest(loop.mesh(), loop.guard().index());
   const double tau = loop.tolerance(tip);
@@ -255,14 +254,14 @@ TEST_P(LittleRecovery, NothingAddsUp) {
   }
 }
 
-/// A groove along the y axis, open upwards, whose walls meet at an angle.
+/// Returns a groove along the y axis, open upwards, whose walls meet at `angle`. [rad]
 Surface groove(double angle) {
   const double x = 20.0 * std::sin(0.5 * angle), z = 20.0 * std::cos(0.5 * angle);
   return {{{0, -20, 0}, {0, 20, 0}, {x, -20, z}, {x, 20, z}, {-x, -20, z}, {-x, 20, z}},
           {{0, 2, 1}, {1, 2, 3}, {0, 1, 4}, {1, 5, 4}}};
 }
 
-/// Where a way off one wall is a way to the other.
+/// A retreat from one wall approaches the other wall.
 TEST_P(LittleRecovery, NothingAddsUpBetweenWalls) {
   Random random(12);
   const MotionConstraintSettings settings{
@@ -278,7 +277,7 @@ TEST_P(LittleRecovery, NothingAddsUpBetweenWalls) {
   }
 }
 
-/// A joint that cannot lift the tip within its reach takes a little away each cycle.
+/// The only joint moves the tip along the surface and, by a fraction of a tolerance, into it.
 TEST_P(LittleRecovery, NothingAddsUpWhereAJointCannotLeadOff) {
   const MotionConstraintSettings settings{
       .options = {.radius = 1.0, .margin = 1.0, .recovery = GetParam()}};
@@ -296,7 +295,7 @@ TEST_P(LittleRecovery, NothingAddsUpWhereAJointCannotLeadOff) {
   }
 }
 
-/// Two walls, each nearer to the middle than the margin.
+/// Both walls are nearer to the middle of the slot than the margin.
 TEST_P(LittleRecovery, LeadsToTheMiddleOfASlotAndKeepsItThere) {
   const MotionConstraintSettings settings{
       .options = {.radius = 1.0, .margin = 1.0, .recovery = GetParam()}};
@@ -332,7 +331,7 @@ TEST_P(LittleRecovery, LeadsToTheMiddleOfASlotAndKeepsItThere) {
 INSTANTIATE_TEST_SUITE_P(Recoveries, LittleRecovery,
                          testing::Values(0.0, 1e-30, 1e-12, 0.007, 0.05, 0.2));
 
-// Zero has one sign in what comes out.
+// A result has no negative zero.
 
 TEST(SignOfZero, IsPlusWhateverItWasInWhatGoesIn) {
   auto guard = make_motion_constraint(mesh_of(make_cube(5.0)), {.options = {.radius = 5.0}});

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Steps are bitwise those of docs/records/steps.txt, which the records of campaigns rely on: as
-// long as the steps are the same, what was measured of them holds. If you change a step on purpose,
-// write the two numbers that the test prints to that file, and measure these records again
-// (docs/records.md).
+// Steps are bitwise those of docs/records/steps.txt. The records of campaigns stay valid as long as
+// the steps are the same. If you change a step on purpose, write the two numbers that the test
+// prints to that file, and measure these records again (docs/records.md).
 
 #include <array>
 #include <bit>
@@ -132,9 +131,9 @@ void add_stroke(int stroke, bool meshes_move, bool is_guided, Fingerprint& finge
 
 TEST(SameSteps, OfInstruments) {
 #if !defined(__x86_64__) || !defined(__GLIBC__)
-  GTEST_SKIP() << "sines are rounded otherwise by this library";
+  GTEST_SKIP() << "this library rounds sines differently";
 #else
-  if (!__builtin_cpu_supports("fma")) GTEST_SKIP() << "sines are rounded otherwise without FMA";
+  if (!__builtin_cpu_supports("fma")) GTEST_SKIP() << "sines are rounded differently without FMA";
   Fingerprint fingerprint;
   int limited = 0;
   for (int stroke = 0; stroke < 40; ++stroke) {

@@ -7,8 +7,8 @@
 
 namespace keepout {
 
-/// Whether the way from `from` to `to` passes through the inside of a triangle. By Cramer's rule on
-/// the segment's and the triangle's own parameters: shares nothing with the engine.
+/// Returns true if the segment from `from` to `to` passes through the inside of a triangle. Applies
+/// Cramer's rule to the parameters of segment and triangle; shares no code with the engine.
 inline bool passes_through(const Triangle& triangle, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
   const Vec3 u = triangle[1] - triangle[0];
@@ -24,7 +24,7 @@ inline bool passes_through(const Triangle& triangle, const Vec3& from, const Vec
     return replaced.determinant() / determinant;
   };
   const double a = with(0), b = with(1), s = with(2);
-  // To end on the triangle is to touch it.
+  // A segment that ends on the triangle only touches it.
   return a >= 0.0 && b >= 0.0 && a + b <= 1.0 && s > 0.0 && s < 1.0 - 1e-9;
 }
 

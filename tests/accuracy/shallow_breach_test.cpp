@@ -16,8 +16,8 @@ double log_uniform(Random& random, double low, double high) {
   return std::pow(10.0, random.uniform(std::log10(low), std::log10(high)));
 }
 
-/// Commands motions from beyond the margin that would end too close by 1e-9 to 1e-4 of the radius,
-/// and fails if one of them is made.
+/// Commands motions from beyond the margin that would end too close by 1e-9 to 1e-4 of the radius.
+/// Fails if a step makes one of them.
 void glance(Loop& loop, double radius, std::size_t tips, Random& random, int& moved) {
   const double beyond = 0.3 * radius * random.uniform();
   for (const Vec3& tip : places(loop, tips, loop.margin() + beyond, random)) {
@@ -69,7 +69,8 @@ TEST(ShallowBreach, BesideSmallTrianglesOfALargeMeshIsSeen) {
 }
 
 // The search region of a motion reaches farthest straight ahead. The bounding box of a face that is
-// square to an axis is no larger than the face. So the face touches only the rim of the region.
+// perpendicular to an axis is no larger than the face. So the face touches only the rim of the
+// region.
 TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
   Random random(7);
   int moved = 0;
@@ -94,7 +95,7 @@ TEST(ShallowBreach, OfAMotionStraightAtAFaceIsSeen) {
   EXPECT_GT(moved, trials(400));
 }
 
-// A motion along a plane may lose a second one, to the rounding of the solver.
+// A motion along a plane may lose a second tolerance to the rounding of the solver.
 TEST(ShallowBreach, OfAMotionWithoutPlanesIsOneToleranceAtTheMost) {
   Random random(10);
   int free = 0;
@@ -110,8 +111,8 @@ TEST(ShallowBreach, OfAMotionWithoutPlanesIsOneToleranceAtTheMost) {
   EXPECT_GT(free, trials(50));
 }
 
-// Damping makes the solver answer with a motion beside the desired one. The desired motion is
-// clear, which does not prove that the answer is.
+// With damping, the solver returns a motion beside the desired one. The desired motion is clear,
+// but this does not prove that the returned motion is.
 TEST(ShallowBreach, BesideADesiredMotionThatIsFreeIsSeen) {
   Random random(5);
   int moved = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Step::limits names what kept a motion from being the one asked for, and nothing else.
+// Step::limits names exactly the causes that make a motion differ from the desired one.
 
 #include <array>
 #include <optional>
@@ -9,7 +9,7 @@
 namespace keepout::test::step_limits {
 namespace {
 
-/// A random question near a shape, with guides, rows and joints or without.
+/// A random motion near a shape, with or without guides, rows and joints.
 struct Question {
   Vec3 tip;
   Vec3 desired;
@@ -58,13 +58,13 @@ class StepLimits : public testing::Test {
   std::shared_ptr<const Mesh> mesh_ = mesh_of("gear");
   MotionConstraintSettings settings_{.options = {.radius = 2.0, .tool_radius = 0.5, .margin = 0.2}};
   MotionConstraint guard_ = make_motion_constraint(mesh_, settings_);
-  // Far away in all directions, for steps without the mesh.
+  // Its mesh is out of reach, for steps that no mesh limits.
   MotionConstraint bare_ = make_motion_constraint(
       mesh_of(Surface{{{1e6, 0, 0}, {1e6, 1, 0}, {1e6, 0, 1}}, {{0, 1, 2}}}), settings_);
 };
 
 TEST_F(StepLimits, NameACauseThatChangesTheMotionWhenItIsTakenAway) {
-  // With --gtest_shuffle --gtest_repeat=50 these are other questions each time.
+  // With --gtest_shuffle --gtest_repeat=50, each repetition draws other motions.
   Random random(5u + static_cast<unsigned>(testing::UnitTest::GetInstance()->random_seed()));
   std::array<int, limit_count> seen{};
   const int count = trials(20'000);
@@ -139,7 +139,7 @@ TEST_F(StepLimits, NameASpentBudgetAndASmallStore) {
   EXPECT_GT(ends_in(Status::over_capacity, Limit::capacity), 20);
 }
 
-// The Jacobian moves the tip along x alone.
+// The Jacobian can move the tip along x only.
 TEST_F(StepLimits, NameAJacobianThatCannotMakeTheMotion) {
   const Eigen::Matrix<double, 3, 1> jacobian(1, 0, 0);
   const Vec3 tip(0, 0, 0);
@@ -148,7 +148,7 @@ TEST_F(StepLimits, NameAJacobianThatCannotMakeTheMotion) {
   EXPECT_TRUE(across.limits.has(Limit::singularity));
   const Step along = bare_.step({.tip = tip, .desired = Vec3(1, 0, 0), .jacobian = jacobian});
   EXPECT_EQ(along.status, Status::free);
-  // A retreat that the joints can make is not the commanded motion, and no singularity.
+  // A retreat that the joints can make differs from the commanded motion, without a singularity.
   Random random(6);
   const Mat3 identity = Mat3::Identity();
   int retreats = 0;
@@ -161,8 +161,8 @@ TEST_F(StepLimits, NameAJacobianThatCannotMakeTheMotion) {
   EXPECT_GT(retreats, 20);
 }
 
-// Two slabs and a ball that the tip is outside of contradict each other so nearly that no solver
-// converges. Standing still satisfies all.
+// The tip is outside of a tube and of a ball. With a slab, these are so nearly infeasible that no
+// solver converges. Zero motion satisfies all of them.
 TEST_F(StepLimits, OfGuidesThatLeaveNoMotionAreTheGuides) {
   bare_.set_guides(
       {Guide::point("a", Region::tube({0.239078528, -0.0644965669, -0.0039728495},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One work budget for a cycle, whatever happens in it: with guides and in a haptic proxy too.
+// One work budget limits all work of a cycle, with guides and in a haptic proxy too.
 
 #include "accuracy/certified_loop.h"
 #include "keepout/control/haptic_proxy.h"
@@ -10,7 +10,7 @@
 namespace keepout::test::work_budget {
 namespace {
 
-/// Counts the triangles that a traversal shows, and is otherwise the traversal of a tree.
+/// A tree that counts the triangles that its traversals visit.
 class CountedTree final : public SpatialIndex {
  public:
   explicit CountedTree(const std::shared_ptr<const Mesh>& mesh) : SpatialIndex(mesh), tree_(mesh) {}
@@ -61,7 +61,7 @@ class CountedTree final : public SpatialIndex {
 
 constexpr std::size_t stated = Capacity::work_units_of_traversals;
 
-/// A tip near the tip of a cone, where many triangles are equally near.
+/// A cone. Many of its triangles are equally near to a tip at its apex.
 struct Scene {
   explicit Scene(VertexId faces, double slope)
       : mesh(mesh_of(make_cone(faces, slope))), tree(std::make_shared<CountedTree>(mesh)) {}
@@ -88,7 +88,7 @@ void for_each_scene(const Check& check) {
   }
 }
 
-/// Returns sixteen round regions about a place, some of which leave it out.
+/// Returns sixteen balls that contain a place near their surfaces.
 std::vector<Guide> balls_about(const Vec3& place) {
   std::vector<Guide> guides;
   for (std::size_t g = 0; g < Guide::most; ++g) {
@@ -128,7 +128,8 @@ TEST(BudgetOfACycle, HoldsWithGuides) {
   EXPECT_GE(guided, 10u);
 }
 
-// A top speed below the motion found made the proxy step twice, and guides up to eight times each.
+// With a top speed below the solved motion, the proxy once stepped twice, and up to eight times
+// each with guides.
 TEST(BudgetOfACycle, HoldsInAHapticProxyWithGuides) {
   std::size_t moved = 0;
   for_each_scene([&](const Scene& scene) {
@@ -149,7 +150,6 @@ TEST(BudgetOfACycle, HoldsInAHapticProxyWithGuides) {
   EXPECT_GE(moved, 20u);
 }
 
-// Faces one by one used to cost half of the budget here, in 613 of 100,000 steps, for no motion.
 /// Counts the cycles of an instrument beside three cones.
 struct InstrumentCycles {
   int guided = 0;
@@ -157,8 +157,8 @@ struct InstrumentCycles {
   int costly = 0;
 };
 
-/// Fails if a cycle does more work than stated. Each guide holds the tip in its region. The speed
-/// is that of two of the cones.
+/// Runs cycles, and fails if one exceeds the budget. Each guide keeps the tip in a region of
+/// `regions_about`. `speed` is that of two of the cones. [length/s]
 InstrumentCycles instrument_cycles(std::vector<Guide> (*regions_about)(const Vec3&), double speed) {
   InstrumentCycles count;
   for_each_scene([&](const Scene& scene) {
@@ -197,8 +197,8 @@ TEST(BudgetOfACycle, HoldsForAnInstrumentBesideMovingMeshes) {
   EXPECT_GT(count.costly, 5);
 }
 
-// A cone comes on below a post of the base, and the proof for the post costs more than a cycle may.
-// The ball far away retreats from a plate all the same.
+// A cone approaches a fixed post from below, and the proof for the post exceeds the budget. A ball
+// far away still retreats from a plate.
 TEST(BudgetOfACycle, IsNotSpentByABodyThatCannotGiveWay) {
   const Scene cone(400, 0.3);
   const auto plate = mesh_of(make_flat_plate(20.0, 1));
@@ -212,7 +212,7 @@ TEST(BudgetOfACycle, IsNotSpentByABodyThatCannotGiveWay) {
   const Vec3 at(100, 0, 0.75);
   const InstrumentStep step = guard.step({at.data(), 3}, {.linear = Vec3(0.1, 0, -0.2)});
   ASSERT_TRUE(step.ok()) << name(step.status);
-  EXPECT_GE(step.increment[2], 0.25 - 1e-9) << "with the plate, which came 0.3 on";
+  EXPECT_GE(step.increment[2], 0.25 - 1e-9) << "with the plate, which approaches by 0.3";
   for (const DegradedClearance& pair : step.degraded) EXPECT_EQ(pair.body, 0);
 }
 
@@ -223,6 +223,7 @@ TEST(BudgetOfACycle, HoldsForAnInstrumentWithGuides) {
   EXPECT_GT(count.costly, 5);
 }
 
+// Testing faces one by one once used half of the budget, in 613 of 100,000 steps, without a motion.
 TEST(BudgetOfACycle, SufficesInsideConesOfUpTo400Faces) {
   Random random(3);
   int found = 0;
@@ -233,7 +234,7 @@ TEST(BudgetOfACycle, SufficesInsideConesOfUpTo400Faces) {
     SCOPED_TRACE(testing::Message() << faces << " faces, slope " << slope);
     const Scene scene(faces, slope);
     MotionConstraint guard = scene.guard();
-    const double height = std::sqrt(1.0 + 1.0 / (slope * slope));  // as far off as the margin
+    const double height = std::sqrt(1.0 + 1.0 / (slope * slope));  // at the distance of the margin
     const Vec3 tip = random.uniform(0.7, 0.999) * Vec3(0, 0, height) + 1e-3 * random.direction();
     const Vec3 desired = random.uniform(0.1, 4.0) * random.direction();
     const Step step = guard.step({.tip = tip, .desired = desired});
@@ -257,11 +258,11 @@ TEST(BudgetOfACycle, EndsInAStatusOfItsOwn) {
   EXPECT_EQ(status("pd_tree", {.work_units = 300}), Status::out_of_budget);
   EXPECT_EQ(status("pd_tree", {.triangles = 100}), Status::over_capacity);
   EXPECT_TRUE(is_ok(status("wide_bvh", {.triangles = 100, .work_units = Budget::unlimited})))
-      << "a traversal needs no room for candidates";
+      << "a traversal needs no capacity for candidates";
 }
 
-// The work budget or the memory of a step runs out at an arbitrary point. Then the step is safe, or
-// nothing moves.
+// The work budget or the memory of a step runs out at an arbitrary point. The step is then safe, or
+// it has no motion.
 
 TEST(SpentBudget, NoStepIsUnsafeWhereverTheWorkEnds) {
   Random random(3);
@@ -288,8 +289,8 @@ TEST(SpentBudget, NoStepIsUnsafeWhereverTheWorkEnds) {
   EXPECT_GT(stopped, trials(50));
 }
 
-// The tip is above a cone of many faces. The budget lasts, but not the memory for prepared
-// triangles and for triangles that the traversal defers.
+// The tip is above a cone of many faces. The budget suffices, but the memory for prepared and for
+// deferred triangles does not.
 TEST(SpentBudget, NoStepIsUnsafeWhereMoreTrianglesAreNearThanFitInMemory) {
   Random random(4);
   int moved = 0;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Neither Embree nor TBB, whose threads it builds with, is compiled with the thread sanitizer. What
-// they do to hand memory from one thread to another it cannot see, and takes for a race.
+// Embree, and TBB whose threads build its trees, are compiled without the thread sanitizer. The
+// sanitizer does not see their synchronization and reports false races.
 #include <tbb/global_control.h>
 
 namespace {
 
-// So Embree builds with the thread that asks for it, and calls none of ours from another.
+// Embree builds in the calling thread only, and calls our functions from no other thread.
 const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
 
 }  // namespace
 
-// And the allocations of both, which they guard by spin locks of their own, are not looked at. What
-// it calls of ours, and all that we do, is.
+// Ignores races in calls from both libraries, which guard their allocations by their own spin
+// locks.
 extern "C" const char* __tsan_default_suppressions() {
   return "called_from_lib:libembree3.so\ncalled_from_lib:libtbb.so\n";
 }

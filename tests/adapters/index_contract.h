@@ -9,7 +9,7 @@
 
 namespace keepout {
 
-/// Places of every kind that an index might get wrong; fewer under sanitizers.
+/// Returns points of every kind that may reveal an error of an index; fewer under sanitizers.
 inline std::vector<Vec3> probing_points(const Mesh& mesh, std::size_t of_each_kind) {
   of_each_kind = test::trials(of_each_kind);
   Random random(1);
@@ -25,7 +25,7 @@ inline std::vector<Vec3> probing_points(const Mesh& mesh, std::size_t of_each_ki
   return points;
 }
 
-/// Radii from zero to the whole mesh, and some that a triangle touches to the last bit.
+/// Returns radii from zero to the whole mesh. Some are exactly the distance of a triangle.
 inline std::vector<double> probing_radii(const Mesh& mesh, const std::vector<double>& distances,
                                          Random& random) {
   const double size = mesh.bounds().size().norm();
@@ -41,14 +41,14 @@ inline std::vector<double> probing_radii(const Mesh& mesh, const std::vector<dou
           farthest};
 }
 
-/// A place to ask at, what brute force says there, and the radii to ask for.
+/// A query point, the distances that brute force computes there, and the query radii.
 struct Probe {
   Vec3 point;
   std::vector<double> distances;  // of every triangle
   std::vector<double> radii;
 };
 
-/// Worked out once for all the indices of a mesh.
+/// Returns the probes of a mesh, computed once for all indices.
 inline std::vector<Probe> probes(const Mesh& mesh, std::size_t of_each_kind) {
   Random random(2);
   std::vector<Probe> all;
@@ -60,12 +60,12 @@ inline std::vector<Probe> probes(const Mesh& mesh, std::size_t of_each_kind) {
   return all;
 }
 
-/// Fails unless the index finds, at every place and radius, each triangle that brute force finds,
-/// and none twice; and at every place the nearest of them, if it has a search of its own for that.
+/// Fails unless the index returns, for each point and radius, all triangles of brute force, and no
+/// triangle twice. If the index has its own nearest search, it must find the nearest triangle.
 inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
                                     const std::vector<Probe>& probes) {
   TriangleBuffer candidates(mesh.triangle_count());
-  std::vector<std::size_t> found(mesh.triangle_count(), 0);  // in which question
+  std::vector<std::size_t> found(mesh.triangle_count(), 0);  // number of the last query
   std::size_t question = 0;
   Budget unlimited;
   for (const Probe& probe : probes) {
@@ -77,11 +77,11 @@ inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
     for (const double radius : probe.radii) {
       candidates.clear();
       index.collect({probe.point, radius}, candidates);
-      ASSERT_FALSE(candidates.overflowed()) << "a triangle was given twice";
+      ASSERT_FALSE(candidates.overflowed()) << "a triangle is returned twice";
       ++question;
       for (const TriangleId t : candidates) {
         ASSERT_LT(t, found.size());
-        ASSERT_NE(found[t], question) << "gives triangle " << t << " twice";
+        ASSERT_NE(found[t], question) << "returns triangle " << t << " twice";
         found[t] = question;
       }
       for (TriangleId t = 0; t < found.size(); ++t) {
@@ -93,7 +93,7 @@ inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
   }
 }
 
-/// What a test prints of a backend.
+/// Prints the name of a backend in test output.
 inline void PrintTo(const IndexBackend& backend, std::ostream* out) { *out << backend.name; }
 
 }  // namespace keepout

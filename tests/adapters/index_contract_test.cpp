@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every index is held to brute force: the same triangles, whatever the place and the radius.
+// Every index returns all triangles that brute force returns, for any point and radius.
 #include "adapters/index_contract.h"
 
 #include <future>
@@ -12,7 +12,7 @@
 namespace keepout {
 namespace {
 
-/// A lower bound of a segment's distance to a triangle: of the boxes around both.
+/// Returns a lower bound of a segment's distance from a triangle: the distance of their boxes.
 double distance_to_box_around(const Triangle& corners, const Vec3& from, const Vec3& to) {
   const Vec3 low = corners[0].cwiseMin(corners[1]).cwiseMin(corners[2]);
   const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
@@ -22,7 +22,7 @@ double distance_to_box_around(const Triangle& corners, const Vec3& from, const V
 class IndexContract : public testing::TestWithParam<IndexBackend> {};
 
 TEST_P(IndexContract, FindsWhatBruteForceFindsOnEveryGeneratedShape) {
-  if (GetParam().name == "brute_force") return;  // is what the others are held to
+  if (GetParam().name == "brute_force") return;  // is the reference
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
     const auto mesh = mesh_of(shape.make());
@@ -31,10 +31,10 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnEveryGeneratedShape) {
   }
 }
 
-// Indices in float, or with absolute tolerances, are put to the test by where and how large a mesh
-// is.
+// Indices in single precision or with absolute tolerances may fail for some positions and sizes of
+// a mesh.
 TEST_P(IndexContract, FindsWhatBruteForceFindsWhereverTheMeshIsAndHoweverLarge) {
-  if (GetParam().name == "brute_force") return;  // is what the others are held to
+  if (GetParam().name == "brute_force") return;  // is the reference
   for (const double scale : {1e-6, 1.0, 1e6}) {
     for (const double offset : {0.0, 1e6}) {
       SCOPED_TRACE(testing::Message() << "scale " << scale << " offset " << offset);
@@ -49,9 +49,10 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsWhereverTheMeshIsAndHoweverLarge) 
   }
 }
 
-// Ever smaller towards one point: a tree that splits at the mean is as deep as the list is long.
+// The triangles shrink towards one point. A tree that splits at the mean gets as many levels as
+// triangles.
 TEST_P(IndexContract, FindsWhatBruteForceFindsOnAMeshOfEverySize) {
-  if (GetParam().name == "brute_force") return;  // is what the others are held to
+  if (GetParam().name == "brute_force") return;  // is the reference
   Surface surface;
   for (int i = 0; i < 900; ++i) {
     const double size = std::ldexp(1.0, -i);
@@ -65,9 +66,9 @@ TEST_P(IndexContract, FindsWhatBruteForceFindsOnAMeshOfEverySize) {
   expect_brute_force_sets(*mesh, *GetParam().make(mesh), probes(*mesh, 20));
 }
 
-// The normal of a needle is all rounding: a plane through it may be anywhere.
+// The computed normal of a needle consists of rounding errors, so its plane is arbitrary.
 TEST_P(IndexContract, FindsWhatBruteForceFindsOnNeedles) {
-  if (GetParam().name == "brute_force") return;  // is what the others are held to
+  if (GetParam().name == "brute_force") return;  // is the reference
   Random random(4);
   Surface surface;
   for (const double width : {1e-3, 1e-6, 1e-9, 1e-12, 1e-15}) {
@@ -112,8 +113,8 @@ TEST_P(IndexContract, FindsTrianglesThatAreAllOnePoint) {
   }
 }
 
-// For a whole instrument: what is near a shaft. The distance of reference is the narrow phase's,
-// which knows nothing of segments.
+// Instruments query the triangles near a shaft. The reference distance is that of the narrow phase,
+// which has no special case for segments.
 TEST_P(IndexContract, FindsAllThatIsNearACapsuleOnceEach) {
   for (const Shape& shape : shapes_to_try()) {
     SCOPED_TRACE(shape.name);
@@ -143,7 +144,7 @@ TEST_P(IndexContract, FindsAllThatIsNearACapsuleOnceEach) {
   }
 }
 
-// What is left out without a word would be moved into.
+// If an index dropped triangles without a report, the instrument could move into them.
 TEST_P(IndexContract, SaysThatThereIsMoreNearACapsuleThanThereIsRoomFor) {
   const auto mesh = mesh_of(make_cube(25.0));
   const auto index = GetParam().make(mesh);
@@ -176,7 +177,7 @@ TEST_P(IndexContract, ABallThatHoldsTheMeshFindsAllOfIt) {
 }
 
 TEST_P(IndexContract, ProposesLittleWhereThereIsLittle) {
-  if (GetParam().name == "brute_force") return;  // proposes what is there, and nothing else
+  if (GetParam().name == "brute_force") return;  // returns exact results
   const auto mesh = mesh_of("star_bumps");
   const auto index = GetParam().make(mesh);
   TriangleBuffer candidates(mesh->triangle_count());
@@ -287,7 +288,7 @@ TEST(IndexRegistry, EveryIndexOfThisBuildIsEitherThereOrAbsent) {
     EXPECT_CONTAINS(part.needs, "install lib") << part.name;
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }
-  // And whatever else has a row.
+  // All known indices are either present or absent.
   for (const std::string_view ours :
        {"brute_force", "wide_bvh", "pd_tree", "pd_tree_1997", "fcl_obbrss", "fcl_aabb",
         "fcl_collide", "bullet_quantized", "bullet", "bullet_callback", "embree", "cgal"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// More triangles than 21 bits can number: where Bullet by itself takes some for others, silently.
+// More triangles than 21 bits can number. Bullet alone would confuse some of them without an error.
 
 #include "adapters/index_contract.h"
 #include "keepout/adapters/index_registry.h"
@@ -12,7 +12,7 @@ constexpr std::size_t number_of_21_bits = std::size_t{1} << 21;
 class LargeIndex : public testing::TestWithParam<IndexBackend> {};
 
 TEST_P(LargeIndex, LosesNothingOfMoreThan2To21Triangles) {
-  if (GetParam().name == "brute_force") return;  // is what the others are held to
+  if (GetParam().name == "brute_force") return;  // is the reference
   const auto mesh = mesh_of(make_cube(0.236));
   ASSERT_GT(mesh->triangle_count(), number_of_21_bits + 10'000);
   const auto index = GetParam().make(mesh);
@@ -24,7 +24,7 @@ TEST_P(LargeIndex, LosesNothingOfMoreThan2To21Triangles) {
   std::sort(candidates.begin(), candidates.end());
   for (TriangleId t = 0; t < candidates.size(); ++t) ASSERT_EQ(candidates[t], t);
 
-  // Each is found where it is, those about the limit above all.
+  // Each triangle is found at its position, in particular those near the limit.
   Random random(5);
   for (int i = 0; i < 2000; ++i) {
     const auto t = static_cast<TriangleId>(i < 1000 ? random.below(mesh->triangle_count())

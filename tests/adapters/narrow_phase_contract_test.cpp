@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every narrow phase answers, or reports why not, for any input. `keepout compare` measures how
-// well libraries answer: docs/convex_tools.md.
+// Every narrow phase returns an answer or a reason for any input. `keepout compare` measures the
+// accuracy of the libraries: docs/convex_tools.md.
 
 #include <cmath>
 #include <set>
@@ -117,7 +117,7 @@ TEST(NarrowPhaseRegistry, NamesWhatThereIsAndWhatIsMissing) {
   for (const PeerPart& part : narrow_phase_backends().absent()) {
     EXPECT_TRUE(names.insert(part.name).second) << part.name << " is both";
   }
-  // And whatever else has a row.
+  // All known narrow phases are either present or absent.
   for (const std::string_view ours :
        {"exact", "ccd_gjk", "ccd_mpr", "fcl_gjk_libccd", "fcl_gjk_indep"}) {
     EXPECT_TRUE(names.contains(ours)) << ours;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The contract of every index on real anatomy, scans and parts.
+// Tests the contract of every index on real anatomy, scans and parts.
 
 #include "adapters/index_contract.h"
 #include "keepout/adapters/index_registry.h"
@@ -11,14 +11,14 @@ namespace {
 
 class RealIndexContract : public testing::TestWithParam<std::string_view> {};
 
-// One test a mesh, not one an index and mesh: the brute force is most of the work.
+// One test per mesh serves all indices, because brute force takes most of the time.
 TEST_P(RealIndexContract, EveryIndexFindsWhatBruteForceFinds) {
   const std::shared_ptr<const Mesh> mesh = load_mesh(fixture_path(GetParam())).mesh;
-  // About the same number of triangles is looked at for each mesh.
+  // Brute force examines about the same number of triangles for each mesh.
   const std::size_t points = std::clamp<std::size_t>(1'000'000 / mesh->triangle_count(), 3, 40);
   const std::vector<Probe> asked = probes(*mesh, points);
   for (const IndexBackend& backend : index_backends()) {
-    if (backend.name == "brute_force") continue;  // is what the others are held to
+    if (backend.name == "brute_force") continue;  // is the reference
     SCOPED_TRACE(backend.name);
     expect_brute_force_sets(*mesh, *backend.make(mesh), asked);
   }

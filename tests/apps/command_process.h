@@ -14,7 +14,7 @@
 
 namespace keepout::test {
 
-/// How a run of the command ended.
+/// The outcome of a run of the command.
 struct ProcessOutcome {
   int status;          // -1: killed by a signal
   std::string output;  // stdout and stderr
@@ -28,12 +28,13 @@ inline ProcessOutcome succeeded(ProcessOutcome outcome,
   return outcome;
 }
 
-/// The keepout command as a user meets it: run as a process, in a folder of its own.
+/// Runs the keepout command as a process, as a user does, in a folder of its own.
 class CommandFolder : public TemporaryFolder {
  public:
   std::filesystem::path file(const std::string& name) const { return path() / name; }
 
-  /// Pages are plain, as long as `environment`, assignments that precede the command, names none.
+  /// Runs the command. `environment`: assignments that precede it. Pages are plain unless
+  /// KEEPOUT_WEB is one of them.
   ProcessOutcome run(const std::string& arguments, const std::string& environment = {}) const {
     const std::string line = "cd '" + path().string() + "' && LC_ALL=C.UTF-8 KEEPOUT_WEB=nowhere " +
                              environment + " '" KEEPOUT_COMMAND "' " + arguments + " 2>&1";
@@ -46,15 +47,15 @@ class CommandFolder : public TemporaryFolder {
     return outcome;
   }
 
-  /// Fails unless the command refuses the arguments and says so in these words.
+  /// Fails unless the command rejects the arguments with these words.
   void expect_refused(const std::string& arguments, const std::string& words) const {
     const ProcessOutcome outcome = run(arguments);
     EXPECT_NE(outcome.status, 0) << arguments;
     EXPECT_CONTAINS(outcome.output, words) << arguments;
   }
 
-  /// Runs a program with its arguments until its output holds the words, interrupts it then as by
-  /// Ctrl-C, and gives the rest.
+  /// Runs a program until its output contains the words, and then interrupts it as Ctrl-C does.
+  /// Returns its outcome.
   ProcessOutcome interrupted(std::vector<std::string> arguments, const std::string& words) const {
     std::array<int, 2> ends;
     if (::pipe(ends.data()) != 0) return {-1, "no pipe"};

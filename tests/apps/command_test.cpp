@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keepout command as a user meets it: run as a process, judged by what it prints and leaves.
+// The keepout command as a process: its output and its files.
 
 #include <cstdlib>
 #include <iomanip>
@@ -19,7 +19,7 @@ namespace {
 using Outcome = test::ProcessOutcome;
 using Row = std::map<std::string, std::string>;
 
-/// Of the table of simulate, all but the times, which stand in the columns kHz, p50 and p99.
+/// Prints the table of simulate without the times, which are the columns kHz, p50 and p99.
 constexpr const char* untimed_rows =
     " | grep -E '^(rule|none|all_faces|paper|certified) ' | awk '{$3=$4=$5=\"\"; print}'";
 
@@ -30,7 +30,7 @@ class Command : public testing::Test {
   std::filesystem::path file(const std::string& name) const { return folder_.file(name); }
   Outcome run(const std::string& arguments) const { return folder_.run(arguments); }
 
-  /// A CSV file as rows by column name.
+  /// Returns the rows of a CSV file, by column name.
   std::vector<Row> rows(const std::string& name) const {
     std::ifstream stream(file(name));
     const auto cells = [](const std::string& line) {
@@ -92,7 +92,7 @@ TEST_F(Command, ReplaySolvesOneStepForEachLine) {
   EXPECT_EQ(steps[0].at("status"), "free");
   EXPECT_EQ(vector(steps[0], "u"), Vec3(1, 2, -3));
   EXPECT_EQ(steps[1].at("status"), "limited");
-  EXPECT_LT((vector(steps[1], "u") - Vec3(1, -2, -0.8)).norm(), 1e-12);  // a margin of 0.2
+  EXPECT_LT((vector(steps[1], "u") - Vec3(1, -2, -0.8)).norm(), 1e-12);  // with a margin of 0.2
   EXPECT_EQ(vector(steps[1], "p"), Vec3(3, 4, 51));
   EXPECT_EQ(steps[2].at("status"), "beyond_reach");
   EXPECT_EQ(vector(steps[2], "u"), Vec3(0, 0, 0));
@@ -220,7 +220,7 @@ TEST_F(Command, AConvexToolByNameStepsAsPutTogetherByHandBitForBit) {
   const auto phases = narrow_phase_backends();
   std::size_t number = 0;
   for (const auto& [text, tool] : test::tools_by_name()) {
-    const std::string phase(phases[number++ % phases.size()].name);  // each of them once
+    const std::string phase(phases[number++ % phases.size()].name);  // each of them in turn
     const auto loop = test::loop_by_hand(tool, phase);
     std::ofstream poses(file("poses.txt"));
     for (const auto& [tip, desired, status, motion] : loop) {
@@ -238,7 +238,7 @@ TEST_F(Command, AConvexToolByNameStepsAsPutTogetherByHandBitForBit) {
 }
 
 TEST_F(Command, ASignalLeavesNoPartialFile) {
-  // Nobody writes into the pipe, so the command waits with its files half made.
+  // No process writes into the pipe, so the command waits with partial files.
   const Outcome outcome =
       run("--version; mkfifo poses; '" KEEPOUT_COMMAND
           "' replay cube.stl --poses poses --out s.csv --planes p.csv & "

@@ -17,7 +17,7 @@ LoadedMesh load(const std::filesystem::path& file) {
   return load_mesh(file, {.check = MeshCheck::none});
 }
 
-/// The triangles by the places of their corners, each begun at its lowest.
+/// Returns the triangles by the coordinates of their corners, each with its lowest corner first.
 std::vector<std::array<std::array<double, 3>, 3>> triangles_of(const Mesh& mesh) {
   std::vector<std::array<std::array<double, 3>, 3>> all;
   for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
@@ -31,7 +31,7 @@ std::vector<std::array<std::array<double, 3>, 3>> triangles_of(const Mesh& mesh)
   return all;
 }
 
-/// A cube of twelve triangles, 40 mm wide, as text: "f 1 3 2" and so on.
+/// Returns an OBJ file of a cube of twelve triangles, 40 mm wide, with some texts replaced.
 std::string cube_with(std::initializer_list<std::pair<std::string, std::string>> changes) {
   std::string text =
       "v -20 -20 -20\nv 20 -20 -20\nv 20 20 -20\nv -20 20 -20\n"
@@ -90,7 +90,7 @@ TEST(Convert, WhatCannotBeDecidedIsSaid) {
 
 TEST(Convert, PartsThatCrossAreCounted) {
   const CommandFolder folder;
-  // A tetrahedron whose tip is in the cube.
+  // A tetrahedron with its tip inside the cube.
   folder.write("cross.obj", cube_with({}) +
                                 "v 0 0 0\nv 0 0 60\nv 30 0 60\nv 0 30 60\n"
                                 "f 9 10 11\nf 9 12 10\nf 9 11 12\nf 10 12 11\n");
@@ -125,7 +125,7 @@ TEST(Convert, UnitsAreScaledAndWindingsFlipped) {
 
 TEST(Convert, RoundingForStlIsSaidAndWelds) {
   const CommandFolder folder;
-  // The corners that differ by 1e-9 are one in single precision.
+  // Corners that differ by 1e-9 are equal in single precision.
   folder.write("cube.obj", cube_with({{"v 20 20 20", "v 20.000000001 20 20"}}) +
                                "v 20.000000002 20 20\nf 7 9 8\n");
   const auto stl = succeeded(folder.run("convert cube.obj out.stl"));

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The program of ./run's first page writes the page of `keepout simulate`, and is built of few sources.
+# Tests that the program of ./run's first page writes the page of `keepout simulate` and needs few sources.
 #   first_page_test.sh BUILD WORK
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail

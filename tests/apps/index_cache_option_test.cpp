@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// --index-cache as a user meets it: the answers are the same, whatever is in the folder.
+// --index-cache, as a user runs it: the results do not depend on the files in the folder.
 
 #include <chrono>
 #include <sstream>
@@ -19,7 +19,7 @@ class IndexCacheOption : public testing::Test {
     plain_answer = answer("");
   }
 
-  /// What the command answers, but for how long it took.
+  /// Returns the results of the command, without times.
   std::string answer(const std::string& options, const std::string& index = "wide_bvh") const {
     succeeded(folder.run("replay gear.stl --poses poses.txt --out steps.csv --index " + index +
                          ' ' + options));
@@ -36,13 +36,13 @@ class IndexCacheOption : public testing::Test {
     return all;
   }
 
-  /// The files in the cache, whatever their names.
+  /// Returns the files in the cache.
   std::vector<std::filesystem::path> cached() const {
     const std::filesystem::directory_iterator files(folder.file("cache"));
     return {begin(files), end(files)};
   }
 
-  static constexpr int untimed_columns = 13;  // the rest are t_..._ns
+  static constexpr int untimed_columns = 13;  // the other columns are t_..._ns
 
   CommandFolder folder;
   std::string plain_answer;
@@ -55,7 +55,7 @@ TEST_F(IndexCacheOption, TheFirstRunKeepsWhatTheSecondAnswersFrom) {
   ASSERT_EQ(files.size(), 1u);
   EXPECT_EQ(files[0].extension(), ".wide_bvh");
 
-  // A file that is read and found good is left as it is.
+  // A file that is valid is read, and not written again.
   const auto long_ago = std::filesystem::last_write_time(files[0]) - std::chrono::hours(1);
   std::filesystem::last_write_time(files[0], long_ago);
   EXPECT_EQ(answer("--index-cache cache"), plain_answer);
@@ -92,12 +92,12 @@ TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
   const ProcessOutcome no_folder = succeeded(folder.run(replay + "occupied/below"));
   EXPECT_CONTAINS(no_folder.output, "keepout: the index is not stored");
   EXPECT_CONTAINS(no_folder.output, "Not a directory");
-  // As when the disk is full: no file may become larger than this.
+  // A limit on the size of files stands for a full disk.
   const ProcessOutcome full =
       succeeded(folder.run(replay + "cache", "trap '' XFSZ; ulimit -f 8; "));
   EXPECT_CONTAINS(full.output, "cannot be written (File too large)");
   EXPECT_TRUE(cached().empty());
-  // Every rule has an index of its own, but the news is the same.
+  // Each rule makes an index of its own, but the message is printed once.
   const std::string all =
       folder.run("simulate gear.stl --out r.html --strokes 1 --cycles 20 --index-cache occupied")
           .output;

@@ -179,7 +179,7 @@ TEST_F(Inspect, APageIsMadeOfTheMeshAndItsFaults) {
   std::ostringstream out;
   inspect({.mesh = file, .page = page, .command = "keepout inspect mesh.stl"}, out);
   EXPECT_CONTAINS(out.str(), "\nPage, with tables, no pictures: " + page.string() + "\n");
-  // Without the front end of pages a plain page, and the record beside it.
+  // Without the front end of pages, a plain page is written, and the record beside it.
   EXPECT_CONTAINS(folder.contents("page.html"), "boundary_edges");
   const nlohmann::json record = nlohmann::json::parse(folder.contents("page.html.json"));
   EXPECT_EQ(record.at("keepout_record"), "inspect");

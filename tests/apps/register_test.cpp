@@ -22,9 +22,9 @@ class Register : public testing::Test {
   }
 
   int status = -1;
-  std::string doubt;  // that the last registration printed on stderr
+  std::string doubt;  // the output of the last registration on stderr
   TemporaryFolder folder;
-  // A quarter of a turn about z, and (10, 20, 30); the last is off by 0.4 mm along x.
+  // A quarter turn about z, and a shift by (10, 20, 30). The last pair is off by 0.4 mm along x.
   std::filesystem::path file = folder.write("pairs.csv",
                                             "mx,my,mz,x,y,z\n0,0,0,10,20,30\n0,0,90,10,20,120\n"
                                             "80,0,0,10,100,30\n0,-70,0,80.4,20,30\n");

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Typos, broken meshes, broken robots, bad requests and full disks, as a clumsy user gives them to the command.
 
-Each case says what the message must contain, and the exit status: 2 for a wrong command line, 1 for a failure. Whatever the
-case, the command ends by itself, without a signal, with one message that names the input, and leaves all files as they were.
+Each case has the texts of the message and the exit status: 2 for a wrong command line, 1 for a failure. In every case the
+command ends without a signal, prints one message that names the input, and leaves all files unchanged.
 """
 
 import gzip
@@ -20,15 +20,15 @@ import pytest
 keepout = os.environ["KEEPOUT_COMMAND"]
 root = Path(__file__).parents[2]
 is_sanitized = bool(os.environ.get("KEEPOUT_SANITIZE"))
-patience = 60 if is_sanitized else 20  # for a command that has nothing to do, on a busy machine [s]
-to_s = "replay cube.off --poses poses.txt --out s.csv"  # what follows is the mistake
+patience = 60 if is_sanitized else 20  # for a command with little work, on a busy machine [s]
+to_s = "replay cube.off --poses poses.txt --out s.csv"  # tests append the mistake
 simulate = "simulate cube --strokes 1 --cycles 20 --activation paper"
 
 length = "expected a number from 1e-15 to 1e15, not "
 zero_or_length = "expected 0 or a number from 1e-15 to 1e15, not "
 above_0 = "expected a number above 0 and at most 1e30, not "
 
-# Names and options that are wrong, and how the message begins.
+# Wrong names and options, and how the message begins.
 wrong_lines = [
     ("", "a command is missing; there are inspect, "),
     ("cube.off", "there is no command 'cube.off'; there are inspect, "),
@@ -62,7 +62,7 @@ wrong_lines = [
     ("plan cube.off --scale=9", "there is no option --scale: convert the mesh first, 'keepout convert IN OUT --scale ...'"),
     ("plan cube.off --flip", "there is no option --flip: convert the mesh first, 'keepout convert IN OUT --flip', and"),
     ("bench --unit m", "--unit can only be used together with --mesh"),
-    # What is missing, too much, or does not go together.
+    # Missing, superfluous and incompatible arguments.
     *((command, "an argument is missing: MESH is required") for command in ("inspect", "simulate", "serve")),
     *((command, "an argument is missing: FILE is required") for command in ("register", "report")),
     ("replay cube --out s.csv", "an argument is missing: --poses is required"),
@@ -102,7 +102,7 @@ wrong_lines = [
     ("bench --index embre", "--index: there is no 'embre'; did you mean 'embree'?"),
     ("bench --poses kontact", "--poses: there is no 'kontact'; did you mean 'contact'?"),
     ("plan --planner RTT", "--planner: there is no 'RTT'; did you mean 'RRT'?"),
-    # Values that an option cannot have.
+    # Values that an option rejects.
     *((f"{to_s} --radius {value}", f"--radius: {length}'{value}'") for value in ("nan", "inf", "0", "-3", "2e30", "5mm", "three")),
     *((f"{to_s} --margin {value}", f"--margin: {zero_or_length}'{value}'") for value in ("-1", "nan", "1e-16", "0,2")),
     (f"{to_s} --margin=-1", f"--margin: {zero_or_length}'-1'"),
@@ -151,7 +151,7 @@ wrong_lines = [
     ("plan --resolution 2", "--resolution: expected a fraction of the extent from 0.000001 to 1, not '2'"),
 ]
 
-# Files that are missing, no files, or of another kind; outputs that cannot be. The message has all of the texts.
+# Files that are missing, not regular or of another kind; outputs that cannot be written. The message has all of the texts.
 files = [
     ("inspect none.stl", "none.stl: there is no such file, and no sample mesh of that name"),
     ("inspect skul", "did you mean 'skull'?"),
@@ -205,7 +205,7 @@ files = [
     ("register f.csv --json /dev/fd/77", "/dev/fd/77: is not open for writing (Bad file descriptor)"),
     ("inspect cube.off --out no/page.html", "no/page.html: cannot write here"),
     ("simulate cube.off --out cube.off", "--out 'cube.off' is the same file as MESH"),
-    ("simulate broken.stl --out no/r.html", "no/r.html", "cannot write here"),  # said before the mesh is read
+    ("simulate broken.stl --out no/r.html", "no/r.html", "cannot write here"),  # reported before the mesh is read
     ("simulate broken.stl --out folder", "folder: is a folder"),
     (f"{simulate} --out old.html --json no/r.json", "no/r.json: cannot write here"),
     ("register f.csv --json f.csv", "--json 'f.csv' is the same file as FILE 'f.csv'"),
@@ -214,7 +214,7 @@ files = [
     ("bench --mesh cube --csv no/b.csv", "no/b.csv: cannot write here"),
     ("compare cube --json no/c.json", "no/c.json: cannot write here"),
     ("plan cube --json no/p.json", "no/p.json: cannot write here"),
-    # Full disks and closed pipes: the limit on the size of a file stands for the disk.
+    # Full disks and closed pipes. A limit on the size of files stands for a full disk.
     ("replay cube.off --poses many.txt --out old.csv", "old.csv: could not be written to the end", "ulimit -f 8;"),
     ("verify cube --steps 100 --json v.json", "v.json: could not be written to the end", "ulimit -f 1;"),
     ("verify cube --steps 100 --json old.json", "old.json: could not be written to the end", "ulimit -f 1;"),
@@ -250,7 +250,7 @@ garbage = random.Random(1).randbytes(3000)
 damaged = "damaged"
 cut_short = "cut short"
 not_finite = "not finite"
-# name: content, and what the message says beside the name.
+# name: content, and what the message contains beside the name
 meshes = {
     "cut.stl": (stl[:70], cut_short),
     "no_end.stl": (stl.replace("endsolid a\n", ""), "ends without 'endsolid'"),
@@ -316,7 +316,7 @@ meshes = {
     **{f"zeros.{kind}": (bytes(1000), f"zeros.{kind}") for kind in formats},
     "part.step": ("ISO-10303-21;", "its extension is none of .stl, .ply, .obj, .off"),
     "no_extension": (stl, "its extension is none of .stl, .ply, .obj, .off"),
-    # No regular files.
+    # Not regular files.
     "folder.stl": (None, "is a directory"),
     **{name: (None, "is not a regular file") for name in ("pipe.stl", "/dev/zero", "/dev/full")},
     "loop.stl": (None, "its links lead in a circle"),
@@ -355,7 +355,7 @@ def files_in(folder):
 
 
 def run(folder, line, before=""):
-    """Returns the end of a command line, as it is typed after 'keepout'. `before`: what the shell does first."""
+    """Runs a command line, as it is typed after 'keepout', and returns the result. `before`: what the shell does first."""
     environment = {**os.environ, "KEEPOUT_WEB": "web", "KEEPOUT_CACHE": "cache", "LC_ALL": "C"}
     began = time.monotonic()
     ended = subprocess.run(["bash", "-c", f'{before} exec "$KEEPOUT_COMMAND" {line}'], cwd=folder, env=environment,
@@ -366,7 +366,7 @@ def run(folder, line, before=""):
 
 
 def judge(folder, line, status, says, before=""):
-    """Fails unless a command line is refused in the right way. Returns the message."""
+    """Fails unless the command rejects a line with this status and these texts, and changes no file. Returns the message."""
     kept = files_in(folder)
     ended = run(folder, line, before)
     text = ended.stderr
@@ -474,7 +474,7 @@ def psm_with(pattern, text):
     return changed
 
 
-# name: content, and what the message says beside the name.
+# name: content, and what the message contains beside the name
 robots = {
     "empty": ("", "it is empty"),
     "cut": (psm[:len(psm) // 2], "not XML"),
@@ -511,7 +511,7 @@ def asked(do, more):
     return '{"do":"%s",%s}' % (do, more)
 
 
-# Requests, the kind of the error, and what its message says. tests/apps/serve/client_test.cpp has those of other shapes.
+# Requests, the kind of the error, and texts of its message. tests/apps/serve/client_test.cpp has requests of other shapes.
 not_a_request = "not_a_request"
 requests = [
     *((asked("instrument", f'"urdf":"{name}.urdf",{capsules}'), "no_instrument", f"{name}.urdf: ", says)
@@ -555,7 +555,7 @@ requests = [
     (asked("place", f'"mesh":7,"frame":{identity}'), "no_anatomy", "'mesh' must be the number of a mesh, 0 to 0, not 7"),
     (asked("place", f'"mesh":0.5,"frame":{identity}'), "no_anatomy", "not 0.5"),
     (asked("place", f'"mesh":0,"frame":{doubled}'), "no_anatomy", "'frame', 'linear' or 'angular' is implausible"),
-    # Lines that are no requests.
+    # Lines that are not requests.
     ("nonsense", "not_json", "the line is not JSON"),
     ('{"do":"step","tip":[0,0,NaN],"desired":[0,0,0]}', "not_json", "column"),
     ('{"do":"step","tip":[0,0,60],"tip":[0,0,61],"desired":[0,0,0]}', not_a_request, "'tip' is given twice"),
@@ -567,14 +567,14 @@ requests = [
     ('{"do":"ping","id":"' + 300_000 * "x" + '"}', "line_too_long", "more than 262144 bytes"),
     (garbage.replace(b"\n", b"").replace(b"\r", b"").decode("latin-1"), "not_json", "the line is not JSON"),
 ]
-# Requests that can be carried out, and what their answers say.
+# Requests that can be carried out, and members of their answers.
 zero = 'q":[0,0,60,0,0,0]'
 answered = [
     (instrument(f'"index":"pd_tree","solver":"active_set","frame":{far_away}'), {"ok": True}),
     (asked("place", f'"mesh":0,"frame":{identity}'), {"ok": True}),  # the last one was refused
     (asked("joint_step", f'"{zero},"increment":[1e300,0,0,0,0,0]'), {"ok": False, "status": "invalid_input"}),
     (asked("joint_step", f'"{zero},"increment":[0,0,0,0,0,0],"weights":[0,1,1,1,1,1]'), {"ok": False, "status": "invalid_input"}),
-    # Far from the mesh: what limits the motion is a joint, not the mesh.
+    # Far from the mesh, a joint limits the motion, and not the mesh.
     (asked("joint_step", f'"{zero},"increment":[1,1,1,1,1,1]'), {"status": "limited", "limits": ["joint_velocity"]}),
     (asked("joint_step", f'"{zero},"linear":[50,0,0]'), {"status": "limited", "limits": ["joint_velocity"]}),
     (asked("joint_step", '"q":[9,9,9,9,9,9],"increment":[0,0,0,0,0,0]'), {"status": "free", "limits": ["joints_outside"]}),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the keepout command ends: signals, a reader that is gone, progress without a terminal, and --quiet."""
+"""The end of the keepout command: signals, a closed pipe, progress without a terminal, and --quiet."""
 
 import json
 import math
@@ -18,8 +18,8 @@ import pytest
 
 keepout = os.environ["KEEPOUT_COMMAND"]
 root = Path(__file__).parents[2]
-patience = 120  # on a busy machine [s]
-soon = 5  # within a second, if nothing else keeps the machine busy [s]
+patience = 120  # for a command on a busy machine [s]
+soon = 5  # enough for something that takes a second if the machine is not busy [s]
 stopping = "keepout: stopping and writing the finished results. Repeat the signal to end at once.\n"
 
 
@@ -178,7 +178,7 @@ def test_a_signal_while_a_later_mesh_is_loaded_keeps_what_is_finished(tmp_path, 
     (tmp_path / "big.stl").write_bytes(bytes(80) + len(triangles).to_bytes(4, "little") + triangles.tobytes())
     process = start(tmp_path, *line.split(), "--json", "r.json")
     memory = Path(f"/proc/{process.pid}/status")
-    while int(re.search(r"VmRSS:\s*(\d+) kB", memory.read_text())[1]) < 120_000:  # the cube takes a third of it
+    while int(re.search(r"VmRSS:\s*(\d+) kB", memory.read_text())[1]) < 120_000:  # the cube needs a third of it
         assert process.poll() is None
         time.sleep(0.005)
     begin = time.monotonic()
@@ -278,7 +278,7 @@ def test_a_result_that_cannot_be_written_does_not_take_the_others_with_it(tmp_pa
 
 
 def preparation(folder, text):
-    """A program that prepares sample meshes, as KEEPOUT_PREPARE names it."""
+    """Writes a program that prepares sample meshes. Returns the environment in which keepout uses it."""
     program = folder / "prepare"
     program.write_text(f"#!/bin/sh\n{text}\n")
     program.chmod(program.stat().st_mode | stat.S_IXUSR)
@@ -371,7 +371,7 @@ def test_without_a_terminal_there_is_a_line_every_ten_seconds_unless_it_is_quiet
     for name, process in running.items():
         _, err = process.communicate(timeout=patience)
         assert process.returncode == 130, f"{name}: {err}"
-        # `compare` has short parts: each tells its seconds at its end.
+        # The parts of `compare` are short: it prints the seconds of each one at its end.
         lines = re.findall(r": [\d.]+ s$" if name == "compare" else r" % after 1\d s", err, re.MULTILINE)
         assert bool(lines) != bool(quiet), f"{name}: {err}"
         if quiet:
@@ -399,7 +399,7 @@ def test_quiet_keeps_warnings_and_goes_before_and_behind_the_command(tmp_path):
 
 
 def test_a_tool_that_never_moves_is_not_praised(tmp_path):
-    """In a cavity of 100 mm whose lengths are in meters."""
+    """The tool is in a cavity of 100 mm whose lengths are in meters."""
     corners = [(x, y, z) for z in (-0.05, 0.05) for y in (-0.05, 0.05) for x in (-0.05, 0.05)]
     faces = ["1 2 0", "3 2 1", "6 5 4", "6 7 5", "4 1 0", "4 5 1", "3 6 2", "7 6 3", "2 4 0", "6 4 2", "5 3 1", "7 3 5"]
     (tmp_path / "meters.off").write_text("OFF\n8 12 0\n" + "".join("%g %g %g\n" % corner for corner in corners)

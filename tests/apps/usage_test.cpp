@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the command ends with, and what it is called; mistyped command lines: test_bad_input.py.
+// The exit status of the command, and its name. Mistyped command lines: test_bad_input.py.
 
 #include "apps/command_process.h"
 #include "shared/names.h"
@@ -9,7 +9,7 @@ namespace {
 
 using Outcome = test::ProcessOutcome;
 
-/// Gives the command the name by which ./run calls it.
+/// Runs the command under the name by which ./run calls it.
 constexpr const char* as_run = R"(bash -c 'exec -a ./run "$0" "$@"' )";
 
 TEST(Suggestion, NamesWhatWasLikelyMeant) {
@@ -73,7 +73,7 @@ TEST(Usage, HelpCallsTheCommandWhatTheUserHasCalledIt) {
   EXPECT_CONTAINS(folder.run("inspec").output, "See 'keepout --help'.");
   const Outcome by_run = folder.run("simulate cub --raduis 1", as_run);
   EXPECT_CONTAINS(by_run.output, "See './run simulate --help'.");
-  // What only ./run does is told by it alone.
+  // Only the help of ./run lists what only ./run does.
   EXPECT_CONTAINS(folder.run("--help", as_run).output, "./run experiments");
   EXPECT_LACKS(folder.run("--help").output, "experiments");
 }

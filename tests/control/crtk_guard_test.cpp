@@ -14,7 +14,7 @@ namespace keepout::test::crtk_guard {
 namespace {
 constexpr double accuracy = 1e-9;  // [m]
 
-/// A robot whose base is turned and 300 mm away from the mesh.
+/// Returns the registration of a robot whose base is rotated, and 300 mm away from the mesh.
 Registration registration() {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() =
@@ -27,7 +27,7 @@ Registration registration() {
 
 const Mat3 tilted = Eigen::AngleAxisd(0.3, Vec3::UnitX()).toRotationMatrix();
 
-/// In the robot's frame, in meters.
+/// Returns the pose of a point of the mesh in the robot's frame, in meters.
 Pose pose_at(const Vec3& point_of_mesh, const Mat3& rotation = tilted) {
   return {registration().point_to_robot(point_of_mesh), rotation};
 }
@@ -44,7 +44,7 @@ class Crtk : public testing::Test {
     EXPECT_EQ(guard.engage(pose_at(above)), CycleStatus::guarded);
     return guard;
   }
-  /// Straight down from where it is engaged, in so many cycles.
+  /// Moves straight down to height z from where the guard was engaged.
   static void press(CrtkGuard& guard, double z, int cycles = 200) {
     for (int i = 1; i <= cycles; ++i) {
       guard.servo_cp(
@@ -69,7 +69,7 @@ TEST_F(Crtk, AGoalBehindTheSurfaceIsHeldAtTheMarginAndTheHandFeelsIt) {
   const Vec3 held(3, 4, top + kept);
   EXPECT_LT((guard.setpoint_cp()->position - pose_at(held).position).norm(), accuracy);
   EXPECT_EQ(guard.cycle().step, Status::limited);
-  // 1 N/mm, along the outward normal as the robot sees it.
+  // 1 N/mm along the outward normal, in the robot's frame.
   const Vec3 expected = registration().force_to_robot({0, 0, 2.0});
   EXPECT_LT((guard.servo_cf().force - expected).norm(), 1e-6);
   EXPECT_EQ(guard.servo_cf().torque, Vec3::Zero());
@@ -120,7 +120,7 @@ TEST_F(Crtk, ClutchingStartsAnewWithoutForce) {
   EXPECT_GT(guard.servo_cf().force.norm(), 1.9);
   const Pose robot = *guard.setpoint_cp();
   guard.release();
-  // The hand has moved meanwhile; the teleoperation starts from where the robot is.
+  // The operator has moved meanwhile. The teleoperation starts from the pose of the robot.
   EXPECT_EQ(guard.engage(robot), CycleStatus::guarded);
   EXPECT_EQ(guard.servo_cp(robot), CycleStatus::guarded);
   EXPECT_LT(guard.servo_cf().force.norm(), 1e-6);
@@ -163,7 +163,7 @@ TEST_F(Crtk, WithoutMessagesTheLastGoalStandsForAWhile) {
     EXPECT_NEAR(guard.servo_cf().force.norm(), std::max(0.0, 2.0 - 0.2 * i), 1e-6);
     EXPECT_EQ(guard.setpoint_cp()->position, held.position);
   }
-  // Messages again.
+  // Messages arrive again.
   EXPECT_EQ(guard.servo_cp(pose_at({3, 4, top + kept - 2.0})), CycleStatus::guarded);
 }
 
@@ -174,7 +174,7 @@ TEST_F(Crtk, ARobotThatIsNotWhereItWasSentIsWaitedFor) {
   guard.measured_cp(pose_at(above + Vec3(0, 0, 2.1)));
   EXPECT_EQ(guard.servo_cp(pose_at(above + Vec3(0.1, 0, 0))), CycleStatus::lagging);
   EXPECT_LT((guard.setpoint_cp()->position - pose_at(above).position).norm(), 1e-15);
-  // What was measured once is not compared again.
+  // Each measured pose is compared once only.
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::guarded);
   guard.measured_cp({{test::nan, test::nan, test::nan}, tilted});
   EXPECT_EQ(guard.servo_cp(pose_at(above)), CycleStatus::invalid_pose);

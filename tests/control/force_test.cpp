@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The force, its energy and its passivity, apart from any mesh.
+// The force, its energy and its passivity, without a mesh.
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -49,7 +49,7 @@ TEST(SpringDamper, NumbersOutOfRangeAreRefused) {
 
 TEST(PassivityObserver, CountsWhatTheHandPutsInLessWhatItGets) {
   PassivityObserver observer(1.0);
-  observer.observe({0, 0, 2}, {0, 0, -3});  // the hand pushes against the force
+  observer.observe({0, 0, 2}, {0, 0, -3});  // the operator pushes against the force
   EXPECT_EQ(observer.energy(), 6.0);
   EXPECT_EQ(observer.brake({0, 0, 1}, 0.001), Vec3::Zero());
   observer.observe({0, 0, 4}, {0, 0, 2});
@@ -73,7 +73,7 @@ TEST(PassivityObserver, BrakesNoHarderThanItMayAndNotAtRest) {
   EXPECT_NEAR(observer.brake({0, 0, 0.2}, 0.001).z(), -0.01 * 0.2 / 0.001, 1e-12);
   EXPECT_EQ(observer.brake(Vec3::Zero(), 0.001), Vec3::Zero());
   EXPECT_EQ(PassivityObserver().brake({0, 0, 0.2}, 0.001), Vec3::Zero());
-  // Ways so short that their square vanishes do not brake without bounds.
+  // The square of these displacements underflows. The brake must stay bounded.
   EXPECT_TRUE(observer.brake({0, 0, 1e-170}, 0.001).allFinite());
 }
 
@@ -87,14 +87,14 @@ TEST(PassivityObserver, OnLeavingContactDebtsStayAndSurplusGoes) {
   EXPECT_EQ(observer.energy(), -1.0);
 }
 
-/// A mass that falls upon a wall at 0, which a sampled spring holds up; without any friction.
+/// A mass that falls on a wall at 0. A sampled spring without friction repels it.
 struct Fall {
   double period = 0.01;  // of the display [s]
   SpringDamper spring{.stiffness = 2.0, .largest_force = 1e3};
   double largest_brake = 0.0;
   double mass = 2e-4;  // [N s^2 / mm]: 0.2 kg
 
-  /// Energy of the mass after so many cycles over that at the start. [N mm] / [N mm]
+  /// Returns the energy of the mass after `cycles` cycles, divided by its energy at the start.
   double energy_gain(int cycles, EnergyReport* report = nullptr) const {
     PassivityObserver observer(largest_brake);
     EnergyReport account;
@@ -116,7 +116,7 @@ struct Fall {
       } else {
         observer.leave_contact();
       }
-      // Without gravity it flies away once it is off: thrown back by a perfect wall elsewhere.
+      // Without gravity the mass would fly away, so a perfect wall at 5 reflects it.
       if (x > 5.0 && v > 0.0) v = -v;
       for (int i = 0; i < substeps; ++i) {
         v += held.total().z() / mass * period / substeps;
@@ -131,7 +131,7 @@ struct Fall {
 TEST(Passivity, AStiffSpringInASlowLoopIsActiveAndIsSeenToBe) {
   EnergyReport report;
   EXPECT_GT(Fall().energy_gain(400, &report), 10.0);
-  EXPECT_GT(report.active, 0.25);  // as much as the mass had at first
+  EXPECT_GT(report.active, 0.25);  // the initial energy of the mass
   EXPECT_GT(report.to_hand, 0.25);
   EXPECT_LT(report.dissipated, 0.0);
 }

@@ -6,10 +6,10 @@
 
 namespace keepout {
 
-// A cube whose top is the plane z = 50, and a sphere about the origin.
+// A cube whose top is the plane z = 50, and its guard.
 
 inline constexpr double top = 50.0;
-inline constexpr double kept = 0.5;  // margin, of a tool that is a point
+inline constexpr double kept = 0.5;  // the margin; the tool is a point
 
 inline MotionConstraint guard_of(std::shared_ptr<const Mesh> mesh,
                                  MotionConstraintSettings settings = {

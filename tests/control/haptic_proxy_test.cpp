@@ -11,7 +11,7 @@ namespace keepout::test::haptic_proxy {
 namespace {
 constexpr double accuracy = 1e-6;  // of a limited step [mm]
 
-/// Where a hand is led, straight and slowly.
+/// Moves the operator's hand straight and slowly; returns the last cycle.
 HapticCycle lead(HapticProxy& proxy, const Vec3& from, const Vec3& to, int cycles) {
   HapticCycle cycle;
   for (int i = 1; i <= cycles; ++i) {
@@ -51,7 +51,7 @@ TEST(HapticProxy, FollowsTheHandExactlyAndWithoutForceInFreeSpace) {
   EXPECT_EQ(proxy.energy().active, 0.0);
 }
 
-// Beside the cube, in a corridor: the hand feels the wall of the corridor as it feels the mesh.
+// In a corridor beside the cube. The operator feels the wall of the corridor like the mesh.
 TEST(HapticProxy, StaysInItsGuidesAndPullsTheHandBackIntoThem) {
   const SpringDamper spring{.stiffness = 0.7, .damping = 0.002, .largest_force = 4.0};
   HapticOptions options{.spring = spring};
@@ -92,7 +92,7 @@ TEST(HapticProxy, OnASphereTheForceIsRadialAndTheStiffnessTimesTheDepth) {
   lead(proxy, 56.0 * outwards, hand, 300);
   HapticCycle cycle;
   for (int i = 0; i < 300; ++i) cycle = proxy.cycle(hand);
-  // The polyhedron lies within the sphere by some 1/100, and its prepared triangles lean by some
+  // The polyhedron lies inside the sphere by about 1/100, and its triangles are tilted by about
   // 1/50.
   EXPECT_NEAR(cycle.proxy.norm(), 50.0 + kept, 0.05);
   EXPECT_NEAR(cycle.force.norm(), 2.5, 0.05);
@@ -137,7 +137,7 @@ TEST(HapticProxy, TheEnergiesAddUpAndASlowPressIsElastic) {
   HapticProxy proxy = engaged({.spring = {.stiffness = 1.0, .largest_force = 2.0}});
   const Vec3 deep(3.0, 4.0, top + kept - 3.0);
   lead(proxy, above, deep, 20'000);
-  // 2 mm of the spring, and 1 mm at its largest force.
+  // The spring stores 2 N mm over its first 2 mm, and 2 N mm over 1 mm at its largest force.
   EXPECT_NEAR(proxy.energy().stored, 2.0 + 2.0, 1e-5);
   EXPECT_NEAR(proxy.energy().to_hand, -4.0, 1e-3);
   expect_balance(proxy.energy());
@@ -157,8 +157,8 @@ TEST(HapticProxy, ADamperTakesWhatTheTheorySays) {
   const int cycles = static_cast<int>(depth / speed / 0.001);
   lead(proxy, start, deep, cycles);
   lead(proxy, deep, start, cycles);
-  // The integral of damping v^2, there and back; less what it does not take on leaving, where it
-  // would pull, (b v)^2 / 2k; less what a late force gives back, k v T depth.
+  // The integral of damping v^2, there and back. Less (b v)^2 / 2k, because the damper does not
+  // pull on leaving. Less k v T depth, which a late force returns.
   const double force = damping * speed;
   const double expected = 2.0 * force * depth - 0.5 * force * force - speed * 0.001 * depth;
   EXPECT_NEAR(proxy.energy().dissipated, expected, 0.03 * expected);
@@ -172,7 +172,7 @@ TEST(HapticProxy, SlidingDoesNoWork) {
   lead(proxy, start, pressed, 2000);
   const double before = proxy.energy().to_hand;
   lead(proxy, pressed, pressed + Vec3(40, 0, 0), 2000);
-  // The force is held while the hand goes on by one cycle's way, and that is all.
+  // The force is constant for a cycle while the hand moves on. Only this does work.
   EXPECT_NEAR(proxy.energy().to_hand, before, 1e-6) << "nothing of 1 N over 40 mm";
 }
 
@@ -191,7 +191,7 @@ TEST(HapticProxy, WithoutAHandTheProxyStandsAndTheForceFadesWithoutAJump) {
     before = cycle.force.z();
   }
   EXPECT_LT(before, 1e-12);
-  // And comes back as slowly.
+  // The force returns as slowly.
   for (int i = 1; i <= 60; ++i) {
     const HapticCycle cycle = proxy.cycle(hand);
     EXPECT_EQ(cycle.status, CycleStatus::guarded);
@@ -202,7 +202,7 @@ TEST(HapticProxy, WithoutAHandTheProxyStandsAndTheForceFadesWithoutAJump) {
 }
 
 TEST(HapticProxy, WhenTheEngineRefusesTheProxyStandsAndTheForceFadesWithTheHand) {
-  // Deep inside, from where no tip is led out.
+  // Deep inside, where the engine starts no escape.
   HapticProxy proxy(guard_of(cube()), {.fade = 0.02});
   proxy.engage(Vec3::Zero());
   for (int i = 1; i <= 30; ++i) {
@@ -294,7 +294,7 @@ TEST(HapticProxy, IsDeadUntilEngagedAndOnceReleased) {
   EXPECT_EQ(proxy.energy().largest_force, 0.0);
 }
 
-/// A free mass in a hand that lets go: it bounces off the top of the cube, and off a soft ceiling.
+/// Returns the energy gain of a free mass that bounces between the top of the cube and a ceiling.
 double energy_gain_of_bounces(const HapticOptions& options, EnergyReport& report) {
   HapticProxy proxy(guard_of(cube()), options);
   constexpr double mass = 2e-4;  // [N s^2 / mm]

@@ -141,7 +141,7 @@ TEST(Pose, QuaternionsAndRotationsAgree) {
     const auto back = to_rotation(q);
     ASSERT_TRUE(back);
     EXPECT_LT((*back - rotation).cwiseAbs().maxCoeff(), 1e-14);
-    // The negative one is the same rotation.
+    // The negative quaternion is the same rotation.
     EXPECT_LT((*to_rotation({-q.x, -q.y, -q.z, -q.w}) - rotation).cwiseAbs().maxCoeff(), 1e-14);
   }
 }

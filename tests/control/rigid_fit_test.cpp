@@ -17,7 +17,7 @@ namespace {
 
 using Points = std::vector<Vec3>;
 
-// On a head, in millimeters: five that are in no plane, and four that are in one.
+// Points on a head, in millimeters: five that are not in a plane, and four that are.
 const Points on_a_head{{0, 95, 20}, {70, 40, 35}, {-72, 38, 30}, {60, -60, 80}, {-10, -20, 130}};
 const Points in_a_plane{{0, 0, 50}, {90, 0, 50}, {80, 70, 50}, {-10, 60, 50}};
 
@@ -31,7 +31,7 @@ Vec3 noise(Random& random, double deviation) {
   return deviation * Vec3(x, y, z);
 }
 
-/// What a robot measures of the points of a model that is at the inverse of the pose.
+/// Returns the measurements of a robot: the points of a model that is at the inverse of the pose.
 Points seen_from(const Pose& pose, const Points& model) {
   Points measured;
   for (const Vec3& p : model) measured.push_back(pose.rotation.transpose() * (p - pose.position));
@@ -116,7 +116,7 @@ TEST(RigidFit, AMirroredModelIsFittedByARotationAndDoubted) {
   const RigidFit fit = fit_rigid(mirrored, on_a_head);
   EXPECT_NEAR(fit.mesh_from_robot.rotation.determinant(), 1.0, 1e-12);
   EXPECT_CONTAINS(fit.doubt, "reflection");
-  Points flat = in_a_plane;  // half a turn does the same
+  Points flat = in_a_plane;  // half a turn maps them onto the model
   for (Vec3& p : flat) p.x() = -p.x();
   EXPECT_LT(fit_rigid(flat, in_a_plane).fre, 1e-12);
 }
@@ -226,7 +226,7 @@ TEST(TargetError, IsTheOneOfFitzpatrickWestAndMaurer) {
 }
 
 TEST(TargetError, TheMarginsQuantilesAreThoseOfTheTables) {
-  // At the center all deviations are FLE / sqrt(3 N).
+  // At the center all standard deviations are FLE / sqrt(3 N).
   RigidFit fit = fit_rigid(on_a_head, on_a_head);
   const Points at_center{fit.center};
   const Points twice{fit.center, fit.center};
@@ -237,19 +237,19 @@ TEST(TargetError, TheMarginsQuantilesAreThoseOfTheTables) {
   EXPECT_NEAR(margin(at_center, 0.99), std::sqrt(11.3449), 1e-5);  // chi^2 of 3
   EXPECT_NEAR(margin(at_center, 0.5), std::sqrt(2.36597), 1e-5);
   EXPECT_NEAR(margin(twice, 0.99), std::sqrt(16.8119), 1e-5);  // chi^2 of 6
-  fit.fre = std::sqrt(3.0 / 5.0);                              // an FLE of 1 is estimated
+  fit.fre = std::sqrt(3.0 / 5.0);                              // the estimated FLE is 1
   EXPECT_NEAR(registration_margin(fit, at_center) / deviation, std::sqrt(3 * 6.99192), 1e-4);
   EXPECT_NEAR(registration_margin(fit, twice) / deviation, std::sqrt(6 * 5.80177), 1e-4);
-  fit.residuals.resize(3);  // of three pairs
+  fit.residuals.resize(3);  // as of three pairs
   fit.fre = std::sqrt(1.0 / 3.0);
   EXPECT_NEAR(registration_margin(fit, at_center) * 3.0, std::sqrt(3 * 29.4567), 1e-3);
 }
 
-/// At one place, or at several at once: what is expected of many registrations, and what they did.
+/// One place, or several at once: the predicted margins, and the results of many registrations.
 struct Judged {
   Points places;
-  double known;                    // margin for 0.99 with the true FLE [mm]
-  double estimated;                // with an estimated one, for an FRE of 1: proportional to it
+  double known;      // margin for 0.99 with the true FLE [mm]
+  double estimated;  // margin with an estimated FLE, for an FRE of 1; proportional to the FRE
   Mat3 covariance = Mat3::Zero();  // of the true errors, at a single place
   int held_known = 0, held_estimated = 0;
 
@@ -304,7 +304,7 @@ void expect_as_predicted(const char* name, const Points& model, const std::vecto
     const double rms = std::sqrt(j.covariance.trace());
     EXPECT_NEAR(predicted.rms() / rms, 1.0, 0.03);
     EXPECT_LT(off, 2.0 * within);
-    // At the center the errors are alike in all directions, and a margin has nothing to spare.
+    // At the center the errors are isotropic, and the margin is tight.
     const bool is_tight = is_one && j.places.front() == unit.center;
     const double least = count * 0.99 - (is_tight ? 4.0 * std::sqrt(count * 0.0099) : 0.0);
     EXPECT_GE(j.held_known, least);

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Follows a page of docs/ word for word, so that it cannot rot.
+"""Runs the commands and files of a page of docs/ exactly as written, so that the page stays correct.
 
     follow_page.py PAGE FOLDER [--keepout COMMAND] [--prefix INSTALLED] [--python PATH]
 
-Above each block of code a comment that readers do not see says what is to be done with it:
+A comment above each block of code, invisible to readers, states what to do with the block:
 
-    <!-- file: NAME -->      write it to this file, which the text before it must name, too
-    <!-- run -->             run it, as a reader would, in one shell after the other; it must succeed
-    <!-- run fails -->       the same; it must fail
-    <!-- run python -->      the same, if there is a Python module (--python)
-    <!-- output -->          what the last run must have printed, to the letter
-    <!-- by hand: WHY -->    nothing: WHY says what keeps a test from doing it
+    <!-- file: NAME -->      Write it to this file. The text before the block must name the file.
+    <!-- run -->             Run it in a new shell, as a reader would; compile it if it is C++. It must succeed.
+    <!-- run fails -->       Run it. It must fail.
+    <!-- run python -->      Run it if there is a Python module (--python). It must succeed.
+    <!-- output -->          The last run must have printed exactly this.
+    <!-- by hand: WHY -->    Skip it. WHY states why a test cannot do it.
 
-A block without such a comment is an error. FOLDER is emptied first. COMMAND is what `keepout` runs;
-find_package looks into INSTALLED; Python looks into PATH.
+A block without such a comment is an error. FOLDER is emptied first. `keepout` runs COMMAND. find_package
+searches INSTALLED, and Python searches PATH.
 """
 
 import argparse
@@ -43,7 +43,7 @@ class Reader:
         if prefix:
             self.environment["CMAKE_PREFIX_PATH"] = str(prefix)
         if python:
-            # Debian's, which the module was built for.
+            # Debian's Python, for which the module was built.
             (commands / "python3").symlink_to("/usr/bin/python3")
             self.environment["PYTHONPATH"] = str(python)
         self.printed = None  # by the last run
@@ -59,18 +59,18 @@ class Reader:
             line = text.count("\n", 0, block.start()) + 1
             order = ORDER.search(text, 0, block.start())
             if order is None:
-                self.fail(line, "what is to be done with this block? See tests/docs/follow_page.py")
-            self.obey(order["what"], (order["name"] or "").strip(), block["text"], line,
+                self.fail(line, "no comment states what to do with this block: see tests/docs/follow_page.py")
+            self.obey(order["what"], (order["name"] or "").strip(), block["language"], block["text"], line,
                       text[max(0, block.start() - 400):order.start()])
             count += 1
         if count == 0:
             self.fail(1, "there is no block of code: has the page changed its form?")
         print(f"{self.page.name}: {count} blocks")
 
-    def obey(self, what, name, text, line, before):
+    def obey(self, what, name, language, text, line, before):
         if what == "file":
             if f"`{name}`" not in before:
-                self.fail(line, f"nothing tells the reader that this is `{name}`")
+                self.fail(line, f"the text before this block does not name `{name}`")
             path = self.folder / name
             if self.folder not in path.resolve().parents:
                 self.fail(line, f"{name} is not in the folder")
@@ -82,17 +82,26 @@ class Reader:
             if self.printed is not None and self.printed != text:
                 difference = difflib.unified_diff(text.splitlines(), self.printed.splitlines(),
                                                   "the page", "the run", lineterm="")
-                self.fail(line, "prints something else:\n" + "\n".join(difference))
+                self.fail(line, "the output differs:\n" + "\n".join(difference))
         elif what == "by hand":
             if not name:
-                self.fail(line, "say why it is not tested")
+                self.fail(line, "state why it is not tested")
         elif what == "run python" and not self.python:
             self.printed, self.was_left_out = None, True
         else:
-            self.run(text, what == "run fails", line)
+            self.run(self.command(language, text), what == "run fails", line)
 
-    def run(self, text, fails, line):
-        done = subprocess.run(["bash", "-euc", text], cwd=self.folder, env=self.environment,
+    def command(self, language, text):
+        if language == "python":
+            return ["python3", "-c", text]
+        if language == "cpp":
+            (self.folder / "listing.cpp").write_text(text, encoding="utf-8")
+            folders = [f"{self.environment['CMAKE_PREFIX_PATH']}/include", "/usr/include/eigen3"]
+            return ["g++", "-std=c++20", "-fsyntax-only", *(f"-I{folder}" for folder in folders), "listing.cpp"]
+        return ["bash", "-euc", text]
+
+    def run(self, command, fails, line):
+        done = subprocess.run(command, cwd=self.folder, env=self.environment,
                               stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, timeout=600)
         self.printed, self.was_left_out = done.stdout, False

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks that all links of the pages lead somewhere: links_test.py ROOT
+"""Checks all links of the pages: links_test.py ROOT
 
-Every .md file that git would commit; without git, all but those in build/, out/ and hidden folders.
-A relative link must name a file or folder of the sources, by its very letters, and an anchor a heading
-or an <a id> there. Links to the web are not followed. A picture must say in words what it shows. docs/README.md must
+Reads every .md file that git would commit; without git, all except those in build/, out/ and hidden folders.
+A relative link must name a file or folder of the sources, in the same letter case. An anchor must name a heading
+or an <a id> there. Links to the web are not followed. A picture must have a text. docs/README.md must
 have a link to each page beside it, and docs/embedding.md must name each public header.
 """
 
@@ -25,7 +25,7 @@ HEADING = re.compile(r"^#{1,6} +(.+?) *#* *$", re.M)
 
 
 def anchor_of(heading):
-    """The anchor that GitHub gives a heading."""
+    """Returns the anchor that GitHub gives a heading."""
     words = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading).replace("`", "").lower()
     kept = (c for c in words if c in " -_" or unicodedata.category(c)[0] in "LNM")
     return "".join(kept).strip().replace(" ", "-")
@@ -42,7 +42,7 @@ def anchors(page):
 
 
 def exists(path):
-    """Also on file systems that do not tell letters apart."""
+    """Returns true if the path exists in this letter case, even if the file system ignores the case."""
     return path.exists() and (path.name in ("", "..", ".") or
                               path.resolve().name in [p.name for p in path.resolve().parent.iterdir()])
 
@@ -54,7 +54,7 @@ def faults_of(page, root):
     for link in LINK.finditer(text):
         line = text.count("\n", 0, link.start()) + 1
         if link["picture"] and not link["words"].strip():
-            yield line, f"the picture {link['to']} has no words for who cannot see it"
+            yield line, f"the picture {link['to']} has no text for readers who cannot see it"
         parts = urllib.parse.urlsplit(link["to"])
         if parts.scheme or parts.netloc:
             continue
@@ -65,7 +65,7 @@ def faults_of(page, root):
                 yield line, f"there is no {link['to']}"
                 continue
             if root not in target.resolve().parents and target.resolve() != root:
-                yield line, f"{link['to']} is not of the sources"
+                yield line, f"{link['to']} is outside the sources"
                 continue
         if parts.fragment and target.suffix == ".md" and parts.fragment not in anchors(target):
             yield line, f"there is no heading for {link['to']}"
@@ -93,8 +93,8 @@ def main():
               for link in LINK.finditer(overview.read_text(encoding="utf-8"))}
     faults += [f"docs/README.md:1: has no link to {page.name}" for page in pages
                if page.parent == overview.parent and page != overview and page not in listed]
-    faults += [f"docs/embedding.md:1: does not say whether {header} is stable" for header in unnamed_headers(root)]
-    print("\n".join(faults) or f"{len(pages)} pages: all links lead somewhere")
+    faults += [f"docs/embedding.md:1: does not state the stability of {header}" for header in unnamed_headers(root)]
+    print("\n".join(faults) or f"{len(pages)} pages: all links are valid")
     sys.exit(1 if faults else 0)
 
 

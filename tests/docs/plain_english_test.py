@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Counts patterns of prose that make readers stumble: plain_english_test.py ROOT [--list AREA]
 
-Reads the pages (.md) and the comments and docstrings of the sources. Each area has a budget, and the test
-fails if an area has more matches than its budget allows. --list prints the matches of an area.
-CONTRIBUTING.md explains the rules. A text without a match is not yet good: the measure is a reader who
+Reads the pages (.md) and the comments and docstrings of the sources. The test fails if there is a match.
+--list prints the matches of an area. CONTRIBUTING.md explains the rules. A text without a match is not yet good: the measure is a reader who
 understands each sentence at first reading.
 """
 
@@ -17,7 +16,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs" / "figures"))
 from pages import FENCE, blank, of_tree  # noqa: E402
 
-BUDGETS = {"pages": 0, "changelog": 0, "headers": 0, "sources": 0, "tests": 310}  # matches in each area
+AREAS = ("pages", "changelog", "headers", "sources", "tests")
 NAMES = ("*.md", "*.h", "*.cpp", "*.py", "*.pyi", "*.mjs", "*.js", "*.ts", "*.css", "*.sh", "*.cmake", "CMakeLists.txt", "run", "test")
 LONGEST = 30  # words of a sentence
 
@@ -139,7 +138,7 @@ def main():
     parser.add_argument("--list", metavar="AREA", help="print the matches of an area, or of the paths that begin with it")
     arguments = parser.parse_args()
     root = arguments.root.resolve()
-    counts, read = dict.fromkeys(BUDGETS, 0), dict.fromkeys(BUDGETS, 0)
+    counts, read = dict.fromkeys(AREAS, 0), dict.fromkeys(AREAS, 0)
     for path in of_tree(root, NAMES):
         name = path.relative_to(root)
         area = area_of(name)
@@ -151,11 +150,11 @@ def main():
                     print(f"{name}:{place}: {rule}: {sentence}")
     if arguments.list:
         return 0
-    for area, budget in BUDGETS.items():
+    for area in AREAS:
         if read[area] < 100:
             sys.exit(f"{area}: only {read[area]} sentences: has something moved?")
-        print(f"{area}: {counts[area]} matches in {read[area]} sentences, at most {budget}")
-    if any(counts[area] > budget for area, budget in BUDGETS.items()):
+        print(f"{area}: {counts[area]} matches in {read[area]} sentences")
+    if any(counts.values()):
         print("rewrite the sentences that --list AREA prints: CONTRIBUTING.md, English")
         return 1
     return 0

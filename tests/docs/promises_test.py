@@ -5,13 +5,13 @@
 promises.ini beside this file has a section for each feature. A section lists the entry points of the
 feature, and has a cell for each promise of docs/safety.md. A line of a cell names a test:
 
-    PROGRAM Suite.Test          a test of GoogleTest; PROGRAM is one of tests/CMakeLists.txt
-    test_FILE.py::test_NAME     a test in Python
-    ctest NAME                  a test of ctest
-    -: REASON                   the only line: why the promise needs no test for this feature
+    PROGRAM Suite.Test          A GoogleTest in PROGRAM of tests/CMakeLists.txt.
+    test_FILE.py::test_NAME     A Python test.
+    ctest NAME                  A ctest test.
+    -: REASON                   The only line: why this feature needs no test.
 
-The check fails if a promise has no cell, a cell is empty, a test does not exist, or an entry point
-in the sources has no feature. --table prints the table.
+The check fails if a promise has no cell or an empty one, or if a test does not exist. It also fails if
+an entry point in the sources has no feature. --table prints the table.
 """
 
 import configparser
@@ -106,7 +106,7 @@ def entry_points_in_headers(root):
     for path, keyword, name, bases, body in types:
         public = public_part(keyword, body)
         functions = list(functions_in(public))
-        # A rule is one entry point: a constraint calls its functions.
+        # A rule is one entry point, because a constraint calls its functions.
         if "public ActivationRule" in bases:
             yield name
         elif name != "ActivationRule" and any(
@@ -115,7 +115,7 @@ def entry_points_in_headers(root):
             yield from (f"{name}::{function}" for result, function, after in functions
                         if "const" not in after and "static" not in result and function != name
                         and function != "operator")
-        if name in ("Guide", "Region"):  # a kind of guide or region each
+        if name in ("Guide", "Region"):  # each is a kind of guide or region
             yield from (f"{name}::{function}" for result, function, _ in functions
                         if "static" in result)
         yield from (f"{name}::{field}" for field in
@@ -167,12 +167,12 @@ class Sources:
 
     def faults_of_cell(self, lines):
         if not lines:
-            yield "is empty: name a test, or write '-: ' and why there is none"
+            yield "is empty: name a test, or write '-: ' and a reason why there is no test"
         if lines and lines[0].startswith("-"):
             if len(lines) > 1 or not re.fullmatch(r"-: \w.{9,}", lines[0]):
-                yield "is neither tests nor '-: ' and a reason"
+                yield "has neither tests nor '-: ' with a reason"
             return
-        yield from (f"names '{line}', which is no test" for line in lines if not self.has_test(line))
+        yield from (f"names '{line}', which is not a test" for line in lines if not self.has_test(line))
 
     def faults_of(self, table):
         named = set()
@@ -181,7 +181,7 @@ class Sources:
             named |= entries
             yield from (f"{feature}: there is no entry point '{entry}'"
                         for entry in sorted(entries - self.entry_points))
-            yield from (f"{feature}: '{promise}' is no promise of docs/safety.md"
+            yield from (f"{feature}: '{promise}' is not a promise of docs/safety.md"
                         for promise in cells if promise not in (*self.promises, ENTRIES))
             for promise in self.promises:
                 lines = lines_of(cells.get(promise, ""))
@@ -199,7 +199,7 @@ def read_table(path):
 
 
 def require_that_faults_are_found(sources, table):
-    """Fails if the check overlooks a fault that is put into the table."""
+    """Fails if the check does not find a fault that this function adds to the table."""
     feature = next(iter(table))
     entries = table[feature][ENTRIES]
     changes = {"no cell": {"P1": ""}, "a promise that is none": {"P99": "-: there is no such promise"},
@@ -235,7 +235,7 @@ def main():
     cells = [cell for cells in table.values() for name, cell in cells.items() if name != ENTRIES]
     reasons = sum(lines_of(cell)[0].startswith("-") for cell in cells)
     print(f"{len(sources.promises)} promises, {len(table)} features, {len(sources.entry_points)} entry "
-          f"points: {len(cells) - reasons} cells name tests, {reasons} say why there is none")
+          f"points: {len(cells) - reasons} cells name tests, {reasons} state why there is no test")
 
 
 if __name__ == "__main__":

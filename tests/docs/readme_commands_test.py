@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs every command that README.md shows: readme_commands_test.py ROOT FOLDER KEEPOUT
 
-In an empty FOLDER, one after the other, as a reader would right after ./run: what is missing is
-prepared. Only the extents differ, so that it takes a minute. The commands are the lines of indented
-blocks that begin with ./run or echo, and code in the text that begins with "./run ".
+Runs them in an empty FOLDER, one after another, as a reader would after ./run. Missing files are prepared.
+Only the sizes are smaller, so that the test takes a minute. The commands are the lines of indented blocks
+that begin with ./run or echo, and code in the text that begins with "./run ".
 """
 
 import os
@@ -17,7 +17,7 @@ import sys
 BLOCK = re.compile(r"^    ((?:\./run|echo)\b.*)$", re.M)
 INLINE = re.compile(r"(?<!`)`(\./run [^`]+)`(?!`)")
 
-# Of each command: as little as shows that it works.
+# The options of each command for a short run that still shows that the command works.
 SMALL = {
     "simulate": {"--strokes": "1", "--cycles": "100"},
     "verify": {"--steps": "2000"},
@@ -32,7 +32,7 @@ SMALL = {
 
 
 def commands_of(text):
-    """In the order of the page, each once."""
+    """Returns the commands in the order of the page, each once."""
     found = [(match.start(), match[1]) for rule in (BLOCK, INLINE) for match in rule.finditer(text)]
     words = [re.sub(r"\s+", " ", re.sub(r"\s#\s.*", "", command)).strip() for _, command in sorted(found)]
     return [command for command in dict.fromkeys(words) if command not in ("./run", "./run ARGS...")]
@@ -50,7 +50,7 @@ def made_small(command):
 
 
 def web_page(root, folder):
-    """The folder of what ./run makes pages from; where it is not made, of ones without content."""
+    """Returns the folder of the front end that ./run uses for pages. If it is not built, makes empty pages."""
     made = root / "build/web"
     places = {"live": "keepout live: the anatomy", "report": "keepout report: the record",
               "report_with_anatomy": "keepout report: the record"}
@@ -67,7 +67,7 @@ def main():
     root, folder, keepout = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    # As ./run ends, once all is built.
+    # Does the same as the end of ./run after the build.
     run = folder / "run"
     run.write_text(
         '#!/bin/bash\n'

@@ -17,7 +17,7 @@ namespace {
 constexpr std::pair<Subject, const char*> subjects[] = {
     {Subject::tip, "tip"}, {Subject::instrument, "instrument"}, {Subject::polytope, "polytope"}};
 
-/// Returns what a subject has that a reason may name: options, members of results and capacities.
+/// Returns the options, members of results and capacities that a reason for a subject may name.
 std::set<std::string> names_of(Subject subject) {
   switch (subject) {
     case Subject::tip:

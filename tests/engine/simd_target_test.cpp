@@ -34,7 +34,7 @@ TEST(SimdTarget, ThatIsNotThereIsRefusedAndLeavesWhatWasChosen) {
   use_simd_target(simd_targets().front());
 }
 
-/// What on_each_simd_target goes through (trials.h).
+/// on_each_simd_target (trials.h) uses this list.
 TEST(SimdTarget, ThePortableOneIsAlwaysThere) {
   EXPECT_EQ(simd_targets().back(), hwy::TargetName(HWY_STATIC_TARGET));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The examples do what they say: on a sphere, whose top they come down upon.
+// The examples do what they claim, on a sphere: their tools come down onto its top.
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace keepout {
 namespace {
 
-/// Runs an example with these arguments; returns what it prints.
+/// Runs an example with these arguments; returns its output. Fails unless it ends with `status`.
 std::string said(const std::string& example, const std::string& arguments, int status) {
   FILE* pipe = ::popen(("'" KEEPOUT_EXAMPLES + example + "' " + arguments + " 2>&1").c_str(), "r");
   EXPECT_NE(pipe, nullptr);
@@ -24,7 +24,7 @@ std::string said(const std::string& example, const std::string& arguments, int s
   return text;
 }
 
-/// What an example prints of the sphere.
+/// Returns the output of an example for the sphere.
 std::string output_of(const std::string& example) {
   const TemporaryFolder folder;
   const auto mesh = folder.path() / "sphere.stl";
@@ -32,7 +32,7 @@ std::string output_of(const std::string& example) {
   return said(example, "'" + mesh.string() + "'", 0);
 }
 
-/// How often the tip was held back, and where it ended.
+/// The number of cycles in which the tip was limited, and its final position.
 struct Ending {
   int held = 0;
   Vec3 tip = Vec3::Zero();
@@ -48,7 +48,7 @@ Ending ending_of(const std::string& example) {
   return ending;
 }
 
-// The polyhedron lies up to 0.1 within the sphere.
+// The polyhedron lies up to 0.1 inside the sphere.
 constexpr double radius = 50.0 - 0.1;
 
 TEST(Example01, EndsOutsideOfTheMeshByTheMargin) {
@@ -105,7 +105,7 @@ TEST(Example06, AnOwnProgramInTheFreePolytopeKeepsTheMargin) {
             6)
       << text;
   EXPECT_GE(closest, margin - 1e-8);
-  EXPECT_LT(closest, margin + 0.1);  // it does come there
+  EXPECT_LT(closest, margin + 0.1);  // it comes close to the margin
   EXPECT_LT(change, 0.15);
   EXPECT_GT(tip.norm(), radius + margin - 1e-8);
 }
@@ -175,7 +175,7 @@ TEST(Example02, TheJointsKeepTheTipOut) {
             5)
       << text;
   EXPECT_GT(held, 100);
-  // The arm moves along arcs, of which its Jacobian knows the tangents: 0.2 mm of 60 mm.
+  // The arm moves along arcs, and its Jacobian gives their tangents: 0.2 mm on a radius of 60 mm.
   EXPECT_GT(nearest, 0.5 - 0.001);
   EXPECT_LT(nearest, 0.51) << "it does come there";
   EXPECT_GT(tip.norm(), radius + 0.5 - 0.001);
@@ -194,7 +194,7 @@ TEST(Example09, TheWholeInstrumentKeepsTheMarginAndAPlannerIsToldHowFarItMayGo) 
                 &clear, &held, &stopped, &nearest, body, &tip.x(), &tip.y(), &tip.z()),
             8)
       << text;
-  // The jaws' end is 9 mm above the top, and the margin is kept but for its band.
+  // The end of the jaws is 9 mm above the top, and the margin holds except for its band.
   EXPECT_GT(clear, 8.4);
   EXPECT_LT(clear, 8.55);
   EXPECT_GT(held, 1000);
@@ -223,7 +223,7 @@ TEST(Example07, PlansAroundTheSphere) {
             2)
       << text;
   EXPECT_GE(motions, 2);
-  EXPECT_GT(length, 120.0);  // straight on would be 120
+  EXPECT_GT(length, 120.0);  // the straight path would be 120
 }
 
 TEST(Example10, PlansForAShaftAroundTheSphere) {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The whole way, on the experiment that takes a second: command, tables, summary, record and page."""
+"""Tests the command, tables, summary, record and page with an experiment that takes a second."""
 import csv
 import json
 import os
@@ -53,7 +53,7 @@ def test_summary_record_and_page_say_the_same(made: Path) -> None:
     headline = record["experiments"][0]["headline"]
     assert headline in (made / "README.md").read_text()
     assert record["keepout_record"] == "experiments"
-    assert not record["complete"]  # --only leaves the others out
+    assert not record["complete"]  # because --only omits the other experiments
     if "KEEPOUT_COMMAND" in os.environ:
         assert (made / "experiments.html").stat().st_size > 1000
 
@@ -87,7 +87,7 @@ def test_an_empty_folder_name_is_refused() -> None:
 
 
 def test_the_page_has_the_values_that_are_simulated() -> None:
-    """Each row of the table of values in docs/experiments.md: names, and their values in their order."""
+    """Each row of the table of values in docs/experiments.md has names, and their values in the same order."""
     page = (ROOT / "docs" / "experiments.md").read_text()
     known = {
         f"{type(of).__name__}.{name}": value

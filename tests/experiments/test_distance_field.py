@@ -50,8 +50,8 @@ def test_distances_of_a_ball_err_by_the_square_of_the_cell(cell):
     directions = random.normal(size=(300, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
     found = np.array([grid.look(*p) for p in far[:, None] * directions])
-    # Of curvature 1 / r in two directions: the interpolation errs by cell^2 / 4 r at most; and the
-    # ball's triangles lie up to 0.02 mm within the sphere.
+    # The distance has curvature 1 / r in two directions, so the interpolation errs by at most cell^2 / 4 r. The
+    # triangles of the ball are up to 0.02 mm inside the sphere.
     assert np.abs(found[:, 0] - (far - 10.0)).max() < cell**2 / (4 * 8.0) + 0.02
     assert np.abs(found[:, 1:] - directions).max() < cell * 0.35
     assert (found[far < 9.9, 0] < 0).all() and (found[far > 10.1, 0] > 0).all()
@@ -76,7 +76,7 @@ def test_a_plate_thinner_than_a_cell_is_lost(thickness, seen):
     tip = np.array([0.3, 0.4, 3.5])
     for _ in range(100):
         tip = tip + rule.step(tip, np.array([0.0, 0.0, -0.1]))
-    # It stays above the thick one, and is through the thin one.
+    # The tip stays above the thick plate, and passes through the thin one.
     assert tip[2] > 2.7 if seen else tip[2] < 0.0
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures: the same bytes, legible to all, in light and in dark."""
+"""Figures are reproducible, and legible for everyone in light and dark schemes."""
 import itertools
 import re
 import xml.etree.ElementTree as ElementTree
@@ -11,7 +11,7 @@ from skimage.color import colorconv
 
 from experiments import figures
 
-#: What colour-blind eyes make of linear RGB (Machado, Oliveira, Fernandes 2009, severity 1).
+#: Linear RGB as seen with color blindness (Machado, Oliveira, Fernandes 2009, severity 1).
 EYES = {
     "all cones": np.eye(3),
     "protanopia": [[0.1523, 1.0526, -0.2049], [0.1145, 0.7863, 0.0992], [-0.0039, -0.0481, 1.0520]],
@@ -22,7 +22,7 @@ TO_XYZ = colorconv.xyz_from_rgb
 
 
 def drawn() -> str:
-    """A figure of all that figures.py has."""
+    """Returns a figure that uses all functions of figures.py."""
     fig, axes = figures.new(170, 70, columns=2)
     random = np.random.default_rng(1)
     figures.box_plot(axes[0], {m: random.normal(size=9) for m in figures.MODES}, "depth [mm]")
@@ -38,7 +38,7 @@ def linear(shade: str) -> np.ndarray:
 
 
 def lab(light: np.ndarray) -> np.ndarray:
-    """CIE L*a*b* under D65."""
+    """Returns a color in CIE L*a*b* under D65."""
     return colorconv.xyz2lab(TO_XYZ @ np.clip(light, 0, 1))
 
 
@@ -55,7 +55,7 @@ def test_every_colour_adapts():
     assert {"--ink", "--paper", "--mode-certified", "--mode-sdf_0-25"} <= used
     light, dark = re.findall(r"svg\{(.*?)\}", text)
     assert all(f"{name}:#" in light and f"{name}:#" in dark for name in used)
-    assert "fill:var(--ink)" in light  # of what matplotlib draws in black without saying so
+    assert "fill:var(--ink)" in light  # for elements that matplotlib draws in black without a fill attribute
 
 
 @pytest.mark.parametrize("draw, told", [

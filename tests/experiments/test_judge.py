@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The judge of the experiments, against what is known of a box."""
+"""Compares the judge of the experiments with the exact distances of a box."""
 import keepout
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ CORNERS, TRIANGLES = surfaces.box(-1.0, 1.0)
 
 
 def box_distance(points):
-    """Of points from the box with corners at -1 and 1, less than 0 inside."""
+    """Returns the signed distance of points from the box with corners at -1 and 1; below 0 inside."""
     beyond = np.abs(points) - 1.0
     outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1)
     return outside + np.minimum(beyond.max(axis=-1), 0.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The operator does what is said of him: bands and amounts of his errors, an arm that gives way to force."""
+"""Tests the model of the operator: the bands and sizes of errors, and the compliance of the arm."""
 import numpy as np
 import pytest
 from experiments.operator_model import Arm, Operator, adjustments, slow_error, tremor
@@ -8,7 +8,7 @@ PERIOD = 0.001
 
 
 def power_within(signal: np.ndarray, low: float, high: float) -> float:
-    """The share of the power from `low` to `high` Hz."""
+    """Returns the fraction of the power from `low` to `high` Hz."""
     spectrum = np.abs(np.fft.rfft(signal, axis=0)) ** 2
     frequency = np.fft.rfftfreq(len(signal), PERIOD)
     return float(spectrum[(frequency >= low) & (frequency <= high)].sum() / spectrum.sum())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The rules that the experiments compare, where it is plain what each has to do."""
+"""Tests the rules of the experiments in situations with a known result."""
 import numpy as np
 import pytest
 
@@ -15,12 +15,12 @@ MARGIN = 0.2
 TURNING = ["all_faces", "paper", "certified", "closest_points_2007", "vector_field"]
 SHORTENING = ["fcl_continuous", "bullet_sweep"]
 
-#: z = 0 for |x|, |y| <= 50, free above, and a wall at x = 0 that is free for x > 0.
+#: The plane z = 0 for |x|, |y| <= 50, free above. CORNER adds a wall at x = 0 that is free for x > 0.
 FLOOR = np.array([[-50, -50, 0], [50, -50, 0], [50, 50, 0], [-50, 50, 0]], dtype=float)
 CORNER = np.array([[0, -50, 0], [50, -50, 0], [50, 50, 0], [0, 50, 0], [0, -50, 50], [0, 50, 50]],
                   dtype=float)
 TWO_OF_A_QUAD = [(0, 1, 2), (0, 2, 3)]
-#: Of fixtures/src/counterexamples.cpp, CE5: the paper's rule leads the tip through.
+#: CE5 of fixtures/src/counterexamples.cpp: the rule of Li et al. (2020) lets the tip pass through.
 OCTAHEDRON = np.array([[4, 1, 0], [-3, 2, -2], [6, 4, 1], [1, -6, -2], [-6, 3, 4], [0, -2, -1]],
                       dtype=float)
 OF_OCTAHEDRON = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4),
@@ -69,7 +69,7 @@ def test_a_plane_is_kept_out_of_in_closed_loop(mode):
         desired = random.normal(scale=0.3, size=3) - [0.0, 0.0, 0.3]
         tips.append(tips[-1] + rule.step(tips[-1], desired))
     assert judge.least_distances(tips[:-1], tips[1:]).min() >= MARGIN - 1e-6
-    assert tips[-1][2] < MARGIN + 0.2  # it was pressed against the plane all the way
+    assert tips[-1][2] < MARGIN + 0.2  # the tip was pressed against the plane
 
 
 def test_closest_points_keep_both_faces_of_a_valley_and_one_nearest_point_does_not():
@@ -79,7 +79,7 @@ def test_closest_points_keep_both_faces_of_a_valley_and_one_nearest_point_does_n
 
 
 def test_a_point_on_an_edge_is_a_closest_point_only_if_its_triangles_agree():
-    # Over the ridge both faces have the edge for their closest; beside it, one has a nearer point.
+    # Above the ridge, the closest point of both faces is on the edge. Beside it, one face has a nearer point.
     ridge = np.array([[0, -5, 0], [0, 5, 0], [-5, 0, -5], [5, 0, -5]], dtype=float)
     mesh = keepout.Mesh(ridge, [(0, 1, 2), (1, 0, 3)])
     rule = ClosestPoints2007(Task(mesh, margin=MARGIN), keepout.Index(mesh))
@@ -88,7 +88,7 @@ def test_a_point_on_an_edge_is_a_closest_point_only_if_its_triangles_agree():
     down = np.array([1.0, 0.0, -1.0]) / np.sqrt(2.0)  # along the face at the right
     up = np.array([1.0, 0.0, 1.0]) / np.sqrt(2.0)
     beside = rule.step(2.0 * down + 0.5 * up, -3.0 * down)
-    assert beside == pytest.approx(-3.0 * down)  # over the ridge: a plane there would forbid it
+    assert beside == pytest.approx(-3.0 * down)  # a plane of the ridge would forbid this motion
 
 
 @pytest.mark.parametrize("mode", ["closest_points_2007", "vector_field"])
@@ -116,7 +116,7 @@ def test_the_corridor_is_kept_as_well(mode):
 
 @pytest.mark.parametrize("mode, passes", [("paper", True), ("certified", False)])
 def test_the_paper_s_rule_lets_a_counterexample_through(mode, passes):
-    margin = 0.0 if mode == "paper" else 1e-3  # as it is printed
+    margin = 0.0 if mode == "paper" else 1e-3  # as in the publication
     rule = rule_on(mode, OCTAHEDRON, OF_OCTAHEDRON, margin=margin, radius=2.1)
     tip = np.array([3.5, -0.5, -0.75])
     end = tip + rule.step(tip, np.array([0.6382, 1.7526, 0.8442]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is done is kept and used again, tables are the same bytes, and times stand apart."""
+"""Results are stored and reused, tables are reproducible, and times are in separate tables."""
 import shutil
 import sys
 import time
@@ -14,7 +14,7 @@ from experiments.experiment import Claim, Findings, Scale, Table, Unit
 
 @pytest.fixture
 def counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> types.ModuleType:
-    """An experiment that notes in a file each time that it is run."""
+    """Returns an experiment that logs each of its runs in a file."""
     module = types.ModuleType("counted_experiment")
     module.NAME = "counted"
     log = tmp_path / "log"
@@ -73,7 +73,7 @@ def test_rows_depend_on_their_own_experiment_and_not_on_how_they_are_shown(
     runs = runner.source_digest("e2_run_time")
     (copy / "trial.py").write_text("# another trial\n")
     assert runner.source_digest("e3_path_tracing") != before["e3_path_tracing"]
-    assert runner.source_digest("e2_run_time") == runs  # which has no trials
+    assert runner.source_digest("e2_run_time") == runs  # the experiment has no trials
     (copy / "rules" / "projection.py").write_text("# another projection\n")
     before = runner.source_digest("e1_validation")
     (copy / "rules" / "vector_field_inequality.py").write_text("# another rule\n")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Registration errs as theory says, bone is cut as fast as it is pressed, the phantom is as described."""
+"""Tests the errors of a registration against theory, the cutting of bone, and places along a path."""
 import keepout
 import numpy as np
 import pytest

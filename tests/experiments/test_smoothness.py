@@ -14,7 +14,7 @@ def test_sparc_of_a_bell_is_what_its_authors_print():
 
 
 def test_arc_length_of_a_bell_is_that_of_its_continuous_spectrum():
-    # The spectrum of exp(-5 t^2) is exp(-(pi f)^2 / 5): the definition's integral, done finely.
+    # The spectrum of exp(-5 t^2) is exp(-(pi f)^2 / 5). The arc length is integrated on a fine grid.
     f = np.linspace(0.0, 20.0, 200_001)
     amplitude = np.exp(-((np.pi * f) ** 2) / 5.0)
     expected = -np.sum(np.hypot(np.diff(f) / 20.0, np.diff(amplitude)))

@@ -44,13 +44,13 @@ def test_without_spread_the_means_decide():
 
 
 def test_holm_worked_by_hand():
-    # Of 4: 0.005 * 4, 0.01 * 3, 0.03 * 2, and 0.04 * 1, which is raised to the one before.
+    # The 4 adjusted values are 0.005 * 4, 0.01 * 3, 0.03 * 2, and 0.04 * 1, raised to the value before it.
     assert holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
     assert holm([0.6, 0.9]) == [1.0, 1.0]
 
 
 def test_hedges_g_worked_by_hand():
-    # Means 1 apart, pooled deviation sqrt((4 + 16) / 2), 8 degrees of freedom: 1 - 3 / 31.
+    # The means differ by 1, the pooled deviation is sqrt((4 + 16) / 2), and 8 degrees of freedom give 1 - 3 / 31.
     g = hedges_g(Summary(3.0, 2.0, 5), Summary(2.0, 4.0, 5))
     assert g == pytest.approx((28 / 31) / np.sqrt(10))
 

@@ -18,7 +18,7 @@ def walls_of(index):
 
 def test_a_plate_is_a_wall_as_thick_as_it_is_and_a_ball_is_none():
     walls = walls_of(PLATE)
-    assert len(walls.half) > 350  # all but at the rim
+    assert len(walls.half) > 350  # all except those at the rim
     assert walls.half == pytest.approx(0.3, abs=1e-4)
     assert walls.middle[:, 2] == pytest.approx(0.5, abs=1e-4)
     assert len(walls_of(keepout.Index(BALL)).half) == 0

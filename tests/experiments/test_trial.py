@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A trial on the phantom: a fixture holds, none does not, and the same seed is the same trial."""
+"""Tests trials on the phantom, with and without a virtual fixture. The same seed gives the same trial."""
 import numpy as np
 import pytest
 from experiments import anatomy, teleoperation
@@ -17,7 +17,7 @@ from keepout_peers import Judge  # noqa: E402
 
 
 def short_trial(mode: str, seed: int = 1, setup: SetUp = SetUp(), cut: bool = True):
-    """Eight seconds of cutting, deep enough to come through."""
+    """Returns eight seconds of cutting, deep enough to cut through the shell, and their measures."""
     path, index = anatomy.phantom()
     bone = BoneProperties(resistance=0.2) if cut else None
     course = Course(path=path, depth=anatomy.SHELL, speed=0.5, bone=bone, time_limit=8.0)
@@ -45,7 +45,7 @@ def test_the_path_lies_on_the_outside_of_the_skull() -> None:
 def test_certified_holds_a_hand_that_leans_on_it_and_no_fixture_does_not() -> None:
     trace, held = short_trial("certified")
     assert held["crossings"] == 0 and held["deepest_registered_mm"] == 0.0
-    assert held["greatest_force_n"] > 0.1  # it was leant on
+    assert held["greatest_force_n"] > 0.1  # the operator pressed on the fixture
     assert held["beyond_registration_mm"] == 0.0
     across = trace.setpoint[:, 0] - anatomy.SAGITTAL_X
     assert np.abs(across).max() < teleoperation.CORRIDOR + 0.01
@@ -58,7 +58,7 @@ def test_a_fixture_takes_energy_from_the_hand_unless_its_force_comes_late() -> N
     at_once = short_trial("certified", setup=SetUp(latency=0.0))[1]
     trace, late = short_trial("certified", setup=SetUp(latency=0.02))
     assert at_once["energy_mj"] < 0.0 < late["energy_mj"]
-    # The force is at most 0.3 N/mm times the way between goal and setpoint.
+    # The force is at most 0.3 N/mm times the distance between goal and setpoint.
     apart = np.linalg.norm(trace.setpoint - trace.goal, axis=1)
     assert np.all(trace.force <= 0.3 * apart + 1e-9)
 

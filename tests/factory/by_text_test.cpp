@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A convex tool or a guide from a text is the one that is put together by hand.
+// A convex tool or a guide from a text equals the one put together by hand.
 
 #include "factory/tools_by_name.h"
 #include "keepout/factory/guide_text.h"
@@ -59,7 +59,8 @@ TEST(ConvexToolByName, AMangledTextIsAToolOrAnErrorAndNothingElse) {
   EXPECT_GT(tools, 100);
 }
 
-// The steps on all are hardly ever different; that a name is looked up, a wrong one below tells.
+// The steps of different narrow phases hardly ever differ. The test of a wrong name below shows
+// that names are looked up.
 TEST(ConvexToolByName, StepsOnEachNarrowPhaseAsPutTogetherByHandBitForBit) {
   for (const NarrowPhaseBackend& backend : narrow_phase_backends()) {
     for (const auto& [text, tool] : test::tools_by_name()) {

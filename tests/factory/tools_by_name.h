@@ -18,7 +18,7 @@
 
 namespace keepout::test {
 
-/// A text of each form, but for files, and the tool that it must be.
+/// Returns a text of each form except files, and the tool that it must give.
 inline std::vector<std::pair<std::string, ConvexTool>> tools_by_name() {
   const std::array<Vec3, 4> corners{Vec3(0, 0, 0), Vec3(1, 0, 2), Vec3(-1, 0, 2), Vec3(0, 1, 2)};
   return {{"sphere:1.5", ConvexTool::sphere(1.5)},
@@ -28,20 +28,19 @@ inline std::vector<std::pair<std::string, ConvexTool>> tools_by_name() {
           {"hull:0,0,0:1,0,2:-1,0,2:0,1,2:0.25", ConvexTool::hull(corners, 0.25)}};
 }
 
-/// The fixture "cube" of the command.
+/// Returns the shape "cube" of the keepout command.
 inline std::shared_ptr<const Mesh> cube() {
   static const auto shared = std::make_shared<const Mesh>(make_cube(10.0));
   return shared;
 }
 
-/// A step, and what it must be.
 struct ExpectedStep {
   Vec3 tip, desired;
   Status status;
   Vec3 motion;
 };
 
-/// A loop that pushes a tool into the top of the cube, with a constraint put together by hand.
+/// Returns the steps of pushing a tool into the cube, with a constraint put together by hand.
 inline std::vector<ExpectedStep> loop_by_hand(const ConvexTool& tool, std::string_view narrow_phase,
                                               int cycles = 40) {
   MotionConstraint guard(

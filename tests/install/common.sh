@@ -5,10 +5,10 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
 fail() { printf '%s\n' "$*" >&2; exit 1; }
 
-# Of a prefix: where its files of CMake and pkg-config are.
+# Prints the folder of a prefix that has its files of CMake and pkg-config.
 library_folder() { dirname "$(dirname "$(find "$1" -path '*/pkgconfig/keepout.pc')")"; }
 
-# The consumer wants to go 1 aside and 4 down, from 2 above the cube, and to stay 0.5 away.
+# The consumer commands 1 aside and 4 down, from 2 above the cube, with a margin of 0.5.
 run_consumer() {
   local answer
   answer=$(LD_LIBRARY_PATH=$(library_folder "$2") "$1" "$here/cube.obj")
@@ -16,8 +16,8 @@ run_consumer() {
     fail "the consumer answers: $answer"
 }
 
-# bare_compiler FOLDER: makes a compiler that sees the headers of C, C++ and the kernel, and no others
-# but by -I; prints its path.
+# bare_compiler FOLDER: makes a compiler and prints its path. The compiler finds only the headers of C, C++
+# and the kernel, and those of -I.
 bare_compiler() {
   local compiler=${CXX:-c++} folder=$1 version includes= path
   version=$("$compiler" -dumpversion)
@@ -25,7 +25,7 @@ bare_compiler() {
   dpkg -L libc6-dev linux-libc-dev "libstdc++-${version%%.*}-dev" | grep '^/usr/include/' |
     while read -r path; do [ -d "$path" ] || printf '%s\n' "$path"; done |
     (cd "$folder/headers" && xargs cp --parents -sft .)
-  # In the order in which the compiler itself looks.
+  # In the search order of the compiler.
   while read -r path; do
     path=$(realpath -m "$path")
     case $path in

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# find_package(keepout) brings the components asked for, looks for what these need and nothing else,
-# and says what is missing.
+# Tests that find_package(keepout) provides the requested components, searches only for what they need, and
+# reports what is missing.
 #   components_test.sh PREFIX static|shared WORK VERSION
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
@@ -21,7 +21,7 @@ endforeach()
 message(STATUS "version ${keepout_VERSION}, found ${keepout_FOUND}, nonsense ${keepout_nonsense_FOUND}")
 PROJECT
 
-# The compiler is looked at once.
+# All calls share a build folder, so CMake examines the compiler once.
 ask() {
   local words=$1
   shift
@@ -69,7 +69,7 @@ if [ "$form" = static ]; then
   says "has engine"
   says_not "has nlopt"
 fi
-# Modules link the other libraries, and a user's program does not.
+# Modules link the other libraries; a user's program does not.
 answer=$(ask "REQUIRED" "${without_libraries[@]}")
 says "has keepout"
 

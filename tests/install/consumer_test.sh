@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A project outside of ours finds keepout in a prefix, builds and runs.
-# With `bare`: though nothing else is there but Eigen.
+# Tests that a project outside of keepout finds it in a prefix, builds and runs. With `bare`, only Eigen is
+# there.
 #   consumer_test.sh PREFIX WORK [bare]
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
@@ -22,6 +22,6 @@ run_consumer "$work/build/consumer" "$prefix"
 answer=$(LD_LIBRARY_PATH=$(library_folder "$prefix") "$work/build/consumer" 2>&1) && fail "no mesh, and no error"
 [ "$answer" = "usage: consumer MESH" ] || fail "without a mesh the consumer says: $answer"
 
-# And is what the page shows; the second program of the page is built with the tests.
+# docs/embedding.md must show the same programs. The second one is built with the tests.
 sed -n '/^```cpp$/,/^```$/p' "$here/../../docs/embedding.md" | sed '/^```/d' |
   cmp - <(cat "$here"/consumer/{main,instrument}.cpp) || fail "docs/embedding.md shows another program"

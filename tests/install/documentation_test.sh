@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# An installed keepout has its documentation, its manual page and its completion in bash, wherever it
-# lies; each page that its help names is where the help says.
+# Tests that an installed keepout has its documentation, manual page and bash completion, wherever it is
+# installed. Each page that its help names must exist.
 #   documentation_test.sh PREFIX WORK
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
@@ -41,7 +41,7 @@ for page in $named; do
   [[ $page == "$docs"/* && -s $page ]] || fail "help names $page, which is not there"
 done
 
-# Commands and options: all that help has, the manual page has.
+# The manual page must have all commands and options of the help.
 manual=moved/share/man/man1/keepout.1.gz
 for command in $commands; do
   zgrep -q "^\.SS keepout $command \[OPTIONS\]" "$manual" || fail "the manual page has no $command"
@@ -61,7 +61,7 @@ else
   echo "there is no man: how it shows the page is not tested"
 fi
 
-# completes WORDS... EXPECTED: the last of the words may become EXPECTED.
+# completes WORDS... EXPECTED: fails unless the completions of the last word are EXPECTED.
 completes() {
   local expected=${*: -1} words=("${@:1:$#-1}") reply
   reply=$(bash -c '

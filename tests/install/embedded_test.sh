@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# A project that takes keepout in by add_subdirectory gets its targets, and neither its tests nor its
-# files among those that it installs.
+# Tests that a project with add_subdirectory(keepout) gets its targets, but not its tests and installed files.
 #   embedded_test.sh SOURCE WORK
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"

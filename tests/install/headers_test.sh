@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Public headers compile though no third-party header but Eigen's is there: all of them together,
-# and each alone.
+# Tests that public headers compile without third-party headers other than Eigen's: all of them together, and
+# each alone.
 #   headers_test.sh INCLUDE WORK
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"

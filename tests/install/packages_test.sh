@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The Debian packages hold what they should, and nothing that may not be passed on; unpacks them.
+# Unpacks the Debian packages. They hold what they should, and nothing that may not be redistributed.
 #   packages_test.sh WORK SOURCE
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
@@ -16,7 +16,7 @@ for package in "$work"/packages/*.deb; do
   count=$((count + 1))
 done
 [ $count -eq 5 ] || fail "$count packages instead of 5"
-# What Debian's policy and bash look for, by the names of the programs.
+# Debian's policy and bash expect these files, under the names of the programs.
 for package in keepout keepout-bench; do
   held=$(dpkg -c "$work/packages/${package}"_*.deb)
   for file in "man/man1/$package.1.gz" "bash-completion/completions/$package"; do
@@ -36,8 +36,8 @@ usr/bin/keepout --version
 usr/bin/keepout inspect "$here/cube.obj" | grep -q watertight || fail "the command cannot inspect"
 ! usr/bin/keepout bench --help | grep -q '^ *cgal' || fail "the command has CGAL"
 
-# What a user runs and links needs none of the libraries that modules and comparisons need, and replaces
-# no function of the system.
+# Programs and libraries for users must not need the libraries of modules and comparisons, and must not
+# replace functions of the system.
 for file in usr/bin/keepout usr/lib/*/*.so.*; do
   needed=$(readelf -d "$file" | grep NEEDED | grep -iE 'fcl|ccd|bullet|linearmath|embree|nlopt|ompl|assimp' || true)
   [ -z "$needed" ] || fail "$file needs: $needed"
@@ -54,7 +54,7 @@ for index in fcl_obbrss bullet embree; do
 done
 
 for library in usr/lib/*/*.so.*; do
-  # Nothing but ours: no template of another library may stand in for a program's own.
+  # A library exports only symbols of keepout: no template of another library may replace a program's own.
   foreign=$(nm -DC --defined-only "$library" | grep -v -e ' keepout::' -e ' A KEEPOUT_' \
     -e ' \(vtable\|typeinfo\|typeinfo name\|VTT\|guard variable\) for keepout::' || true)
   [ -z "$foreign" ] || fail "$library shows: $foreign"

@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# An installed keepout finds what its pages are made from, which was installed with it, wherever both
-# lie; and says what to do where there is none.
+# Tests that an installed keepout finds its page templates in any place, and says what to do without them.
 #   pages_test.sh PREFIX WORK SOURCE
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
@@ -14,7 +13,7 @@ export LD_LIBRARY_PATH
 LD_LIBRARY_PATH=$(library_folder moved)
 pages=moved/share/keepout/web
 
-# They take minutes to build, so they need not be there; those that are, are installed too.
+# The templates take minutes to build, so they may be missing. Those that exist must be installed.
 for name in report report_with_anatomy live; do
   page=$pages/$name.html
   place='<!-- keepout report: the record goes here -->'
@@ -27,8 +26,8 @@ for name in report report_with_anatomy live; do
   fi
 done
 
-# is_made NAME LINES ID...: the page was made of the one of that name, has a script of each id, and so
-# many lines more.
+# is_made NAME LINES ID...: fails unless made.html was made from the template NAME, has one script of each ID,
+# and LINES more lines.
 is_made() {
   local name=$1 more=$2 id
   shift 2

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The same by pkg-config and the compiler alone.
+# Like consumer_test.sh, but with pkg-config and the compiler alone.
 #   pkg_config_test.sh PREFIX WORK [bare]
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
@@ -13,13 +13,13 @@ folder=$(library_folder "$prefix")
 export PKG_CONFIG_PATH=$folder/pkgconfig
 form=
 [ -e "$folder/libkeepout.so" ] || form=--static
-# Words of flags, none of which holds a blank.
+# The flags contain no blanks within a word.
 # shellcheck disable=SC2046
 "$compiler" -std=c++20 "$here/consumer/main.cpp" -o "$work/consumer" \
   $(pkg-config --cflags --libs $form keepout)
 run_consumer "$work/consumer" "$prefix"
 
-# As for a machine with wider vectors than ours: what Eigen aligns for them is not exchanged.
+# Compiles as for a machine with wider vectors. The interface exchanges no objects that Eigen aligns for them.
 if [ -z "$form" ]; then
   # shellcheck disable=SC2046
   "$compiler" -std=c++20 -DEIGEN_MAX_ALIGN_BYTES=64 "$here/../../examples/05_own_solver.cpp" \

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `cmake --install` leaves nothing that is not to be passed on, and no path of the source.
+# Tests that `cmake --install` installs nothing that may not be redistributed, and no path of the source.
 #   prefix_test.sh PREFIX SOURCE
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"

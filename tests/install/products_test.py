@@ -20,7 +20,7 @@ INCLUDED = re.compile(r'^\s*include\("([^"]+/cmake_install\.cmake)"\)', re.M)
 
 
 def installed(script):
-    """What a script copies, and what it includes: below the build there are scripts of other tests."""
+    """Yields the files that a script and the scripts it includes copy. Other scripts below the build belong to tests."""
     text = script.read_text(encoding="utf-8")
     for block in BLOCK.findall(text):
         for files in BUILT.findall(block):
@@ -31,7 +31,7 @@ def installed(script):
 
 def main():
     build = pathlib.Path(sys.argv[1]).resolve()
-    # The one tool lists what the target itself is made of, the other what that is made of.
+    # `query` lists the inputs of the target, and `inputs` lists the inputs of those.
     listed = "".join(subprocess.run(["ninja", "-C", build, "-t", *tool, "products"],
                                     capture_output=True, text=True, check=True).stdout
                      for tool in (["query"], ["inputs"]))

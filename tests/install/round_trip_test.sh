@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# dpkg installs the packages, runs their scripts, and removes them without a trace: in a root of its
-# own, whose record of packages is a copy of this system's, so that dependencies are truly checked.
+# Tests that dpkg installs the packages, runs their scripts, and removes the packages completely. It uses a
+# separate root with a copy of this system's package database, so dpkg checks the dependencies.
 #   round_trip_test.sh WORK
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
@@ -9,14 +9,14 @@ work=$1 root=$1/root
 rm -rf "$root" "$work/commands"
 mkdir -p "$root"/var/lib/dpkg/{info,updates,triggers} "$work/commands"
 awk -v RS= -v ORS='\n\n' '!/^Package: (lib)?keepout/' /var/lib/dpkg/status > "$root/var/lib/dpkg/status"
-# The packages' scripts call it, and it knows of no root but this system's.
+# The packages' scripts call ldconfig, which would change this system instead of the root.
 printf '#!/bin/sh\necho called >> "%s"\n' "$work/commands/calls" > "$work/commands/ldconfig"
 chmod +x "$work/commands/ldconfig"
 
 in_root() {
   if ! PATH=$work/commands:/usr/sbin:/sbin:$PATH dpkg --root="$root" --log="$work/dpkg.log" \
     --force-not-root --force-script-chrootless "$@" > "$work/dpkg.txt" 2>&1; then
-    # No lists of files came with the copy.
+    # The copied database has no lists of files.
     grep -v 'files list file for package' "$work/dpkg.txt" >&2
     fail "dpkg $1 failed"
   fi

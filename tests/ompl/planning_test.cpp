@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is plugged into OMPL, for a tip and for a whole instrument, held to independent oracles.
+// Independent oracles judge the OMPL components for a tip and for a whole instrument.
 #include <ompl/base/DiscreteMotionValidator.h>
 #include <ompl/base/spaces/SE3StateSpace.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
@@ -36,7 +36,7 @@ TYPED_TEST(PlanningAt, NothingIsCalledValidThatTheOracleFindsTooClose) {
       if (at.space->checkMotion(a.get(), b.get(), last_valid)) {
         ++valid;
         EXPECT_FALSE(at.comes_nearer(from, to));
-        EXPECT_EQ(last_valid.second, -1.0) << "is not to be touched";
+        EXPECT_EQ(last_valid.second, -1.0) << "must not change";
         continue;
       }
       ++invalid;
@@ -123,7 +123,7 @@ TYPED_TEST(PlanningAt, ThreadsGetTheSameAnswersAndAreCounted) {
   EXPECT_LE(at.guards->made(), 2u);
 }
 
-/// One plate of no thickness at z = 0, 100 wide.
+/// Returns a plate without thickness at z = 0, 100 wide.
 std::shared_ptr<const Mesh> sheet() { return mesh_of(make_flat_plate(10.0, 1)); }
 
 TEST(Planning, SampledCheckingJumpsOverAPlateThatTheValidatorSees) {
@@ -168,7 +168,7 @@ TEST(Planning, AWrongSpaceIsRefusedWithAWordOnWhatToDo) {
   EXPECT_THROW(make_sliding_connect(at.space, at.guards, {.sliding_step = 6.0}), Error);
 }
 
-/// From one side of the cortex to the other.
+/// Returns a path from one side of the cortex to the other; empty if the planner fails.
 std::vector<Coordinates> planned(std::uint64_t seed, bool slides, double range = 0.0) {
   TipPlace at(mesh_of("cortex"));
   ompl::RNG::setSeed(static_cast<std::uint_fast32_t>(seed));
@@ -210,7 +210,7 @@ TEST(Planning, TheSameSeedPlansTheSameAndTheRangeIsHeeded) {
 TEST(Planning, AStartThatIsNotFreeEndsThePlanner) {
   const TipPlace at(mesh_of("sphere"));
   const base::SpaceInformationPtr& space = at.space;
-  // Not even when the space's own checker lets everything pass.
+  // The planner checks the states itself, even if the checker of the space accepts everything.
   space->setStateValidityChecker([](const base::State*) { return true; });
   space->setup();
   const auto definition = std::make_shared<base::ProblemDefinition>(space);
@@ -228,10 +228,11 @@ TEST(Planning, AStartThatIsNotFreeEndsThePlanner) {
   EXPECT_EQ(status(outside, inside), base::PlannerStatus::INVALID_GOAL);
 }
 
-// What tips have not.
+// Tests of instruments only.
 
 TEST(JointPlanning, ATipThatDipsBetweenTwoSamplesIsSeen) {
-  // It swings about the port, over a plate of no thickness: lowest halfway, by some micrometers.
+  // The shaft swings about the port, over a plate without thickness. Its tip is lowest halfway, by
+  // some micrometers.
   InstrumentPlace at(mesh_of(make_flat_plate(10.0, 1)));
   at.certify();
   const base::DiscreteMotionValidator sampled(at.space);
@@ -270,12 +271,13 @@ TEST(JointPlanning, TheSpaceMeasuresHowFarAJointMovesTheInstrument) {
     return space->distance(a.get(), b.get());
   };
   EXPECT_DOUBLE_EQ(apart(2, 7.0), 7.0);
-  // At full insertion the tip is 240 - 15.6 + 9.1 + 10.2 from the port; bent, the wrist has 19.3.
+  // At full insertion, the tip is 240 - 15.6 + 9.1 + 10.2 from the port. The bent wrist has a lever
+  // of 19.3.
   EXPECT_NEAR(apart(0, 0.1), 24.37, 1e-9);
   EXPECT_GT(apart(3, 0.1), 1.5);
   EXPECT_LT(apart(3, 0.1), 1.93);
   EXPECT_NEAR(apart(5, 0.1), 1.02, 1e-9);
-  // From all lower limits to all upper ones.
+  // The extent is the distance from all lower limits to all upper limits.
   EXPECT_GT(space->getMaximumExtent(), 2.0 * 1.588 * 243.7);
 }
 
@@ -302,7 +304,8 @@ TEST(JointPlanning, APlannerFindsAPathThatTheJudgePasses) {
   InstrumentPlace at(mesh_of("cube"));
   ompl::RNG::setSeed(2);
   at.certify();
-  // From one side of the cube to the other; straight on the shaft would go through it.
+  // The path goes from one side of the cube to the other. On a straight path, the shaft would pass
+  // through the cube.
   const double depth = (60.0 + 15.6 + 20.0) / std::cos(0.95);
   const State start(at.space, {-0.95, 0, depth, 0, 0, 0}),
       goal(at.space, {0.95, 0, depth, 0, 0, 0});

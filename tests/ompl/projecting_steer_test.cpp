@@ -84,8 +84,8 @@ TEST(ProjectingSteer, EndsAsItSays) {
   MotionConstraint guard = guard_at("cube");
   ProjectingSteer steer(guard, {.most_steps = 40});
   EXPECT_EQ(steer.steer({0, 0, 0}, {0, 0, 60}).ending, Ending::not_free);  // inside
-  EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, -60}).ending, Ending::stuck);   // flat on the top
-  EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, 60}).ending, Ending::arrived);  // there already
+  EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, -60}).ending, Ending::stuck);   // the cube is in the way
+  EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, 60}).ending, Ending::arrived);  // already there
   EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, 90}, 10.0).ending, Ending::length);
   EXPECT_EQ(steer.steer({0, 0, 60}, {0, 0, 1e6}).ending, Ending::steps);
   const Box box{{-55, -55, -55}, {55, 55, 55}};
@@ -137,7 +137,7 @@ TEST(GuardPool, MakesOneAtOnceAndNoMoreThanItMay) {
   int made = 0;
   GuardPool pool(
       [&] {
-        // The second one cannot be made: whoever wants it waits for the first.
+        // The second guard cannot be made: its borrower waits for the first.
         if (++made == 2) throw std::runtime_error("no memory");
         return guard_at("cube");
       },

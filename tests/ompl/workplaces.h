@@ -28,8 +28,7 @@
 
 namespace keepout {
 
-// Shared by the tests of planning for a tip and for an instrument. All spaces are
-// RealVectorStateSpaces.
+// Shared by the planning tests for tips and for instruments. All spaces are RealVectorStateSpaces.
 
 namespace base = ompl::base;
 using Coordinates = std::vector<double>;
@@ -38,7 +37,7 @@ inline double* values_of(const base::State* state) {
   return const_cast<base::State*>(state)->as<base::RealVectorStateSpace::StateType>()->values;
 }
 
-/// A state that goes away with this object.
+/// Owns a state of a space.
 class State {
  public:
   template <class Values = std::initializer_list<double>>
@@ -60,7 +59,7 @@ class State {
   base::State* state_;
 };
 
-/// Has a planner look for a path; empty if it finds none.
+/// Returns the path that a planner finds within `seconds`; empty if it fails.
 inline std::vector<Coordinates> solved(base::Planner& planner, const State& start,
                                        const State& goal, double seconds) {
   const base::SpaceInformationPtr& space = planner.getSpaceInformation();
@@ -79,7 +78,7 @@ inline std::vector<Coordinates> solved(base::Planner& planner, const State& star
   return path;
 }
 
-/// A mesh, guards that a motion past it is asked of, at most two, and the space of the motions.
+/// A mesh, a pool of at most two guards that prove motions past it, and the space of the motions.
 template <class Pool>
 struct Workplace {
   explicit Workplace(std::shared_ptr<const Mesh> of) : mesh(std::move(of)) {
@@ -88,7 +87,6 @@ struct Workplace {
   Workplace(const Workplace&) = delete;
   Workplace& operator=(const Workplace&) = delete;
 
-  /// Sets the checkers up.
   void certify() {
     set_certified_checkers(space, guards);
     space->setup();
@@ -98,7 +96,7 @@ struct Workplace {
     return make_state_validity_checker(space, guards)->isValid(State(space, values).get());
   }
 
-  /// Returns why the guards plan in no such space.
+  /// Returns the error that rejects another space.
   std::string refusal(const base::StateSpacePtr& other) const {
     return error_of(
         [&] { make_motion_validator(std::make_shared<base::SpaceInformation>(other), guards); });
@@ -110,7 +108,7 @@ struct Workplace {
   base::SpaceInformationPtr space;
 };
 
-/// A tip beside a shape.
+/// The planning problem of a tip beside a shape.
 struct TipPlace : Workplace<GuardPool> {
   static constexpr double kept = 0.5;
   static constexpr double tolerance = 1e-6;  // far above 3 tau of shapes of this size
@@ -144,23 +142,23 @@ struct TipPlace : Workplace<GuardPool> {
     return place;
   }
 
-  /// Short ones and long ones, of many pieces.
+  /// Returns the end of a short motion, or of a long one of many pieces.
   Coordinates any_end(int i, const Coordinates& from, Random& random) const {
     if (i % 2 == 0) return any_state(random);
     const Vec3 to = Vec3(from.data()) + Vec3(random.uniform(0.0, 8.0) * random.direction());
     return {to.begin(), to.end()};
   }
 
-  /// True if the oracle finds the whole motion, and not a place alone, nearer to the mesh.
+  /// Returns true if the oracle finds any point of the motion nearer to the mesh than `than`.
   bool comes_nearer(const Coordinates& from, const Coordinates& to,
                     double than = kept - tolerance) {
     return oracle_.check(Vec3(from.data()), Vec3(to.data()), than).below;
   }
 
-  /// To within a piece's 2^-8 the whole of what there is is proven.
+  /// Fails unless the oracle finds the motion too close, at most 0.05 beyond the last valid state.
   void expect_a_reason(const Coordinates& from, const Coordinates& to, const Coordinates& last) {
     if (!space->satisfiesBounds(State(space, to).get())) return;
-    EXPECT_TRUE(comes_nearer(from, to, kept + tolerance)) << "refused without a reason";
+    EXPECT_TRUE(comes_nearer(from, to, kept + tolerance)) << "rejected without a reason";
     const Vec3 a(from.data()), b(to.data());
     const Vec3 beyond = Vec3(last.data()) + (b - a).normalized() * 0.05;
     EXPECT_TRUE(comes_nearer(from, {beyond.begin(), beyond.end()}, kept + tolerance));
@@ -178,7 +176,7 @@ struct TipPlace : Workplace<GuardPool> {
   oracle::SafetyOracle oracle_;
 };
 
-/// A manipulator over a shape, that hangs down from a port above it.
+/// The planning problem of a manipulator that hangs from a port above a shape.
 struct InstrumentPlace : Workplace<InstrumentPool> {
   static constexpr double kept = 0.198;      // margin less band
   static constexpr double tolerance = 1e-8;  // far above 3 tau of an instrument of this size
@@ -199,13 +197,13 @@ struct InstrumentPlace : Workplace<InstrumentPool> {
     return make_instrument_constraint(mesh, index, instrument, {});
   }
 
-  /// Above the shape or within it; the wrist is bent any way.
+  /// Returns a state above the shape or in it, with the wrist bent in any direction.
   Coordinates any_state(Random& random) const {
     return {random.uniform(-0.6, 0.6), random.uniform(-0.5, 0.5), random.uniform(20.0, 130.0),
             random.uniform(-3.0, 3.0), random.uniform(-1.3, 1.3), random.uniform(-1.3, 1.3)};
   }
 
-  /// Long motions, and short ones that end near where they begin.
+  /// Returns the end of a long motion, or of a short one that ends near `from`.
   Coordinates any_end(int i, const Coordinates& from, Random& random) const {
     Coordinates to = any_state(random);
     const double share = i % 2 == 0 ? 1.0 : random.uniform(0.0, 0.2);
@@ -213,7 +211,8 @@ struct InstrumentPlace : Workplace<InstrumentPool> {
     return to;
   }
 
-  /// The least clearance of all bodies on the motion, at so many places; infinite above 1. [mm]
+  /// Returns the least clearance of all bodies at `places` + 1 points of the motion; infinite above
+  /// 1. [mm]
   double least(const Coordinates& from, const Coordinates& to, int places) {
     double clearance = test::infinity;
     for (int i = 0; i <= places; ++i) {

@@ -31,7 +31,7 @@ double distance(const Mesh& mesh, std::span<const TriangleId> triangles, const V
   return least;
 }
 
-/// The lowest clearance on the way, less the one that is asked for.
+/// Returns the least clearance on the motion, minus the margin.
 double slack(const Mesh& mesh, std::span<const TriangleId> triangles, const Vec3& tip,
              const Vec3& motion, double margin) {
   constexpr int samples = 500;
@@ -42,7 +42,7 @@ double slack(const Mesh& mesh, std::span<const TriangleId> triangles, const Vec3
   return least;
 }
 
-/// The best step in sight of a whole surface, found to be consistent and safe.
+/// Returns the best step near a surface. Fails unless the step is consistent and safe.
 BestStep best(const Surface& surface, const Vec3& tip, const Vec3& desired, double margin) {
   const Mesh mesh(surface);
   const std::vector<TriangleId> all = within(mesh, tip, 1e9);
@@ -58,7 +58,7 @@ Surface rectangle(const Vec3& center, const Vec3& u, const Vec3& v) {
   return {{center - u - v, center + u - v, center + u + v, center - u + v}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-/// z = 0, free on both sides.
+/// Returns a plate at z = 0, free on both sides.
 Surface plate() { return rectangle({0, 0, 0}, {10, 0, 0}, {0, 10, 0}); }
 
 Surface slot(double gap) {
@@ -95,7 +95,7 @@ TEST(BestStep, APlateThatIsTooNearComesNoNearer) {
 }
 
 TEST(BestStep, AValleyIsFollowed) {
-  // Walls at 45 degrees to both sides of the y axis; the tip touches both.
+  // The walls rise at 45 degrees on both sides of the y axis. The tip touches both.
   const Surface valley = together(rectangle({5, 0, 5}, {5, 0, 5}, {0, 10, 0}),
                                   rectangle({-5, 0, 5}, {-5, 0, 5}, {0, 10, 0}));
   expect_motion(best(valley, {0, 0, std::numbers::sqrt2}, {0.1, 0.5, -1}, 1), {0, 0.5, 0}, 1e-9);
@@ -116,14 +116,14 @@ TEST(BestStep, ASlotIsLimitedByTheNearerWall) {
   expect_motion(best(slot(0.52), {0, 0, 0.002}, {1, 0.5, -0.7}, 0.25), {1, 0.5, -0.012}, 1e-9);
 }
 
-/// By plane geometry: the distance from the end of a straight way of length 1 to the tangent, from
-/// where the way begins, to a circle of that radius at (ahead, aside).
+/// Returns the distance of the end of a motion (1, 0) from a tangent through its start. The tangent
+/// touches a circle of this radius at (ahead, aside).
 double round_a_circle(double ahead, double aside, double radius) {
   return std::sin(std::atan2(aside, ahead) + std::asin(radius / std::hypot(ahead, aside)));
 }
 
 TEST(BestStep, TheShorterWayRoundAWallIsTaken) {
-  // The wall ends 0.05 to the right of the way and 0.15 to its left.
+  // The wall ends 0.05 to the right of the desired motion and 0.15 to its left.
   const Surface wall = rectangle({0.5, 0.05, 0}, {0, 0.1, 0}, {0, 0, 10});
   const BestStep step = best(wall, {0, 0, 0}, {1, 0, 0}, 0.02);
   const double cost = round_a_circle(0.5, 0.05, 0.02);
@@ -139,8 +139,9 @@ TEST(BestStep, APointIsPassed) {
 }
 
 TEST(BestStep, AConvexEdgeOfACubeIsGoneRound) {
-  // The edge x = z = 50. The tip is above the top, the desired motion goes over the edge and down:
-  // all that is lost is the distance to the tangent plane of the cylinder around the edge.
+  // The edge is x = z = 50. The tip is above the top, and the desired motion goes over the edge and
+  // down. The loss is the distance of its end from the tangent plane of the cylinder around the
+  // edge.
   const Vec3 tip(49, 0, 50.5), desired(3, 0.4, -1.5);
   const double margin = 0.1;
   const Vec3 to_edge = Vec3(50, 0, 50) - tip;
@@ -152,7 +153,7 @@ TEST(BestStep, AConvexEdgeOfACubeIsGoneRound) {
 }
 
 TEST(BestStep, AConvexEdgeAndAVertexOfACubeAreRounded) {
-  // The desired end is within the margin, by half: the best one is straight out from it.
+  // The desired end is half a margin too close. The best end is straight outward from it.
   const double margin = 0.2;
   for (const Vec3& out : {Vec3(1, 0, 1), Vec3(1, 2, 1.5)}) {
     const Vec3 outward = out.normalized();
@@ -175,8 +176,8 @@ TEST(BestStep, TrianglesOutOfReachDoNoHarm) {
   }
 }
 
-/// Whether one can go straight by `motion`, by marching in steps that the distance allows. What
-/// grazes may be judged free though it is not, never the other way round.
+/// Returns true if the motion is free, by marching in steps that the distance allows. May accept a
+/// motion that grazes, but never rejects a free one.
 bool is_free(const Mesh& mesh, std::span<const TriangleId> near, const Vec3& tip,
              const Vec3& motion, double margin) {
   const double length = motion.norm();
@@ -190,14 +191,15 @@ bool is_free(const Mesh& mesh, std::span<const TriangleId> near, const Vec3& tip
   return true;
 }
 
-/// One of many even directions of the half-sphere about z (a Fibonacci lattice).
+/// Returns one of `count` evenly distributed directions of the half-sphere about z (Fibonacci
+/// lattice).
 Vec3 lattice_direction(int i, int count) {
   const double z = (i + 0.5) / count, r = std::sqrt(1.0 - z * z);
   const double phi = 2.0 * std::numbers::pi * std::numbers::phi * i;
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-/// The cheapest motion, of at most `cost`, in one of many directions; `cost` if there is none.
+/// Returns the least cost of free motions in many directions; `cost` if no motion is cheaper.
 double brute_force(const Mesh& mesh, std::span<const TriangleId> near, const Vec3& tip,
                    const Vec3& desired, double margin, double cost) {
   constexpr int directions = 50'000;
@@ -207,7 +209,7 @@ double brute_force(const Mesh& mesh, std::span<const TriangleId> near, const Vec
     const double along = u.dot(desired);
     const double across2 = desired.squaredNorm() - along * along;
     if (across2 >= cost * cost) continue;
-    // How far one has to go to be better.
+    // From this length on, a motion along u is cheaper.
     const double needed = along - std::sqrt(cost * cost - across2);
     if (!is_free(mesh, near, tip, needed * u, margin)) continue;
     double low = needed, high = along;
@@ -232,7 +234,7 @@ TEST_P(BestStepOnShapes, IsSafeAndNoDirectionOfManyIsBetter) {
     while (distance(mesh, within(mesh, tip, margin), tip) < margin) {
       tip = surface_points(mesh, 1, 1.05 * margin, random)[0];
     }
-    // From the second step on, the tip is in contact with what stopped the first.
+    // From the second step on, the tip is in contact with the triangle that limited the first step.
     const Vec3 drift = random.direction();
     for (int k = 0; k < 4; ++k) {
       const Vec3 desired = length * (drift + 0.5 * random.direction()).normalized();

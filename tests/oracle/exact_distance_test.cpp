@@ -9,7 +9,8 @@
 namespace keepout::oracle {
 namespace {
 
-/// The distance is exactly this: also one unit in the last place to either side is told apart.
+/// Fails unless the exact distance is `distance`. The next double above and below must compare as
+/// different.
 void expect_exactly(const Segment& segment, const Triangle& triangle, double distance) {
   const ExactDistance exact = exact_distance(segment, triangle, distance);
   EXPECT_TRUE(exact.against_threshold == 0) << exact.distance << " instead of " << distance;
@@ -30,10 +31,11 @@ struct Known {
 
 const Triangle right_angle{Vec3(0, 0, 0), Vec3(12, 0, 0), Vec3(0, 12, 0)};
 
-/// Whole numbers, a pair for each way in which two features can be nearest to each other.
+/// One pair with integer coordinates for each combination of nearest features. Some triangles are a
+/// point or a line.
 const std::array known_pairs{
     Known{{{1, 1, 5}, {1, 1, 9}}, right_angle, 5},    // an end above the face
-    Known{{{2, 2, -9}, {1, 1, -3}}, right_angle, 3},  // the other end, below it
+    Known{{{2, 2, -9}, {1, 1, -3}}, right_angle, 3},  // the other end, below the face
     Known{{{1, 1, 4}, {3, 2, 4}}, right_angle, 4},    // parallel to the face
     Known{{{3, 3, 7}, {3, 3, 7}}, right_angle, 7},    // a point above the face
     Known{{{5, -3, 4}, {5, -6, 8}}, right_angle, 5},  // an end off an edge
@@ -44,18 +46,18 @@ const std::array known_pairs{
     Known{{{2, 2, -5}, {2, 2, 3}}, right_angle, 0},      // pierces the face
     Known{{{2, 2, 0}, {2, 2, 3}}, right_angle, 0},       // ends on the face
     Known{{{6, 6, -1}, {6, 6, 1}}, right_angle, 0},      // through an edge
-    Known{{{5, -1, -1}, {5, 1, 1}}, right_angle, 0},     // through another one, aslant
+    Known{{{5, -1, -1}, {5, 1, 1}}, right_angle, 0},     // through another edge, at an angle
     Known{{{12, 0, -2}, {12, 0, 2}}, right_angle, 0},    // through a corner
-    Known{{{11, -1, 1}, {13, 1, -1}}, right_angle, 0},   // the same, aslant
+    Known{{{11, -1, 1}, {13, 1, -1}}, right_angle, 0},   // through a corner, at an angle
     Known{{{-3, 4, 0}, {20, 4, 0}}, right_angle, 0},     // in the plane, across
     Known{{{1, 1, 0}, {3, 2, 0}}, right_angle, 0},       // in the plane, inside
     Known{{{-4, 0, 0}, {-1, 0, 0}}, right_angle, 1},     // in the plane, in line with an edge
     Known{{{-4, 0, 0}, {5, 0, 0}}, right_angle, 0},      // along an edge
     Known{{{-4, 4, 0}, {4, -4, 0}}, right_angle, 0},     // in the plane, only through a corner
     Known{{{9, 9, 0}, {9, 9, 0}}, {Vec3(9, 0, 0), Vec3(9, 9, 0), Vec3(0, 9, 0)}, 0},   // corner
-    Known{{{3, 0, 4}, {9, 0, 12}}, {Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)}, 5},  // of a point
+    Known{{{3, 0, 4}, {9, 0, 12}}, {Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)}, 5},  // a point
     Known{{{0, 0, 0}, {0, 0, 0}}, {Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)}, 0},
-    Known{{{5, 6, -2}, {5, 6, 8}}, {Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(4, 0, 0)}, 6},  // of a line
+    Known{{{5, 6, -2}, {5, 6, 8}}, {Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(4, 0, 0)}, 6},  // a line
     Known{{{5, -6, 0}, {5, 6, 0}}, {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(9, 0, 0)}, 0},
     Known{{{5, -6, 2}, {5, 6, 2}}, {Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(9, 0, 0)}, 2},
 };
@@ -70,7 +72,7 @@ TEST(ExactDistance, OfEachPairOfFeaturesIsExactToTheLastPlace) {
   }
 }
 
-/// A rotation times the whole number k = a^2 + b^2 + c^2 + d^2, by whole numbers (Euler).
+/// A rotation times k = a^2 + b^2 + c^2 + d^2, with integer entries (Euler parameters).
 struct Turned {
   Eigen::Matrix3d by;
   double factor;
@@ -102,8 +104,8 @@ TEST(ExactDistance, StaysExactWhenTheWorldIsTurnedScaledAndMovedByWholeNumbers) 
   }
 }
 
-// An independent computation: 113-bit arithmetic and a search. The distance of a point of the
-// segment from the triangle is a convex function of its place on the segment.
+// An independent computation: a search in 113-bit arithmetic. The distance of a point of the
+// segment from the triangle is a convex function of its position on the segment.
 using Quad = __float128;
 using Quad3 = std::array<Quad, 3>;
 
@@ -231,7 +233,7 @@ TEST(BracketDistance, OfPairsBeyondItsRangeIsLeftOpen) {
   }
 }
 
-/// What the whole oracle says of a mesh of one triangle, against the exact verdict.
+/// Fails unless the oracle of a mesh with one triangle agrees with the exact distance.
 void expect_exact_verdict(const HostilePair& pair, double threshold, SafetyOracle& oracle) {
   const Finding finding = oracle.check(pair.segment.from, pair.segment.to, threshold);
   const ExactDistance exact = exact_distance(pair.segment, pair.triangle, threshold);

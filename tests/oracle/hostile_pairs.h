@@ -13,7 +13,7 @@ struct HostilePair {
   Triangle triangle;
 };
 
-/// A place on the triangle's face, an edge or a corner, as good as doubles can name it.
+/// Returns a point on the face, an edge or a corner of the triangle, rounded to doubles.
 inline Vec3 place_on(const Triangle& t, Random& random) {
   double b = random.uniform(), c = random.uniform();
   if (b + c > 1.0) {
@@ -31,8 +31,8 @@ inline Vec3 place_on(const Triangle& t, Random& random) {
   }
 }
 
-/// A segment next to the triangle: ending on it, grazing it, parallel to an edge or to the face,
-/// through it, a point, or anywhere.
+/// Returns a segment near the triangle. It ends on the triangle, grazes or pierces it, is parallel
+/// to an edge or to the face, is a point, or is arbitrary.
 inline Segment hostile_segment(const Triangle& t, Random& random) {
   const double near = std::pow(10.0, random.uniform(-16.0, 0.5));
   const Vec3 place = place_on(t, random) + (random.below(4) == 0 ? 0.0 : near) * random.direction();
@@ -58,7 +58,8 @@ inline Segment hostile_segment(const Triangle& t, Random& random) {
   }
 }
 
-/// The same, in some unit from 1e-6 to 1e6, sometimes 1e4 to 1e6 such units from the origin.
+/// Returns a hostile triangle and segment, scaled by 1e-6 to 1e6. Sometimes they are 1e4 to 1e6 of
+/// these units from the origin.
 inline HostilePair hostile_pair(Random& random) {
   HostilePair pair;
   pair.triangle = test::hostile_triangle(random);

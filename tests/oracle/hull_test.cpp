@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The oracle's distance of hull and triangle against a reference that shares no code with it: the
-// point of least norm of the Minkowski difference, over all subsets of its points.
+// Compares the oracle's distance of hull and triangle with a reference that shares no code with it.
+// The reference searches all subsets of points of the Minkowski difference for the least norm.
 #include "keepout/oracle/hull.h"
 
 #include <Eigen/Dense>
@@ -17,8 +17,8 @@ namespace {
 using Real = long double;
 using Vector = Eigen::Matrix<Real, 3, 1>;
 
-/// The point of least norm of the affine hull of up to four points; infinite unless it is in their
-/// convex hull.
+/// Returns the least norm in the affine hull of up to four points; infinite unless its point is in
+/// their convex hull.
 Real least_norm(const std::vector<Vector>& points) {
   const auto n = static_cast<Eigen::Index>(points.size()) - 1;
   Eigen::Matrix<Real, 3, Eigen::Dynamic> sides(3, n);
@@ -100,9 +100,9 @@ TEST(Hull, OfABoxIsWhatItIsByHand) {
   EXPECT_DOUBLE_EQ(distance({0.5, 0.5, 1.25}, {0.6, 0.5, 2}, {0.5, 0.6, 2}), 0.25);      // face
   EXPECT_DOUBLE_EQ(distance({2, -3, 2}, {2, 4, 2}, {3, 0, 3}), std::sqrt(2.0));          // edge
   EXPECT_DOUBLE_EQ(distance({-1, -1, -1}, {-2, -1, -1}, {-1, -2, -1}), std::sqrt(3.0));  // corner
-  EXPECT_DOUBLE_EQ(distance({-5, -5, 1.5}, {5, -5, 1.5}, {0, 9, 1.5}), 0.5);    // over all of it
-  EXPECT_EQ(distance({-5, -5, 0.5}, {5, -5, 0.5}, {0, 9, 0.5}), 0.0);           // through all of it
-  EXPECT_EQ(distance({0.5, 0.5, 0.5}, {0.6, 0.5, 0.5}, {0.5, 0.6, 0.5}), 0.0);  // within
+  EXPECT_DOUBLE_EQ(distance({-5, -5, 1.5}, {5, -5, 1.5}, {0, 9, 1.5}), 0.5);    // over the face
+  EXPECT_EQ(distance({-5, -5, 0.5}, {5, -5, 0.5}, {0, 9, 0.5}), 0.0);           // through the hull
+  EXPECT_EQ(distance({0.5, 0.5, 0.5}, {0.6, 0.5, 0.5}, {0.5, 0.6, 0.5}), 0.0);  // inside
 }
 
 TEST(Hull, HasOneToSixtyFourPoints) {

@@ -16,8 +16,8 @@ InsideTest test_of(const Surface& surface) {
   return InsideTest(std::make_shared<const TriangleTree>(mesh_of(surface)));
 }
 
-/// How often the surface goes around the point: the sum of the triangles' solid angles. (van
-/// Oosterom and Strackee, "The solid angle of a plane triangle", 1983.)
+/// Returns the winding number of the surface around the point, from the sum of the triangles' solid
+/// angles. (van Oosterom and Strackee, "The solid angle of a plane triangle", 1983.)
 double winding_number(const Surface& surface, const Vec3& point) {
   double sum = 0.0;
   for (const Corners& corners : surface.triangles) {
@@ -127,7 +127,7 @@ TEST(VolumeSign, IsThatOfTheUnitVectorsAndExactOneStepOffAPlane) {
   EXPECT_EQ(volume_sign(zero, Vec3::UnitY(), Vec3::UnitX(), Vec3::UnitZ()), -1);
   Random random(3);
   for (int i = 0; i < 20'000; ++i) {
-    // Points of the plane x + y + z = 12 on a fine grid: the sums are exact.
+    // The points are in the plane x + y + z = 12, on a fine grid on which sums are exact.
     const auto point = [&]() -> Vec3 {
       const double x = std::ldexp(std::floor(random.uniform(0.0, 0x1p40)), -40);
       const double y = std::ldexp(std::floor(random.uniform(0.0, 0x1p40)), -40);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The oracle of whole instruments: its search against a plain loop, and its kinematics against
-// those of the library, with which it shares no code.
+// Compares the oracle of whole instruments with references: its search with a plain loop, and its
+// kinematics with the library's, with which it shares no code.
 #include "keepout/oracle/instrument_oracle.h"
 
 #include <Eigen/Geometry>
@@ -68,7 +68,8 @@ TEST_P(InstrumentOracleOnEveryShape, ClearanceIsThatOfAPlainLoopHoweverItGotTher
     InstrumentOracle oracle(tree, robot, base);
     std::array<double, 2> q{};
     for (int step = 0; step < 20; ++step) {
-      // Small motions, for which the oracle remembers the near triangles, and sometimes a jump.
+      // In small motions the oracle reuses the near triangles of the last step. Sometimes the
+      // instrument jumps.
       const double pace = step % 8 == 7 ? 1.0 : 0.02;
       q[0] += pace * random.uniform(-1.0, 1.0);
       q[1] += pace * random.uniform(-0.3, 0.3) * size;
@@ -139,7 +140,7 @@ void expect_same_places(const JudgedRobot& judged, Instrument (*make)(const Pose
       EXPECT_LE((from - axis.from).norm(), 1e-12 * 2000.0) << body.name;
       EXPECT_LE((to - axis.to).norm(), 1e-12 * 2000.0) << body.name;
     }
-    // What is steered is where the last body ends.
+    // The flange, which a step moves, is at the end of the last body.
     EXPECT_LE((state.flange().position - axis_of(judged.bodies.back(), links).to).norm(),
               1e-12 * 2000.0);
   }
@@ -151,7 +152,8 @@ TEST(JudgedRobot, TheSevenJointArmIsThatOfTheFixtures) {
   expect_same_places(judged_seven_joint_arm(), &seven_joint_arm);
 }
 
-// The judge's regions by hand, and beside the library's, which share no code.
+// Compares the judge's regions with values computed by hand and with the library's, which share no
+// code with them.
 
 using Kind = JudgedGuide::Kind;
 using Region = JudgedGuide::Region;

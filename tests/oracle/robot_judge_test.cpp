@@ -55,17 +55,17 @@ TEST_F(RobotJudgeOverAPlate, HoldsAMotionToWhatWasToBeKeptToTheLastDigits) {
 }
 
 TEST_F(RobotJudgeOverAPlate, WhatIsTooCloseMayNotComeCloserThanItEverWas) {
-  RobotJudge judge = judge_from(at(115.6));  // 0.3 within the cutter
+  RobotJudge judge = judge_from(at(115.6));  // the plate is 0.3 inside the cutter
   EXPECT_FALSE(judge.is_recovered());
   EXPECT_FALSE(judge.judge(at(115.4)).is_below);
-  EXPECT_FALSE(judge.judge(at(115.401)).is_below);  // less than the band
+  EXPECT_FALSE(judge.judge(at(115.401)).is_below);  // closer by less than the band
   EXPECT_TRUE(RobotJudge(judge).judge(at(115.41)).is_below);
   EXPECT_FALSE(judge.judge(at(115.0)).is_below);
   EXPECT_TRUE(judge.is_recovered());
   options_.margin += 0.5;
   judge.follow(options_);
   EXPECT_FALSE(judge.is_recovered());
-  EXPECT_FALSE(judge.judge(at(115.0)).is_below);  // a raised margin is come up to
+  EXPECT_FALSE(judge.judge(at(115.0)).is_below);  // a raised margin starts a recovery
 }
 
 TEST_F(RobotJudgeOverAPlate, SeesBrokenLimitsOfJointsAndMotionsThatAreNone) {

@@ -17,7 +17,7 @@ struct Judgement {
   double distance = test::infinity;
 };
 
-/// A plain loop over all triangles; exact wherever the bracket holds 0 or the threshold.
+/// Judges by a plain loop over all triangles, exactly if the bracket contains 0 or the threshold.
 Judgement plain_judgement(const Mesh& mesh, const Segment& segment, double threshold) {
   Judgement judgement;
   for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
@@ -48,7 +48,7 @@ TEST_P(WaysPastEveryShape, IsJudgedAsByAPlainLoopOverAllTriangles) {
   for (const Vec3& p : edge_points(*mesh, test::trials(2u), random)) starts.push_back(p);
   for (const Vec3& start : starts) {
     Vec3 tip = start;
-    for (int i = 0; i < 8; ++i) {  // small steps and long ways, on from where the last one ended
+    for (int i = 0; i < 8; ++i) {  // small and large steps, each from the end of the last one
       const double length = size * std::pow(10.0, random.uniform(-5.0, -0.5));
       const Vec3 next = i == 3 ? tip : Vec3(tip + length * random.direction());
       double threshold = i == 4 ? 0.0 : random.uniform(0.0, 2.0) * length;
@@ -92,7 +92,7 @@ TEST_P(WaysPastEveryShape, IsJudgedAlikeWhateverWasAskedBefore) {
 
 INSTANTIATE_TEST_SUITE_P(SafetyOracle, WaysPastEveryShape, testing::ValuesIn(shapes()), by_name);
 
-/// Two squares side by side in the plane z = 0, each cut along its diagonal.
+/// Returns an oracle of two adjacent squares in the plane z = 0, each of two triangles.
 SafetyOracle flat_oracle(const Vec3& offset = Vec3::Zero()) {
   const Surface surface{{{0, 0, 0}, {2, 0, 0}, {4, 0, 0}, {0, 2, 0}, {2, 2, 0}, {4, 2, 0}},
                         {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}};

@@ -14,7 +14,7 @@ std::vector<TriangleId> sorted(std::vector<TriangleId> ids) {
   return ids;
 }
 
-/// Points on and near the mesh, and all over its bounds.
+/// Returns points on the mesh, near it, and anywhere in its bounds.
 std::vector<Vec3> places(const Mesh& mesh, Random& random) {
   std::vector<Vec3> all = random_points(mesh, test::trials(10u), random);
   for (const Vec3& p : vertex_points(mesh, test::trials(10u), random)) all.push_back(p);

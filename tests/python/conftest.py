@@ -33,7 +33,7 @@ def skull_file():
 
 @pytest.fixture
 def outside():
-    """Poses outside of the sphere, (n, 3) each."""
+    """Returns tips outside of the sphere and increments, each (n, 3)."""
     random = np.random.default_rng(7)
     directions = random.normal(size=(500, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Small surfaces for tests, poses around them, what the command makes of these, and an instrument."""
+"""Small surfaces for tests, poses around them, the steps of the command for these, and an instrument."""
 
 import csv
 import os
@@ -13,7 +13,7 @@ from keepout import TableRow
 
 
 def sphere(n=24, radius=10.0):
-    """A watertight sphere: n meridians, n / 2 bands; vertices, triangles."""
+    """Returns vertices and triangles of a watertight sphere with n meridians and n / 2 bands."""
     bands = n // 2
     theta = np.pi * np.arange(1, bands) / bands
     phi = 2 * np.pi * np.arange(n) / n
@@ -39,7 +39,7 @@ def sphere(n=24, radius=10.0):
 
 
 def box(low, high):
-    """A closed box, with normals outwards; vertices, triangles."""
+    """Returns vertices and triangles of a closed box with outward normals."""
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     triangles = [t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]
@@ -47,7 +47,7 @@ def box(low, high):
 
 
 def write_stl(path, vertices, triangles):
-    """Binary; in single precision, as the format has it."""
+    """Writes a binary STL file, in the single precision of the format."""
     records = np.zeros(
         len(triangles), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")]
     )
@@ -56,7 +56,7 @@ def write_stl(path, vertices, triangles):
 
 
 def poses(vertices, count, seed=1, spread=1.0, step=0.3):
-    """Tips around the vertices, inside and outside, and increments in any direction: (count, 6)."""
+    """Returns tips around the vertices, inside and outside, with increments in any direction: (count, 6)."""
     random = np.random.default_rng(seed)
     tips = vertices[random.integers(0, len(vertices), count)]
     tips = tips + spread * random.normal(size=(count, 3))
@@ -64,14 +64,14 @@ def poses(vertices, count, seed=1, spread=1.0, step=0.3):
 
 
 def run(*command, **options):
-    """What a program prints. It must succeed."""
+    """Returns the output of a program. Fails if the program fails."""
     ended = subprocess.run(command, capture_output=True, text=True, **options)
     assert ended.returncode == 0, ended.stdout + ended.stderr
     return ended.stdout
 
 
 def command_replay(path, lines, folder, *options):
-    """The motions, (count, 3), the names of the statuses and the numbers of planes of `keepout replay`."""
+    """Returns the motions (count, 3), status names and plane counts of `keepout replay`."""
     np.savetxt(folder / "poses.txt", lines, fmt="%.17g")
     files = ["--poses", folder / "poses.txt", "--out", folder / "steps.csv"]
     run(os.environ["KEEPOUT_COMMAND"], "replay", path, *files, *options)
@@ -82,7 +82,7 @@ def command_replay(path, lines, folder, *options):
 
 
 def skull():
-    """The CT skull as fixtures/prepare makes it, or None."""
+    """Returns the file of the CT skull that fixtures/prepare makes, or None."""
     root = Path(__file__).resolve().parents[2]
     path = Path(os.environ.get("KEEPOUT_CACHE", root / ".cache")) / "fixtures" / "skull.stl"
     return path if path.exists() else None
@@ -95,7 +95,7 @@ def at(x, y, z):
 
 
 def psm(base=None, flange=((0, -1, 0, 0), (0, 0, 1, 10.2), (-1, 0, 0, 0), (0, 0, 0, 1))):
-    """The da Vinci research kit's, as fixtures/robots/psm.urdf has it."""
+    """Returns the chain of the da Vinci research kit's PSM, as in fixtures/robots/psm.urdf."""
     right = np.pi / 2
     rows = [
         TableRow("yaw", alpha=right, theta=right, lower=-1.588, upper=1.588, velocity=1),

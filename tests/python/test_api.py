@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the parts of the module do."""
+"""Tests the classes and functions of the module."""
 
 import inspect
 import re
@@ -89,7 +89,7 @@ def test_joints_and_rows(guard):
     assert step.increment.shape == (4,)
     np.testing.assert_allclose(jacobian @ step.increment, step.motion, atol=1e-9)
     np.testing.assert_allclose(step.motion, [0.1, 0.2, -1], atol=1e-4)
-    # The second joint does not go back, and the third goes on.
+    # Rows limit the second and the third joint.
     rows = ([[0.0, 1, 0, 0], [0, 0, 1, 0]], [0.0, -0.1])
     step = guard.step([0, 0, 14], [0, -1, -1], jacobian=np.asfortranarray(jacobian), rows=rows)
     assert step.increment[1] >= -1e-9 and step.increment[2] >= -0.1 - 1e-9
@@ -110,15 +110,15 @@ def test_more_than_three_joints_want_damping(mesh):
 
 
 def test_steps_remember_and_forget():
-    # A cube in a cube: between them the side depends on which is nearer, unless a step led there.
+    # A cube in a cube. Between them, the nearest cube decides the side, unless the last step ended there.
     corners, cube = box(-1, 1)
     mesh = keepout.Mesh(np.vstack([50 * corners, 5 * corners]), np.vstack([cube, cube + 8]))
     assert mesh.inspect().watertight and not mesh.inspect().inside_out
     guard = keepout.MotionConstraint(mesh)
     assert guard.step((0, 0, 26), (0, 0, 4)).status is Status.free
     batch = guard.steps([(0, 0, 26), (0, 0, 30)], [(0, 0, 4), (0, 0, 0.1)])
-    assert list(batch.status) == [Status.free, Status.inside]  # each pose for itself
-    assert guard.step((0, 0, 30), (0, 0, 0.1)).status is Status.free  # a batch leaves this alone
+    assert list(batch.status) == [Status.free, Status.inside]  # each pose by itself
+    assert guard.step((0, 0, 30), (0, 0, 0.1)).status is Status.free  # a batch does not change this state
     guard.forget()
     assert guard.step((0, 0, 30), (0, 0, 0.1)).status is Status.inside
 
@@ -136,7 +136,7 @@ def test_a_guard_follows_anatomy_that_moves():
         step = guard.step(top, (0, 0, 0))
         assert step.status is status and step.motion[2] >= 0
         assert guard.steps(top, np.zeros((2, 3))).status[1] == status
-    assert before.mesh is not guard.mesh  # and stays as it is
+    assert before.mesh is not guard.mesh  # and does not change
     grid = keepout.Index(guard.mesh, "pd_tree").refitted(keepout.Mesh(2 * vertices, triangles))
     assert grid.name == "pd_tree" and grid.distances([(0, 0, 0)])[0] > 15
     with pytest.raises(keepout.Error, match="triangles must be the same"):
@@ -314,7 +314,7 @@ def test_closed_loops_stay_out(guard):
     np.testing.assert_array_equal(ran.tips[1], ran.tips[2])
     assert ran.ok.all() and Status.limited in ran.counts() and "limited" in repr(ran)
     assert guard.index.distances(ran.tips.reshape(-1, 3)).min() > 0.5 - 1e-6
-    # A loop is a replay in a closed loop.
+    # simulate() gives the same motions as a closed-loop replay.
     poses = np.hstack([hands[1], np.broadcast_to(starts[1], hands[1].shape)])
     alone = guard.replay(poses, closed_loop=True, max_step=0.5)
     np.testing.assert_array_equal(np.cumsum(np.vstack([starts[1], alone.motion]), axis=0), ran.tips[1])
@@ -350,7 +350,7 @@ def test_what_a_file_has_to_say_is_a_warning(tmp_path):
     with pytest.warns(UserWarning, match="tagged.obj: .*LPS") as said:
         mesh = keepout.load_mesh(path)
     assert mesh.warnings and [str(w.message) for w in said] == mesh.warnings
-    assert said[0].filename == __file__, "of the line that loads it"
+    assert said[0].filename == __file__, "of the line that loads the mesh"
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         with pytest.raises(UserWarning):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Arguments of every kind are converted, or refused by name."""
+"""Arguments of every kind are converted, or rejected by name."""
 
 import re
 
@@ -35,7 +35,7 @@ def refused(match):
         (lambda: keepout.Index("skull.stl"), "mesh: expected a keepout.Mesh, got str"),
         (lambda: beside.index.hits((0, 0, 0), -1.0), "radius: expected a finite number not below zero"),
         (lambda: beside.index.query((0, 0, np.nan), 1.0), "center: expected finite numbers"),
-        # Masks are not lost.
+        # Masks are not ignored.
         (lambda: beside.step(np.ma.masked_array([0.0, 0, 14], mask=[0, 1, 0]), down), "tip: .* masked array"),
         (lambda: beside.steps(np.ma.masked_array(many, mask=False), many), "tips: .* masked array"),
         # Jacobians and rows.
@@ -316,7 +316,7 @@ def test_an_unknown_keyword_is_a_type_error(mesh):
         keepout.MotionConstraint(mesh, marging=0.2)
     with pytest.raises(TypeError, match="no argument 'rule'; known: .*activation, solver"):
         keepout.MotionConstraint(mesh, rule="certified")
-    # What it says is known is what there is.
+    # The known names of the message are all arguments that exist.
     with pytest.raises(TypeError) as raised:
         keepout.MotionConstraint(mesh, toolradius=0.2)
     known = str(raised.value).split("known: ")[1].split(", ")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A call that does not fit a signature says in one line which argument is wrong, and what it must be."""
+"""The error of a call that does not match a signature names the wrong argument, and what it must be."""
 
 import inspect
 import re
@@ -24,7 +24,7 @@ step = "step(tip, desired, jacobian=None, rows=None)"
 @pytest.mark.parametrize(
     "call, says",
     [
-        # What is missing, too much or unknown.
+        # Missing, additional or unknown arguments.
         (lambda: tip.step(origin), f"step lacks its argument 'desired': call {step}"),
         (lambda: tip.step(), f"step lacks its argument 'tip': call {step}"),
         (lambda: tip.step(origin, origin, None, None, 5), f"step takes 4 arguments by position, got 5: call {step}"),
@@ -131,7 +131,7 @@ def test_errors_of_values_keep_their_own_words():
 
 
 def test_every_function_of_the_module_is_explained():
-    """No call says pybind11's own words, however many arguments of no type it is given."""
+    """No call with arguments of a wrong type reports pybind11's own message."""
 
     class Nothing:
         pass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Convex tools by name."""
+"""Tests convex tools and their descriptions as text."""
 
 import os
 
@@ -13,7 +13,7 @@ from keepout import ConvexTool, Status
 command = os.environ.get("KEEPOUT_COMMAND")
 corners = np.array([[0, 0, 0], [1, 0, 2], [-1, 0, 2], [0, 1, 2]], dtype=np.float32)
 
-# A text, and the tool that it is.
+# Texts, and the tools that they describe.
 tools = {
     "sphere:1.5": ConvexTool.sphere(1.5),
     "capsule:0,0,0:2.5,0,2.5:0.5": ConvexTool.capsule((0, 0, 0), [2.5, 0, 2.5], 0.5),
@@ -48,7 +48,7 @@ def test_a_loop_never_brings_the_tool_nearer_than_the_margin(text, phase, mesh):
         step = guard.step(tip, 0.5 * (aim - tip) / np.linalg.norm(aim - tip))
         tip = tip + step.motion
         statuses.add(step.status)
-        # By points of its core, of which none is nearer than the whole: that knows no kernel.
+        # Sampled points of the core bound the tool's distance from above, without a narrow phase.
         weights = random.dirichlet(np.full(len(tool.points), 0.3), size=50)
         core = tip + np.vstack([tool.points, weights @ tool.points])
         nearest.append(guard.index.distances(core).min() - tool.radius)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The examples do what they say."""
+"""Tests that the examples run and print the expected results."""
 
 import subprocess
 import sys
@@ -24,7 +24,7 @@ def test_first_steps(sphere_file):
 def test_joints(sphere_file):
     words = run(sys.executable, examples / "joints.py", sphere_file).replace(",", "").split()
     assert int(words[words.index("in") + 1]) > 100
-    # The arm moves along arcs, of which its Jacobian knows the tangents: 0.2 mm of 60 mm.
+    # The arm moves along arcs of 60 mm radius, but its Jacobian gives tangents. Steps are up to 0.2 mm.
     assert 0.499 < float(words[words.index("nearest") + 1]) < 0.51
 
 
@@ -39,7 +39,7 @@ def test_a_mesh_that_is_missing_is_told(example):
 
 def test_the_path_over_the_skull(request, tmp_path):
     matplotlib = pytest.importorskip("matplotlib.image")
-    # Of the sphere where there is no skull.
+    # Uses the sphere if the skull is not prepared.
     try:
         path = request.getfixturevalue("skull_file")
     except pytest.skip.Exception:

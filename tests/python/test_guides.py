@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Guides: regions that a tip, an axis or a shaft is to stay in, beside a mesh that is kept out."""
+"""Tests guides: regions for a tip, an axis or a shaft, beside a mesh."""
 
 import math
 
@@ -16,7 +16,7 @@ cube = keepout.Mesh(*box(-10, 10))
 
 
 def instrument():
-    """A shaft through a port at the origin of its base, 150 above the cube; insertion along it."""
+    """Returns an instrument whose shaft passes through a port, 150 above the origin of the cube."""
     chain = psm(at(0, 0, 150), at(*TIP))
     shaft = keepout.Body("shaft", [(0, (0, 0, 0)), (4, (0, 0, 0))], 4.5)
     cutter = keepout.Body("cutter", [(5, (9.1, 0, 0)), (6, TIP)], 1.0)
@@ -87,7 +87,7 @@ def test_a_text_is_the_guide_that_it_describes():
     assert guide.name == "corridor" and guide.kind == "point"
     assert guide.region.excess((3, 0, 0)) == corridor.region.excess((3, 0, 0)) == 2.0
     assert repr(guide) == "<keepout.Guide 'corridor' of a point>"
-    # Of an instrument, and a text that is refused changes nothing.
+    # Guides of an instrument. A rejected text changes nothing.
     arm = keepout.InstrumentGuard(cube, instrument(), check_sides=False)
     at = arm.instrument.chain.forward_kinematics([0.0, 0.0, 60.0, 0.0, 0.0, 0.0])[:3, 3]
     near = "near=point:6:0,10.2,0:ball:{},{},{}:1".format(*at)

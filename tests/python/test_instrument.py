@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whole instruments: chains, bodies, and what keeps them out of a mesh."""
+"""Tests instruments: chains, bodies, and the guard that keeps them out of a mesh."""
 
 import os
 from pathlib import Path
@@ -19,7 +19,7 @@ ball = keepout.Mesh(*sphere(64, 50.0))
 
 
 def psm_guard(**options):
-    """Its tip hangs straight down, 10 mm above the top of a sphere of 50 mm, at q[2] = 106.3."""
+    """Returns a guard of a psm. At q[2] = 106.3, its tip is 10 mm above the top of a sphere of radius 50 mm."""
     port, wrist, yaw = (0, (0, 0, 0)), (4, (0, 0, 0)), (5, (9.1, 0, 0))
     bodies = [
         Body("shaft", [port, wrist], 4.5),
@@ -30,7 +30,7 @@ def psm_guard(**options):
 
 
 def lever_guard(**options):
-    """A shaft of 60 mm, radius 2, that one joint turns down to the wall 20 mm below it."""
+    """Returns a guard of a 60 mm shaft of radius 2 that one joint turns down to the wall, 20 mm below."""
     turn = Joint("turn", axis=(0, 1, 0), lower=-1, upper=1, velocity=2)
     chain = Chain([turn], base=at(0, 0, 20), flange=at(60, 0, 0))
     shaft = Body("shaft", [(1, (0, 0, 0)), (1, (60, 0, 0))], 2.0)
@@ -153,7 +153,7 @@ def test_proofs_change_nothing_for_the_steps_and_options_something():
     assert guards[0].prove(places[0], np.zeros(6)).status is Status.recovering
     assert guards[1].proofs(places[0]).is_clear.all()
     guards[1].proofs(places[0])
-    guards[1].set_options(margin=2.0)  # of those that have proven already as well
+    guards[1].set_options(margin=2.0)  # also after earlier proofs
     assert not guards[1].proofs(places[0]).is_clear.any()
     with pytest.raises(keepout.Error, match="band"):
         guards[1].set_options(margin=0.001)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A label map becomes a mesh where the image is."""
+"""A label map becomes a mesh in the coordinates of the image."""
 
 import gzip
 import importlib.util
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(bool(missing), reason=f"needs python3-{' and pyt
 
 script = Path(__file__).resolve().parents[2] / "examples" / "python" / "mesh_of_labels.py"
 
-# An ellipsoid in an image whose axes are oblique, of three spacings, and mirrored.
+# An ellipsoid in an image with oblique and mirrored axes and three different spacings.
 turn = np.linalg.qr(np.array([[0.9, -0.3, 0.1], [0.2, 0.9, -0.3], [0.1, 0.3, 1.1]]))[0]
 affine = np.eye(4)
 affine[:3, :3] = turn @ np.diag([-0.8, 1.0, 1.5])
@@ -71,7 +71,7 @@ def test_the_surface_is_where_the_image_is(tmp_path):
     assert "label 3, " in said and "in LPS" in said
     found = plain.inspect()
     assert found.watertight and not found.inside_out and plain.warnings == []
-    # Back in voxels, all vertices are half a voxel from where the ellipsoid ends.
+    # In voxels, all vertices are within about a voxel of the surface of the ellipsoid.
     voxels = (plain.vertices - affine[:3, 3]) @ np.linalg.inv(affine[:3, :3]).T
     distance = np.abs(np.linalg.norm((voxels - center) / radii, axis=1) - 1)
     assert distance.max() < 1 / radii.min()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Views without copies, lifetimes, and results written in place."""
+"""Tests views without copies, lifetimes, and results that are written in place."""
 
 import gc
 import sys
@@ -100,7 +100,7 @@ def test_results_are_written_where_they_are_wanted(guard, outside):
     where = address(out.motion)
     assert guard.steps(tips, desired, out=out) is out and address(out.motion) == where
     np.testing.assert_array_equal(out.motion, guard.steps(tips, desired).motion)
-    # Of arrays of one's own: a row of a larger one.
+    # The caller may pass parts of arrays of their own.
     many = np.zeros((4, len(tips), 3))
     own = keepout.Steps(many[2], out.status, out.planes)
     guard.steps(tips, desired, out=own)

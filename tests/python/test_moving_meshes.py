@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Several meshes, placed and moving, that an instrument is kept out of."""
+"""Tests an instrument beside several meshes that are placed and that move."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ period = 1e-3
 
 
 def ball_guard(speed=None, **options):
-    """A ball of 1 mm, as fast as it likes or not, beside a sphere of 50 mm."""
+    """Returns a guard of a 1 mm ball beside a 50 mm sphere, and its index. `speed`: limits the joints. [mm/s]"""
     instrument = keepout.free_ball(1.0)
     if speed is not None:
         slides = [
@@ -61,7 +61,7 @@ def test_each_mesh_has_a_margin_and_a_place_of_its_own():
 
 def test_what_outruns_the_joints_is_named():
     guard, _ = ball_guard(speed=2000, margin=0.5)
-    guard.place(0, None, linear=(2100, 0, 0))  # mm a second; the joints have 2000
+    guard.place(0, None, linear=(2100, 0, 0))  # [mm/s], faster than the joints
     q = np.array([52.0, 0.0, 0.0])
     seen = []
     for _ in range(20):
@@ -101,7 +101,7 @@ def test_an_approach_is_slowed_down():
     guard, _ = ball_guard(margin=0.5, slowing_within=5.0, slowing_time=0.02)
     q = np.array([60.0, 0.0, 0.0])
     slowed = 0
-    least = 0.0  # that the way taken so far leaves
+    least = 0.0  # distance that the slowdown allows
     for _ in range(300):
         step = guard.step(q, linear=(-0.4, 0, 0))
         if step.distance is None:

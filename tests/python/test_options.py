@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every option of the tables is in every interface, by its name."""
+"""Every option of the tables is in every interface, by the same name."""
 
 import ast
 import json
@@ -22,7 +22,7 @@ of_requests = [o for o in tables["InstrumentGuard"] if o.is_changeable]
 
 
 def other_value(option):
-    """Another value than the default that the option may have."""
+    """Returns a valid value of an option that is not its default."""
     if option.choices:
         return next(name for name in option.choices if name != option.default)
     if option.type == "bool":
@@ -45,7 +45,7 @@ def test_python_takes_it_and_has_it(mesh, name, option):
     assert getattr(made(mesh, name), option.name) == option.default
     assert f"{option.name}: {option.description}" in getattr(keepout, name).__doc__
     if option.type == "str":
-        return  # a part, which fits together with others only
+        return  # a name of a part, which not every other part allows
     value = other_value(option)
     assert getattr(made(mesh, name, **{option.name: value}), option.name) == value
     with pytest.raises(keepout.Error, match=f"{option.name}: expected {option.range}, got"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pip install . works without a network, and what it installs stands by itself."""
+"""`pip install .` works without a network, and the installed package needs nothing else."""
 
 import os
 import sys
@@ -20,7 +20,7 @@ print(keepout.__version__, keepout.MotionConstraint(mesh).step((0.2, 0.2, 0.5), 
 
 
 def run(*command):
-    # Nothing of the build tree, and no index of packages.
+    # Uses nothing of the build tree, and no package index.
     clean = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     return surfaces.run(*command, cwd=root, env={**clean, "PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"})
 

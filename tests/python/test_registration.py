@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the mesh is in the robot's frame, and how well that is known."""
+"""Tests the registration of a mesh in the robot's frame, and its errors."""
 
 import warnings
 
@@ -32,7 +32,7 @@ def test_weights_residuals_and_errors_are_those_of_numpy():
     np.testing.assert_allclose(fit.residuals, np.linalg.norm(left, axis=1), atol=1e-12)
     np.testing.assert_allclose(fit.fre, np.sqrt(weights @ (left**2).sum(axis=1) / weights.sum()))
     np.testing.assert_allclose(fit.estimated_fle, fit.fre * np.sqrt(5 / 3))
-    # By the linear least-squares problem of three turns and three shifts.
+    # The reference is the linear least-squares problem of three rotations and three translations.
     cross = lambda p: np.array([[0, -p[2], p[1]], [p[2], 0, -p[0]], [-p[1], p[0], 0]])
     rows = [np.hstack([-cross(p), np.eye(3)]) for p in model]
     normal = sum(w * a.T @ a for w, a in zip(weights / weights.mean(), rows))

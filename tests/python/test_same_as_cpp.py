@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Python gives what C++ gives, bit for bit."""
+"""Results in Python and C++ are bitwise identical."""
 
 import json
 import os
@@ -16,7 +16,7 @@ command = os.environ.get("KEEPOUT_COMMAND")
 needs_loop = pytest.mark.skipif(not loop, reason="KEEPOUT_CPP_LOOP names no program")
 needs_command = pytest.mark.skipif(not command, reason="KEEPOUT_COMMAND names no program")
 
-settings = {"tool_radius": 0.3, "margin": 0.2}  # cpp_loop's
+settings = {"tool_radius": 0.3, "margin": 0.2}  # as in cpp_loop
 
 
 @pytest.fixture(params=["sphere_file", "skull_file"])
@@ -36,7 +36,7 @@ def assert_same(steps, answers):
     np.testing.assert_array_equal(steps.motion.view(np.int64), answers[:, :3].copy().view(np.int64))
     np.testing.assert_array_equal(steps.status, answers[:, 3])
     np.testing.assert_array_equal(steps.planes, answers[:, 4])
-    assert len(steps.counts()) > 2  # not all alike
+    assert len(steps.counts()) > 2  # several statuses
 
 
 @needs_loop

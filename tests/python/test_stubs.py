@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The stubs say what the module has."""
+"""Tests that the stubs describe the module."""
 
 import inspect
 import os
@@ -25,7 +25,7 @@ def test_stubtest(tmp_path):
         "RigidFit Step"
     )
     allowed = [
-        # pybind11 has a metaclass of its own, and an __init__ for what cannot be made by hand.
+        # pybind11 adds its own metaclass, and an __init__ to classes without a constructor.
         r"keepout\.(Body|Chain|Index|Instrument|InstrumentGuard|Joint|Mesh|MotionConstraint|TableRow|"
         + made_by_others.replace(" ", "|") + ")",
         r"keepout\.(" + made_by_others.replace(" ", "|") + r")\.__init__",
@@ -63,7 +63,7 @@ names: list[str] = [part.name for part in keepout.indices()]
 """
 
 
-# Each line is wrong: were it not, the comment would be.
+# Each line is wrong. Otherwise mypy would report an unused comment.
 misuse = """
 guard.steps(np.zeros((1, 3)), np.zeros((1, 3)), thread=3)  # type: ignore[call-arg]
 number: int = step.status.name  # type: ignore[assignment]
@@ -74,7 +74,7 @@ keepout.MotionConstraint(mesh, query="far")  # type: ignore[arg-type]
 
 def test_mypy_accepts_right_use_and_no_other(tmp_path):
     (tmp_path / "use.py").write_text(use + misuse)
-    # numpy's own stubs take mypy the longest, the first time.
+    # The cache saves the time for numpy's stubs, which take mypy the longest.
     run_mypy(tmp_path, "mypy", "--strict", "--cache-dir", str(package.parent / "mypy_cache"), "use.py")
 
 

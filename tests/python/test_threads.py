@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Batches without Python's lock."""
+"""Tests batches that release Python's global interpreter lock (GIL)."""
 
 import os
 import subprocess
@@ -15,7 +15,7 @@ import keepout
 
 
 def test_other_threads_of_python_go_on(guard):
-    """A batch in one thread, while another one counts: each sees the other make progress."""
+    """One thread runs a batch while another one counts: each sees the other's progress."""
     lines = poses(guard.mesh.vertices, 40000)
     started, done = threading.Event(), threading.Event()
 
@@ -36,7 +36,7 @@ def test_other_threads_of_python_go_on(guard):
 
 
 def test_one_constraint_may_be_used_from_many_threads(guard):
-    """Batches and steps of several threads wait for each other, and never for good."""
+    """Batches and steps of several threads wait for each other, without a deadlock."""
     lines = poses(guard.mesh.vertices, 1500)
     tips, desired = lines[:, :3], lines[:, 3:]
     expected = guard.steps(tips, desired, threads=1).motion
@@ -107,7 +107,7 @@ try:
     else:
         guard.simulate(np.array([[0.0, 0, 10.5]]), hands)
 except KeyboardInterrupt:
-    assert guard.step((0, 0, 14), (0, 0, -1)).ok  # none the worse for it
+    assert guard.step((0, 0, 14), (0, 0, -1)).ok  # the guard still works
     print("interrupted")
 """
 

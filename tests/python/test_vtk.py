@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What VTK writes is read as VTK reads it. The short form of this without VTK: tests/engine/mesh/vtk_test.cpp."""
+"""Reads files of VTK and compares with VTK's own reader. A short test without VTK: tests/engine/mesh/vtk_test.cpp."""
 
 import warnings
 from pathlib import Path
@@ -11,7 +11,7 @@ import keepout
 
 
 def corners_by_vtk(file):
-    """The corners of all triangles, (n, 3, 3), without an order."""
+    """Returns the corners of all triangles, (n, 3, 3), in any order."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkFiltersCore import vtkTriangleFilter
     from vtkmodules.vtkIOLegacy import vtkPolyDataReader
@@ -28,7 +28,7 @@ def corners_by_vtk(file):
 
 
 def in_order(corners):
-    """The triangles sorted, each from its smallest corner on."""
+    """Returns the sorted triangles, each rotated to start at its smallest corner."""
     rows = [min(tuple(map(tuple, np.roll(triangle, k, axis=0))) for k in range(3)) for triangle in corners.tolist()]
     return np.array(sorted(rows))
 

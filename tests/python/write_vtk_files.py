@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the files of tests/engine/mesh/vtk_files by VTK (python3-vtk9): write_vtk_files.py FOLDER. All hold the same
-sphere of 20 triangles; those of 3D Slicer are written with its settings."""
+"""Writes the files of tests/engine/mesh/vtk_files with VTK (python3-vtk9): write_vtk_files.py FOLDER
+
+Each file contains the same sphere of 20 triangles. The files of 3D Slicer use its settings."""
 
 import sys
 from pathlib import Path

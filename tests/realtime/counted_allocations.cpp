@@ -12,8 +12,8 @@ std::size_t keepout::allocations() noexcept { return 0; }
 
 #else
 
-// The GNU C library's own, under the names that it keeps for those who stand in for it. Operator
-// new, and Eigen, come through here as well.
+// The functions of the GNU C library, under the names that it offers to replacements. Operator new
+// and Eigen also use the replaced functions.
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);

@@ -5,8 +5,8 @@
 
 namespace keepout {
 
-/// How often the heap was asked for memory since the program began, by new, malloc or any other of
-/// their kind. Link counted_allocations.cpp, which stands in for the C library's.
+/// Returns the number of allocations on the heap since the program began, by new, malloc or similar
+/// functions. Link counted_allocations.cpp, which replaces those of the C library.
 std::size_t allocations() noexcept;
 
 }  // namespace keepout

@@ -22,7 +22,7 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
     guards.emplace_back(mesh, index, psm({port, Mat3::Identity()}), std::make_unique<ActiveSet>(),
                         InstrumentOptions{.period = 0.05});
   }
-  // A mesh that is all near, one cycle's work that does not last, and a ball that is inside.
+  // All of the mesh is near; then a work budget ends within a cycle; then a ball is inside.
   const auto cube = mesh_of(make_cube(20.0));
   const auto cube_index = std::make_shared<WideBvh>(cube);
   for (const std::size_t work_units : {std::size_t{0}, std::size_t{60}}) {
@@ -35,10 +35,10 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
                       Instrument(turning, {{.points = {{6, Vec3::Zero()}}, .radius = 1.0}}),
                       std::make_unique<ActiveSet>(), InstrumentOptions{});
   guards.emplace_back(psm(), std::make_unique<ActiveSet>(), InstrumentOptions{});  // no mesh
-  // Two meshes, one of which comes on, at times faster than can be given way to.
+  // Two meshes. One of them approaches, at times faster than the bodies can retreat.
   InstrumentConstraint& beside_two = guards.front();
   beside_two.add_mesh(cube, cube_index, 0.5);
-  // Guides of a point, an axis and a shaft; the two half-spaces have no point in common.
+  // Guides of a point, an axis and a shaft. The two half-spaces have no point in common.
   const LinkPoint tip{6, Vec3(0, 10.2, 0)};
   guards[1].set_guides(
       {Guide::point("beyond", tip, Region::half_space(Vec3(300, 0, 0), Vec3::UnitX())),

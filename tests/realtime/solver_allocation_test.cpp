@@ -11,7 +11,7 @@ namespace keepout::test {
 namespace {
 
 TEST(SolverAllocation, OurOwnSolverAllocatesNothingAfterReserve) {
-  // All sizes, tasks, planes and outcomes.
+  // Covers all sizes, tasks, kinds of planes and outcomes.
   std::vector<Problem> problems;
   for (int n = 1; n <= 12; ++n) {
     for (const Task task : tasks) {

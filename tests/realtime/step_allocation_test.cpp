@@ -28,16 +28,16 @@ TEST(Allocations, AreCounted) {
   EXPECT_EQ(allocations(), before + 3) << matrix.sum();
 }
 
-/// What a rule must have come to for its paths to count as covered.
+/// Returns the outcomes that must occur, so that all paths of a rule are covered.
 std::set<Status> outcomes_of(std::string_view rule, std::string_view index) {
   std::set<Status> all{Status::free, Status::limited, Status::ill_posed, Status::invalid_input,
                        Status::beyond_reach};
-  // On a wide_bvh this rule searches by itself, and needs no room for all triangles in reach.
+  // On a wide_bvh this rule traverses the index, and needs no capacity for all triangles in reach.
   const bool searches = rule == "certified" && index == "wide_bvh";
   if (!searches) all.insert(Status::over_capacity);
   if (rule == "certified") {
     all.insert({Status::recovering, Status::touching});
-    // Of brute force all triangles are candidates, however short the motion.
+    // With brute force all triangles are candidates, however short the motion is.
     if (!searches && index != "brute_force") all.insert(Status::truncated);
   } else {
     all.insert(Status::infeasible);
@@ -78,9 +78,9 @@ TEST(Step, AllocatesNothingWhateverItsPartsAndItsOutcome) {
         MotionConstraintSettings ill_posed = settings;
         ill_posed.options.damping = 0.0;
         ill_posed.capacity.triangles = 1;
-        ill_posed.inside = Inside::taken_as_is;  // there is no room to look
+        ill_posed.inside = Inside::taken_as_is;  // the capacity is too small for the classification
         MotionConstraint small = make_motion_constraint(mesh, ill_posed);
-        // Motions are halved until few enough triangles are in reach.
+        // Motions are halved until the triangles in reach fit the capacity.
         MotionConstraintSettings narrow = settings;
         narrow.capacity.triangles = 8;
         narrow.inside = Inside::taken_as_is;
@@ -235,7 +235,7 @@ TEST(ConvexToolAllocation, AStepAsSimulateMakesItAllocatesNothing) {
   EXPECT_GT(guided, 100);
 }
 
-// That an index takes nothing from the heap while it answers, unless its row says that it does.
+// An index does not allocate during a query, unless its table entry says so.
 
 TEST(Index, AllocatesNothingWhileItAnswersUnlessItSaysSo) {
   const auto mesh = mesh_of("cortex");
@@ -249,7 +249,7 @@ TEST(Index, AllocatesNothingWhileItAnswersUnlessItSaysSo) {
     const std::unique_ptr<SpatialIndex> index = backend.make(mesh);
     TriangleBuffer candidates(mesh->triangle_count());
     std::size_t found = 0;
-    const std::size_t before = allocations();  // the first answer counts, too
+    const std::size_t before = allocations();  // the first query counts, too
     for (const Vec3& point : points) {
       for (const double radius : {0.0, 1.0, 10.0, size, 1e6 * size}) {
         candidates.clear();

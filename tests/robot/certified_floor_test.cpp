@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The certified clearance of one cycle is the least clearance of the next ones. Rounding does not
-// use it up over many cycles, and a mesh that comes on lowers it only as far as reported.
+// The certified clearance of one cycle is the least clearance of the next cycles. Rounding does not
+// use it up over many cycles. A mesh that approaches lowers it only as far as reported.
 
 #include "certified_clearance.h"
 #include "guards.h"
@@ -9,7 +9,7 @@ namespace keepout {
 namespace {
 
 // A cycle may end up to two tolerances below the certified clearance. If the next cycle certified
-// from there, the body would come nearer by as much in each cycle.
+// from there, the body would come nearer by the same amount in each cycle.
 TEST(CertifiedFloor, IsNotUsedUpByATolerancePerCycle) {
   const InstrumentOptions options{.damping = 0.0};
   InstrumentConstraint guard = guard_of(wall(0.0), free_ball(0.0), options);
@@ -30,8 +30,8 @@ TEST(CertifiedFloor, IsNotUsedUpByATolerancePerCycle) {
   }
 }
 
-// A body that rounding has brought 2 to 3 tolerances below the certified clearance loses nothing
-// more, however long the command presses it on.
+// Rounding has brought a body 2 to 3 tolerances below the certified clearance. The body loses at
+// most three tolerances in all, however long the command presses it on.
 TEST(CertifiedFloor, LosesThreeTolerancesAtMostInAll) {
   for (const double recovery : {0.0, 1e-30, 0.05}) {
     for (const double below : {2.0, 2.2, 2.6, 2.95}) {
@@ -60,7 +60,7 @@ TEST(CertifiedFloor, LosesThreeTolerancesAtMostInAll) {
   }
 }
 
-// Rounding adds up over motions along a wall, unless each regains what rounding took.
+// Rounding errors add up over motions along a wall, unless each motion regains what rounding took.
 TEST(CertifiedFloor, IsRegainedByAMotionThatStartsBelowIt) {
   const InstrumentOptions options;
   InstrumentConstraint guard = guard_of(wall(0.0), free_ball(0.0), options);
@@ -77,9 +77,9 @@ TEST(CertifiedFloor, IsRegainedByAMotionThatStartsBelowIt) {
   EXPECT_EQ(share(2.5, 0.1, 0.3), 1.0);
 }
 
-// A wall comes on to a point on an arm, which turns about an axis behind the wall: every turn
-// brings the point nearer to the wall, so the point cannot evade it. When the wall rests, the arm
-// may turn only until the point has the clearance that the cycle with the moving wall reported.
+// A wall approaches a point on an arm. The arm turns about an axis behind the wall, so every turn
+// brings the point nearer, and the point cannot retreat. When the wall rests, the arm may turn only
+// until the point has the clearance that the cycle with the moving wall reported.
 TEST(CertifiedFloor, OfACycleThatYieldedIsKeptWhenTheMeshRests) {
   constexpr double lever = 100.0;
   constexpr double spare = 1e-4;
@@ -122,7 +122,8 @@ double certified_at(double distance, double floor) {
   return certified_clearance(distance, floor, wanted_distance, left_to_a_motion, told_apart);
 }
 
-// Bodies and guides alike: what is certified is what was gained, and no band of it is given away.
+// For bodies and guides: a start at the target distance or beyond is certified to the target
+// itself.
 TEST(CertifiedClearance, IsTheTargetWhereThatIsKeptHoweverLittleWasCertifiedBefore) {
   for (const double floor : {-1.0, 0.0, 0.1, wanted_distance, test::infinity}) {
     for (const double beyond : {0.0, 0.001, 0.5, -2.7 * told_apart}) {
@@ -141,8 +142,9 @@ TEST(CertifiedClearance, BelowTheTargetLosesNothingThatWasCertified) {
   EXPECT_EQ(certified_at(0.15, 0.19), 0.15 - left_to_a_motion) << "moved by somebody else";
 }
 
-// Theorem 2 needs both: a recovery that is accepted ends within 2.75 tolerances of the target, and
-// a start that no cycle has certified is certified to what it has.
+// Theorem 2 needs two facts. An accepted recovery ends within 2.75 tolerances of the target. A
+// start that no cycle has certified is certified to its own distance, less the part that is left to
+// a motion.
 TEST(CertifiedClearance, IsLessThanTheTargetBeyond2_75TolerancesBelowItUnlessItWasCertified) {
   const double unknown = -test::infinity;
   for (const double below : {2.8, 2.9, 3.5, 3.9}) {

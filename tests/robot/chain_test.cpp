@@ -22,7 +22,7 @@ Matrix matrix(const Pose& pose) {
   return m;
 }
 
-/// By an angle about an axis of the frame, 0 or 2, and along it.
+/// Returns a rotation about an axis of the frame, 0 or 2, and a displacement along it.
 Matrix screw(int axis, double angle, double way) {
   Matrix m = Matrix::Identity();
   const int next = (axis + 1) % 3;
@@ -51,7 +51,7 @@ std::vector<DenavitHartenberg> random_table(Random& random) {
   return table;
 }
 
-/// The farthest of the flange from where plain matrices put it, in any number. [mm]
+/// Returns the largest difference of the flange's pose from a product of matrices. [mm]
 double off_matrices(DhConvention convention, Random& random) {
   const std::vector<DenavitHartenberg> table = random_table(random);
   const Pose base = random_pose(random);
@@ -71,14 +71,14 @@ double off_matrices(DhConvention convention, Random& random) {
 }
 
 TEST(Chain, StoresRotationsToOneRounding) {
-  // docs/joint-space-step.md counts sqrt(3) u for each, u = 2^-53; r^T r then misses the identity
-  // by twice that.
+  // docs/joint-space-step.md counts sqrt(3) u for each rotation, u = 2^-53. r^T r then differs from
+  // the identity by twice that.
   Random random(12);
   double most = 0.0;
   for (int i = 0; i < 2000; ++i) {
     const Pose base = random_pose(random);
     Joint joint{.kind = JointKind::prismatic, .origin = random_pose(random)};
-    joint.origin.rotation += 1e-7 * Mat3::Random();  // six digits
+    joint.origin.rotation += 1e-7 * Mat3::Random();  // as if given with six digits
     const Chain chain({joint}, base);
     const ChainState state = test::state_of(chain, std::vector<double>{0.0});
     const Chain without_base({joint});
@@ -106,7 +106,7 @@ TEST(Chain, EachLinkIsMovedAboutItsOwnAxisWhereverThatPoints) {
   Random random(3);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 turned_about = random.direction();
-    // Almost against z, where the turn that leads there is hardly defined.
+    // Almost opposite to z, where the rotation from z to the axis is ill-conditioned.
     const double tilt = std::pow(10.0, random.uniform(-9, 0));
     const Vec3 moved_along = Vec3(tilt * random.uniform(), tilt, -1).normalized();
     const Pose ways[] = {random_pose(random), random_pose(random), random_pose(random)};
@@ -136,7 +136,7 @@ TEST(Chain, TheJacobianIsTheDerivativeOfEachPointAndEachLinksTurn) {
     const Vec3 point = 100.0 * random.direction();
     const ChainState state = test::state_of(chain, q);
     for (int k = 1; k <= chain.size(); ++k) {
-      // Four points: the error is some step^4 of the lever, and its rounding.
+      // Differences of four points: the error is of order step^4 times the lever, plus rounding.
       const auto at = [&](double steps) {
         std::vector<double> moved = q;
         moved[static_cast<std::size_t>(k - 1)] += steps * step;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Guides that contradict each other stop a motion only as far as they must, and cost no clearance.
+// Guides that contradict each other limit a motion only as far as necessary, and cost no clearance.
 
 #include <Eigen/Dense>
 #include <array>
@@ -27,7 +27,7 @@ double excess(const Guide& guide, const ChainState& state) {
   return guide.region().excess(guided_point(guide, state));
 }
 
-/// Returns the damped least-squares motion of the flange that turns no guide out, to first order.
+/// Returns the damped least-squares flange motion that moves no guided point out, to first order.
 std::vector<double> along_guides(const ChainState& state, const std::vector<Guide>& guides, int n,
                                  const Vec3& way) {
   const Vec3 at = state.flange().position;
@@ -52,7 +52,7 @@ std::vector<double> along_guides(const ChainState& state, const std::vector<Guid
 
 class ContradictingGuides : public testing::TestWithParam<int> {};
 
-// Two cones for one axis that miss each other, both left by some 10 mrad.
+// The two guides are disjoint cones for one axis. The start is outside both by about 10 mrad.
 TEST_P(ContradictingGuides, LeaveWhatBothAllow) {
   const int n = GetParam();
   Random random(static_cast<std::uint64_t>(n));
@@ -171,7 +171,7 @@ TEST(Guides, WithinTheirBandsDoNotStopTheTask) {
 }
 
 // A planar arm far from a mesh that moves slowly. Its tip is inside a corridor; its elbow is pulled
-// back into another one. The clearance needs neither guide to give way.
+// back into another one. The clearance does not require either guide to be relaxed.
 TEST(ContradictingGuides, AreNotDroppedBesideADistantMeshThatMoves) {
   Surface far;
   far.vertices = {Vec3(0, 0, 2000), Vec3(100, 0, 2000), Vec3(0, 100, 2000)};
@@ -215,8 +215,8 @@ TEST(ContradictingGuides, AreNotDroppedBesideADistantMeshThatMoves) {
   EXPECT_GT(pulled, test::trials(500));
 }
 
-// A sheet comes on to a ball that three guides hold in its way; two of them contradict each other.
-// Guides are dropped first, so the ball keeps all of its clearance.
+// A sheet approaches a ball that up to three guides hold in its path. Two of them contradict each
+// other. Guides are relaxed first, so the ball keeps all of its clearance.
 TEST(ContradictingGuides, CostNoClearanceFromAMeshThatComesOn) {
   std::vector<Joint> slides;
   for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {

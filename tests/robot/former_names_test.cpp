@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names that version 0.3 changed still compile, and mean the same. Remove this file with them.
+// Names that version 0.3 changed still compile, with the same meaning. Remove this file with them.
 #include "guards.h"
 #include "keepout/index/motion_walk.h"
 #include "keepout/mesh/doctor.h"

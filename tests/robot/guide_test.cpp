@@ -10,7 +10,7 @@ namespace {
 const LinkPoint wrist{4, Vec3::Zero()};
 const LinkPoint jaw_tip{6, Vec3(0, 10.2, 0)};  // of the psm
 
-/// A psm 120 above the gear, and a guard of it.
+/// A psm 120 above a mesh, and its guard.
 struct Bench {
   explicit Bench(const char* shape = "gear")
       : mesh(mesh_of(shape)),
@@ -27,7 +27,7 @@ struct Bench {
   InstrumentConstraint guard;
 };
 
-/// The excess of a guide, by what it says of itself in the chain's true states along a step.
+/// Returns the largest excess of a guide on a step, in the true states of the chain.
 double farthest_out(const Bench& bench, const Guide& guide, const std::vector<double>& q,
                     const InstrumentStep& step) {
   double most = -1e30;
@@ -39,7 +39,7 @@ double farthest_out(const Bench& bench, const Guide& guide, const std::vector<do
 }
 
 // In the second cycle the solver does not converge on the first problem with the guide's row. The
-// next problem lets the point use the band, although the guide does not pull it back.
+// next problem lets the point use the band, although the guide does not pull the point back.
 TEST(Guide, ThatLetsAPointUseItsBandIsReportedAsRelaxed) {
   constexpr double band = 0.01;
   for (const bool fails : {false, true}) {
@@ -87,7 +87,7 @@ TEST(Guide, IsAboutWhatItSays) {
     const Vec3 nearest = state.at(0, Vec3::Zero()) + share * along;
     EXPECT_NEAR((guided_point(shaft, state) - nearest).norm(), 0.0, 1e-9);
 
-    // Of three axes each within its angle, no turn is more than what was asked for.
+    // If all three axes are within their angles, the rotation is at most `angle`.
     const Mat3 wanted = state.link(6).rotation;
     const double angle = random.uniform(0.01, 1.0);
     const std::vector<Guide> axes = Guide::orientation("hand", 6, wanted, angle);
@@ -108,7 +108,7 @@ TEST(Guide, IsAboutWhatItSays) {
   }
 }
 
-// Second differences on a fine grid against the bound that proofs take.
+// Compares second differences on a fine grid with the bound that proofs use.
 TEST(Guide, BoundsTheBendOfItsPlace) {
   const Bench bench;
   Random random(2);
@@ -140,7 +140,7 @@ TEST(Guide, BoundsTheBendOfItsPlace) {
   EXPECT_GT(largest, 0.5) << "the bound is of the size of what it bounds";
 }
 
-/// Pushes and turns in all directions; returns how often each guide held the motion back.
+/// Moves and turns the jaw in all directions. Returns how often each guide limited the motion.
 std::vector<int> wander(Bench& bench, const std::vector<Guide>& guides, std::vector<double> q,
                         int cycles, std::uint64_t seed) {
   bench.guard.set_guides(guides);
@@ -223,7 +223,7 @@ TEST(Guide, GivesWayWithAWordOnItWhereOthersContradict) {
   Bench bench;
   std::vector<double> q{0.0, 0.0, 60.0, 0.0, 0.0, 0.0};
   const Vec3 at = bench.at(q).at(jaw_tip.link, jaw_tip.position);
-  // To the left of one plane, and to the right of another one: out of both.
+  // The tip is between the two planes, outside both regions.
   bench.guard.set_guides(
       {Guide::point("left", jaw_tip, Region::half_space(at - Vec3(1, 0, 0), -Vec3::UnitX())),
        Guide::point("right", jaw_tip, Region::half_space(at + Vec3(1, 0, 0), Vec3::UnitX()))});
@@ -239,7 +239,7 @@ TEST(Guide, GivesWayWithAWordOnItWhereOthersContradict) {
   EXPECT_GT(moved.y(), 5.0) << "along both it moves";
 }
 
-// Out, led back to within the band, and pushed out again: from there on it is kept to the band.
+// The point starts outside, enters the band, and is pushed out again: it must stay within the band.
 TEST(Guide, KeepsWhatIsWithinItsBandAgain) {
   Random random(7);
   int back = 0;
@@ -266,7 +266,7 @@ TEST(Guide, KeepsWhatIsWithinItsBandAgain) {
   EXPECT_GT(back, test::trials(100));
 }
 
-// A region that lies in the mesh: the mesh is kept out of, and the guide is told to hold.
+// The regions lie inside the mesh. Mesh avoidance has priority, so the step relaxes the guides.
 TEST(Guide, NeverLeadsIntoTheMesh) {
   Bench bench("cube");
   std::vector<double> q{0.0, 0.0, 60.0, 0.0, 0.0, 0.0};
@@ -339,7 +339,7 @@ struct Guided {
     guard.set_guides({guide});
   }
 
-  /// Returns how far the guided point leaves its region on q + s dq, at 65 poses.
+  /// Returns by how much the guided point leaves its region on q + s dq, at 65 poses.
   double farthest_out(const std::vector<double>& q, std::span<const double> dq) const {
     double most = -1e30;
     for (int s = 0; s <= 64; ++s) {
@@ -357,8 +357,8 @@ struct Guided {
 };
 
 // The ends of the shaft move on straight lines. The shaft passes through the remote center at the
-// start and at the end of the motion. In between the guided point slides from one end of the shaft
-// to the other, and misses the center by a quarter of the sideways displacement of both ends.
+// start and at the end of the motion. In between, the guided point slides from one end of the shaft
+// to the other. It misses the center by a quarter of the sideways displacement of both ends.
 TEST(GuidedPath, OfAShaftThatSlidesIsKeptInBetween) {
   constexpr double length = 10.0;
   const Joint insertion{.kind = JointKind::prismatic, .axis = Vec3::UnitX()};

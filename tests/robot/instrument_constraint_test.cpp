@@ -14,7 +14,7 @@ namespace {
 
 std::vector<double> straight_down(double insertion) { return {0, 0, insertion, 0, 0, 0}; }
 
-/// Returns a psm that hangs down from its port, 120 above the origin: at insertion d its tip is at
+/// Returns a psm that hangs down from its port, 120 above the origin. At insertion d its tip is at
 /// height 120 - d - 9.1 - 10.2 + 15.6.
 Instrument psm_above() { return psm(port_over(Vec3::Zero(), 120.0)); }
 
@@ -29,7 +29,7 @@ double certified_by(const InstrumentConstraint& guard) {
   return guard.options().margin - guard.options().band - 3.0 * guard.tolerance();
 }
 
-/// The insertion at which nothing is nearer than that to a cube whose top is at 50.
+/// Returns the insertion with this distance from a cube whose top is at 50.
 double insertion_above_cube(const Instrument& instrument, const Mesh& mesh, double distance) {
   double low = 10.0;
   double high = 200.0;
@@ -75,14 +75,14 @@ TEST(InstrumentConstraint, WithoutAMeshGoesWhereItIsAskedToUntilOneIsAdded) {
   const InstrumentStep limited = guard.step(q, down);
   EXPECT_EQ(limited.status, Status::limited);
   EXPECT_GE(clearance_of(instrument, *mesh, moved(q, limited)), certified_by(guard));
-  // A prismatic joint at its limit is held there, beside a mesh or not.
+  // The step keeps a prismatic joint at its limit, with and without a mesh.
   InstrumentConstraint at_its_limit(instrument, std::make_unique<ActiveSet>(), {.period = 0.05});
   q[2] = instrument.chain().joint(3).limits.upper;
   EXPECT_LE(moved(q, at_its_limit.step(q, down))[2], q[2] + 1e-12);
 }
 
-// On generated shapes, with each index and each solver: nothing below what is certified, on the way
-// as little as at its end, and the same answers to the bit on every index.
+// On generated shapes, with each index and each solver: no step ends below the certified clearance,
+// or passes below it on the way. All indices give bitwise identical results.
 TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
   struct Part {
     std::string_view index, solver;
@@ -107,7 +107,7 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearOnEveryIndexAndEverySolver) {
         const Twist desired{.linear = Vec3(0, 0, -1.0) + random.direction(),
                             .angular = 0.05 * random.direction()};
         const InstrumentStep step = guard.step(q, desired);
-        if (!step.ok()) continue;  // a solver may give up
+        if (!step.ok()) continue;  // a solver may fail
         held += step.status == Status::limited ? 1 : 0;
         for (const double share : {0.37, 1.0}) {
           ASSERT_GE(clearance_of(instrument, *mesh, moved(q, step, share)), certified_by(guard));
@@ -156,8 +156,8 @@ TEST(InstrumentConstraint, KeepsEveryBodyClearWhateverASolverAnswers) {
   EXPECT_GT(moves, test::trials(25));
 }
 
-// Shares of random motions, also large ones, that are said to be proven are free, densely sampled;
-// and motions that are free are nearly all proven.
+// Samples random motions, some of them large. Each part that is proved must be clear, and nearly
+// all clear motions must be proved.
 TEST(InstrumentConstraint, ProvesWhatIsFreeAndNothingElse) {
   const auto mesh = mesh_of(make_sphere(12.0));
   const Instrument instrument = psm_above();
@@ -269,12 +269,12 @@ TEST(InstrumentConstraint, RefusesPositionsThatLoseTheDigitsOfAWay) {
   auto guard = guard_of(mesh, psm_above(), {.period = 0.05});
   std::vector<double> q = straight_down(20.0);
   EXPECT_TRUE(guard.step(q, Twist{}).ok());
-  q[3] = 101.0;  // revolute
+  q[3] = 101.0;  // beyond 100 rad
   EXPECT_EQ(guard.step(q, Twist{}).status, Status::invalid_input);
   EXPECT_EQ(guard.prove(q, std::vector<double>(6, 0.0)).status, Status::invalid_input);
   const std::vector<double> far{0, 0, 1e8, 0, 0, 0};
   EXPECT_EQ(guard.prove(straight_down(20.0), far).status, Status::invalid_input);
-  // Without limits of its own, a joint is not sent beyond what the next cycle would refuse.
+  // A joint without limits is not moved beyond the positions that the next cycle accepts.
   auto free = guard_of(mesh, ball_on_a_slide({Vec3(0, 0, 500)}), {.period = 0.05});
   std::vector<double> at{0.0};
   for (int i = 0; i < 3; ++i) {
@@ -285,8 +285,8 @@ TEST(InstrumentConstraint, RefusesPositionsThatLoseTheDigitsOfAWay) {
   EXPECT_GT(at[0], 1e4);
 }
 
-// A surface that comes and goes, refit ten times a beat; between refits all is certified, after
-// each it is looked where the instrument stands now.
+// A beating surface, refit ten times per beat. Each step preserves the margin, or the clearance at
+// its start if that is smaller, less the band.
 TEST(InstrumentConstraint, FollowsAnatomyThatDeforms) {
   const Surface still = make_shape("sphere");
   const auto at = [&](double beats) { return mesh_of(beating(still, beats)); };
@@ -352,7 +352,7 @@ TEST(InstrumentConstraint, NeverLeavesTheLimitsOfItsJoints) {
   EXPECT_GT(at_limit, test::trials(100));
 }
 
-// To the last bit of q + dq as the caller adds it up.
+// The limits hold exactly for q + dq as the caller computes it.
 TEST(InstrumentConstraint, EndsWithinLimitsWhateverTheRounding) {
   const auto mesh = mesh_of(make_cube(50.0));
   Random random(12);
@@ -425,7 +425,7 @@ TEST(InstrumentConstraint, MovesNothingThatIsThroughTheSurfaceOrBehindIt) {
       straight_down(insertion_above_cube(psm_above(), *mesh, 0.0) + 5.0);
   EXPECT_EQ(guard.step(through, Twist{.linear = Vec3(0, 0, 1)}).status, Status::touching);
   EXPECT_TRUE(guard.step(through, Twist{}).increment.empty());
-  // A ball alone, all of it inside.
+  // A ball that is entirely inside.
   auto inside = guard_of(mesh, ball_on_a_slide(), {.period = 0.05});
   const std::vector<double> q{0.0};
   EXPECT_EQ(inside.step(q, Twist{}).status, Status::inside);
@@ -440,7 +440,8 @@ TEST(InstrumentConstraint, MovesNothingThatIsThroughTheSurfaceOrBehindIt) {
 TEST(InstrumentConstraint, ABladeThatTurnsIsKeptOffByItsEdges) {
   const auto mesh = mesh_of(make_cube(10.0));
   const Pose above{Vec3(0, 0, 53), Mat3::Identity()};
-  // 4 wide, turning about y: flat it is 3 above, upright 1 above.
+  // The blade is 4 wide and turns about y. It is 3 above the cube if it is flat, and 1 above if it
+  // is upright.
   const Chain chain({{.axis = Vec3::UnitY()}}, above);
   const std::vector<LinkPoint> corners{{1, Vec3(-2, -1, 0)}, {1, Vec3(2, -1, 0)},
                                        {1, Vec3(-2, 1, 0)},  {1, Vec3(2, 1, 0)},
@@ -518,7 +519,7 @@ TEST(InstrumentConstraint, ABandForTheLimitsOfItsJointsHoldsEveryBendAtFullSpeed
   EXPECT_LE(most, band);
   EXPECT_GT(most, 0.02 * band) << "lengths of ways are added up, folded or not";
   EXPECT_EQ(recommended_band(instrument, 1e-3, 1.0), 1.0);
-  // A point in the joint's own axis, which no limit holds.
+  // The point lies on the axis of a joint without limits.
   const Instrument unlimited(Chain({Joint{}}), {{.points = {{1, Vec3::Zero()}}, .radius = 1.0}});
   EXPECT_EQ(recommended_band(unlimited, 1e-3), test::infinity);
 }

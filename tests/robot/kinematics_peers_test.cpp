@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Forward kinematics and Jacobians against those of KDL and of MuJoCo, which share no line with
-// ours.
+// Compares forward kinematics and Jacobians with those of KDL and of MuJoCo, which share no code
+// with keepout.
 
 #include <cstddef>
 #include <cstdio>
@@ -22,11 +22,11 @@
 namespace keepout {
 namespace {
 
-constexpr double allowed = 1e-12;                  // [m], and for what has no unit
+constexpr double allowed = 1e-12;                  // [m], or without unit
 const int configurations = test::trials(500'000);  // of each robot
 constexpr double millimetre = 1e-3;
 
-/// Positions as those who reckon in meters take them.
+/// Returns joint positions with lengths in meters.
 std::vector<double> in_metres(const Chain& chain, std::vector<double> q) {
   for (int k = 1; k <= chain.size(); ++k) {
     if (chain.joint(k).kind == JointKind::prismatic)
@@ -42,7 +42,7 @@ struct Differences {
   double jacobian = 0.0;  // of any entry, [m/rad] or without unit
 
   static void raise(double& largest, double found) {
-    // What is not a number is not to be passed over.
+    // A comparison with NaN is false, so NaN is recorded.
     if (!(found <= largest)) largest = found;
   }
   void judge(const std::string& what) const {
@@ -57,7 +57,7 @@ struct Differences {
 
 using Column = Eigen::Matrix<double, 6, 1>;
 
-/// Column k of the Jacobian of the flange, in meters.
+/// Returns column k of the Jacobian of the flange, in meters.
 Column column(const ChainState& state, int k) {
   Column column;
   const double unit = state.turns(k) ? millimetre : 1.0;
@@ -67,7 +67,7 @@ Column column(const ChainState& state, int k) {
 }
 
 #ifdef KEEPOUT_HAS_KDL
-/// A row after Craig: right angles for alpha and theta, meters.
+/// A DH row after Craig: alpha and theta in right angles, lengths in meters.
 struct Row {
   double a, alpha, d, theta;
   KDL::Joint::JointType type = KDL::Joint::RotZ;
@@ -141,7 +141,8 @@ TEST(KinematicsPeers, TheFlangeIsWhereKdlSaysAndMovesSo) {
 #ifdef KEEPOUT_HAS_MUJOCO
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// All links, and the Jacobian of the flange, which MuJoCo makes a part of the last link.
+/// Compares the poses of all links, and the Jacobian of the flange. MuJoCo merges the flange into
+/// the last link.
 void compare_with_mujoco(const Chain& ours, const std::string& name) {
   char message[1000] = "";
   const std::string file = std::string(KEEPOUT_ROBOTS) + "/" + name + ".urdf";

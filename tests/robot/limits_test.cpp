@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// InstrumentStep::limits: every limited step names its causes, and each cause is one.
+// InstrumentStep::limits names every cause of a limited motion, and only causes.
 #include <array>
 
 #include "brute_force.h"
@@ -48,8 +48,8 @@ double difference(const InstrumentStep& one, const InstrumentStep& other) {
   return most;
 }
 
-/// Returns true if a joint goes as far as its position limit and its velocity limit allow, to
-/// within rounding. Without one of the two, the other limits it alike.
+/// Returns true if the position limit and the velocity limit of a joint allow the same increment,
+/// to within rounding. Without one of the two limits, the other one gives the same motion.
 bool is_tied(const Chain& chain, const std::vector<double>& q, const InstrumentStep& step,
              double period) {
   for (std::size_t k = 0; k < step.increment.size(); ++k) {
@@ -77,7 +77,7 @@ TEST(Limits, NameEveryCauseAndOnlyCauses) {
       Cause{Limit::joint_velocity, guard_without({.velocities = true}, guides)}};
   InstrumentConstraint guard = guard_without({}, guides);
   InstrumentConstraint alone = guard_without({true, true, true, true}, guides);
-  // With --gtest_shuffle --gtest_repeat=10 these are other motions each time.
+  // With --gtest_shuffle --gtest_repeat=10, each repetition draws other motions.
   Random random(3u + static_cast<unsigned>(testing::UnitTest::GetInstance()->random_seed()));
   std::array<int, 4> seen{};
   int free = 0;
@@ -200,8 +200,8 @@ TEST(Limits, TellASpentBudgetFromASmallStore) {
   EXPECT_TRUE(moving.limits.has(Limit::capacity)) << name(moving.status);
 }
 
-// A first search for triangles is too wide for the capacity, and a second one fits. Then the budget
-// may end while the side of the ball is found.
+// The first search for triangles exceeds the capacity; a second one does not. The budget may then
+// end during the inside/outside classification of the ball.
 TEST(Limits, TellASpentBudgetFromASearchThatWasTooWide) {
   const auto mesh = mesh_of(make_cube(2.0));
   const auto index = std::make_shared<WideBvh>(mesh);
@@ -224,10 +224,10 @@ TEST(Limits, TellASpentBudgetFromASearchThatWasTooWide) {
   EXPECT_GT(spent, 10);
 }
 
-// The work budget or the memory of an instrument's cycle runs out at an arbitrary point.
+// The work budget or the capacity of an instrument's cycle runs out at an arbitrary point.
 
-/// An arm that turns twice beside a cube whose corners are at 50. The ball at its end swings across
-/// the cube's top, and would come down on it.
+/// An arm with two revolute joints beside a cube whose corners are at 50. The ball at its end
+/// swings across the cube's top, and would hit it.
 struct Swing {
   explicit Swing(const InstrumentCapacity& capacity)
       : mesh(mesh_of(make_cube(50.0))),
@@ -296,7 +296,7 @@ TEST(SpentCapacity, NothingIsCertifiedThatIsNotClearHoweverFewTrianglesFit) {
   EXPECT_GT(certified, 10);
 }
 
-// A motion that is made as a whole was not shortened by the budget that ends its refinement.
+// A budget that ends during the refinement of a motion does not limit the motion.
 TEST(SpentCapacity, IsNoLimitOfAMotionThatIsMadeAsAWhole) {
   int made_as_a_whole = 0;
   for (std::size_t work_units = 800; work_units < 1200; ++work_units) {
@@ -311,7 +311,7 @@ TEST(SpentCapacity, IsNoLimitOfAMotionThatIsMadeAsAWhole) {
   EXPECT_GT(made_as_a_whole, 100);
 }
 
-// The index has room for all triangles, the set for fewer.
+// The neighborhood has capacity for all triangles, the set for fewer.
 TEST(SpentCapacity, ANearSetThatCannotHoldAllTrianglesKnowsNothing) {
   const auto mesh = mesh_of(make_cube(50.0));
   Budget budget;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int cells = 64;
 
-/// How near the bounds of so many motions come to what is found along them.
+/// The tightness of the bounds of many motions: the ratio of the true value to its bound.
 struct Tightness {
   double sum = 0.0;
   double largest = 0.0;
@@ -30,7 +30,7 @@ struct Tightness {
   }
 };
 
-/// Where a point that a link carries is at s = 0, 1/64, ..., 1.
+/// Returns the positions of a point that a link carries, at s = 0, 1/64, ..., 1.
 std::array<Vec3, cells + 1> way(const Chain& chain, const std::vector<double>& q,
                                 const std::vector<double>& increment, const LinkPoint& point) {
   std::array<Vec3, cells + 1> places;
@@ -49,7 +49,7 @@ void judge(const Instrument& robot, const std::string& name, std::uint64_t seed)
   Random random(seed);
   Tightness path;
   Tightness bend;
-  // A place is known to some rounding errors of the chain's length.
+  // A position has a few rounding errors of the chain's length.
   const double rounding = 1e-14 * chain.reach();
   const int motions = test::trials(500'000);
   for (int m = 0; m < motions; ++m) {
@@ -58,7 +58,7 @@ void judge(const Instrument& robot, const std::string& name, std::uint64_t seed)
     for (int k = 1; k <= chain.size(); ++k) {
       const double most = chain.joint(k).kind == JointKind::revolute ? 0.4 : 10.0;
       increment.push_back(random.uniform(-most, most));
-      // Few joints in every other motion: there the bounds are tightest.
+      // In every other motion about half of the joints rest: the bounds are tightest there.
       if (m % 2 == 0 && random.below(2) == 0) increment.back() = 0.0;
     }
     const Body& body = robot.bodies()[random.below(robot.bodies().size())];
@@ -77,7 +77,7 @@ void judge(const Instrument& robot, const std::string& name, std::uint64_t seed)
       length += chord;
       fastest = std::max(fastest, cells * chord);
       if (i == cells) break;
-      // The mean of the second derivative over two cells, in tents.
+      // The second difference is a weighted mean of the second derivative over two sub-intervals.
       const Vec3 turn = places[i + 1] - 2.0 * places[i] + places[i - 1];
       sharpest = std::max(sharpest, cells * cells * turn.norm());
     }
@@ -101,7 +101,7 @@ TEST(MotionBounds, NoMotionOfTheSevenJointArmIsLongerOrBendsMore) {
 }
 
 TEST(MotionBounds, OfAPsmAtOneKilohertzAreThoseThatThePageStates) {
-  // docs/joint-space-step-algorithm.md: M / 2 at a lever of 200 mm.
+  // docs/joint-space-step-algorithm.md states M / 2 at a lever of 200 mm.
   const Instrument robot = psm();
   const Chain& chain = robot.chain();
   const ChainState state =
@@ -113,7 +113,7 @@ TEST(MotionBounds, OfAPsmAtOneKilohertzAreThoseThatThePageStates) {
     if (k < 2) yaw_and_pitch[k] = all[k];
   }
   const Vec3 tip = state.flange().position;
-  EXPECT_NEAR(0.5e3 * motion_bounds(state, yaw_and_pitch, 6, tip).bend, 0.4, 0.05);  // [um]
+  EXPECT_NEAR(0.5e3 * motion_bounds(state, yaw_and_pitch, 6, tip).bend, 0.4, 0.05);  // [µm]
   EXPECT_NEAR(0.5e3 * motion_bounds(state, all, 6, tip).bend, 4.8, 0.1);
 }
 
@@ -132,7 +132,7 @@ TEST(MotionBounds, OfOneJointTheyAreExact) {
   EXPECT_EQ(motion_bounds(state, increment, 1, Vec3(30, 40, 7)).bend, 0.0);
 }
 
-// The certificate on motions for which its second-derivative bound is exact: no smaller bound is
+// The certificate on motions for which its second-derivative bound is exact, so no smaller bound is
 // safe.
 
 /// A point on an arm turns past a wall. It is nearest to the wall in the middle of the turn.
@@ -141,8 +141,8 @@ struct TurnPastAWall {
   static constexpr double turn = 0.04;
   static constexpr double radius = 0.5;
 
-  /// `spare`: the distance in the middle beyond the certified one, as a fraction of the sagitta.
-  /// `slide`: how far the arm's base slides back meanwhile, as a fraction of the chord.
+  /// `spare`: the distance in the middle, less the certified one, as a fraction of the sagitta.
+  /// `slide`: how far the arm's base slides back, as a fraction of the chord.
   TurnPastAWall(double spare, double slide) {
     const InstrumentOptions options;
     const double due = radius + options.margin - options.band;
@@ -164,11 +164,11 @@ struct TurnPastAWall {
   }
 
   MotionProof proof;
-  double clear_share;  // of the motion, until the point is nearer than the certified distance
+  double clear_share;  // until the point is nearer than the certified distance
 };
 
 // On the plain arc the separating planes decide. If the base slides back by the chord, the path
-// ends where it begins: then the maximum displacement decides, and the ball about the start.
+// ends where it begins. Then the maximum displacement and the ball about the start decide.
 TEST(PathBound, AMotionWhoseMiddleComesTooNearIsNotCertifiedWhole) {
   for (const double slide : {0.0, 1.0}) {
     for (const double missing : {5e-4, 0.01, 0.1, 0.3, 0.45, 0.9}) {
@@ -187,7 +187,7 @@ TEST(PathBound, AMotionWhoseMiddleIsJustClearIsCertifiedWhole) {
   }
 }
 
-/// Where the mesh sees a place, by formulas of the test's own.
+/// Returns a position in the frame of a moving mesh, by independent formulas.
 Vec3 seen_by(const Pose& mesh, const Twist& way, double share, const Vec3& place) {
   Mat3 rotation = mesh.rotation;
   const double turn = way.angular.norm();
@@ -197,8 +197,8 @@ Vec3 seen_by(const Pose& mesh, const Twist& way, double share, const Vec3& place
   return rotation.transpose() * (place - mesh.position - share * way.linear);
 }
 
-// Instrument and mesh both move: what the mesh sees is longer and bends more than what the world
-// does, and is bounded all the same.
+// Instrument and mesh both move. The path in the frame of the mesh is longer, and has a larger
+// second derivative, than the path in the world. The bounds must hold for it.
 TEST(RelativeMotion, NoPointIsElsewhereNorBendsMoreThanIsSaid) {
   const Instrument robot = psm();
   const Chain& chain = robot.chain();

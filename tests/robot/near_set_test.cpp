@@ -14,8 +14,8 @@
 namespace keepout {
 namespace {
 
-// Cores of one, two and four points wander near a mesh; what is listed of each cycle is held to the
-// gap of every triangle, while triangles become known and more and more are asked for.
+// Cores of one, two and four points lie at random near a mesh. The listed triangles are compared
+// with the gaps of all triangles, for growing distances, and in cycles that reuse the set.
 TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
   Random random(1);
   std::size_t listed_of = 0;
@@ -63,8 +63,8 @@ TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
   EXPECT_GT(listed_of, test::trials(20'000u));
 }
 
-// Each triangle surrounds the foot of the perpendicular from the core, so that the plane that the
-// screen tries is the best one. Then only the slack for rounding keeps the triangle.
+// Each triangle surrounds the foot of the perpendicular from the core, so the plane that the screen
+// tries is the best one. Only the slack for rounding then keeps the triangle.
 TEST(NearScreen, PassesOverNoTriangleWithinTheDistance) {
   Random random(1);
   int passed_over = 0;
@@ -91,11 +91,11 @@ TEST(NearScreen, PassesOverNoTriangleWithinTheDistance) {
   EXPECT_GT(passed_over, test::trials(10'000));
 }
 
-// The set of triangles near a body is reused from cycle to cycle, while the body is so near to
-// where the set was made that the set still has all triangles that the cycle needs.
+// The set of triangles near a body is reused in later cycles, as long as it has all triangles that
+// the cycle needs.
 
 // The ball is displaced from where its set was made, by 1 % more in each trial. A wall is just near
-// enough to forbid the motion after that. For some displacements the set does not have the wall.
+// enough to forbid the next motion. For some displacements the set does not contain the wall.
 TEST(StaleNearSet, IsNotUsedWhereTheBodyHasMovedTooFar) {
   constexpr double radius = 1.0;
   const auto mesh = wall(0.0);
@@ -133,8 +133,7 @@ double least_height(const std::vector<Vec3>& core, const Vec3& n) {
   return least;
 }
 
-// The judge is a search among the planes and pairs of points, which shares nothing but
-// closest_point.
+// The reference searches planes and pairs of points. It shares only closest_point with gap().
 TEST(Gap, IsTheDistanceOfTheHullAndProvenByItsPlane) {
   Random random(1);
   int touching = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An instrument beside several meshes, each placed, moved and kept off by a margin of its own.
+// An instrument beside several meshes. Each mesh has its own pose, velocity and margin.
 
 #include "brute_force.h"
 #include "guards.h"
@@ -8,7 +8,7 @@
 namespace keepout {
 namespace {
 
-/// What the point step guards, a ball: carried by three joints that slide along the axes.
+/// Returns a ball on three slides along the axes: the tool that a MotionConstraint guards.
 Instrument ball(double radius) {
   std::vector<Joint> axes;
   for (const Vec3& axis : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {
@@ -22,7 +22,7 @@ Instrument ball(double radius) {
 constexpr InstrumentOptions undamped{.damping = 1e-9, .orientation_weight = 0.0};
 
 std::shared_ptr<const Mesh> cube_of(double side) {
-  return mesh_of(enlarged(make_cube(20.0), side / 100.0));  // of a side of 100
+  return mesh_of(enlarged(make_cube(20.0), side / 100.0));  // a side of 100
 }
 
 /// Returns the clearance of a ball from a mesh at a pose.
@@ -45,7 +45,7 @@ InstrumentStep step_of(InstrumentConstraint& guard, const Vec3& at, const Vec3& 
 TEST(SeveralMeshes, EachIsKeptOffByItsOwnMarginWhereItIsPlaced) {
   const auto left = cube_of(10.0);
   const auto right = cube_of(8.0);
-  const double size = 8.0 * std::sqrt(3.0);  // however it is turned
+  const double size = 8.0 * std::sqrt(3.0);  // in any orientation
   InstrumentConstraint guard = guard_of(left, ball(1.0), undamped);
   ASSERT_EQ(guard.add_mesh(right, std::make_shared<WideBvh>(right), 0.7), 1u);
   const Pose aside{Vec3(10.0 + 0.5 * size, 1.0, -2.0),
@@ -112,7 +112,7 @@ TEST(SeveralMeshes, APlacedMeshIsTheSameAsARobotThatIsPlacedTheOtherWay) {
   EXPECT_GT(held, test::trials(50));
 }
 
-// The hand does nothing: the cube comes on, and the ball goes before it, at the margin.
+// No motion is commanded. The cube approaches, and the ball moves ahead of it at the margin.
 TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayTo) {
   const auto cube = cube_of(10.0);
   InstrumentConstraint guard = guard_of(cube, ball(1.0), undamped);
@@ -136,7 +136,7 @@ TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayTo) {
   EXPECT_GT(limited, 300);
 }
 
-// The operator presses sideways. The ball goes before the cube, and stays in its corridor.
+// The operator presses sideways. The ball moves ahead of the cube, and stays in its corridor.
 TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayToWithinTheGuides) {
   const auto cube = cube_of(10.0);
   const Vec3 start(7.0, 0.3, 0.2);
@@ -159,7 +159,8 @@ TEST(SeveralMeshes, AMeshThatComesOnIsGivenWayToWithinTheGuides) {
   EXPECT_GT(held, 100);
 }
 
-// Faster than the joints can go: less and less is kept, which is told; and then nothing is proven.
+// The cube approaches faster than the joints can move. The step reports a smaller and smaller
+// clearance fraction, until it can prove no motion.
 TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
   const auto cube = cube_of(10.0);
   int degraded = 0;
@@ -169,7 +170,7 @@ TEST(SeveralMeshes, WhatOutrunsTheJointsIsNamed) {
   for (int trial = 0; trial < 20; ++trial) {
     guard.forget();
     at = Vec3(6.9, 0.01 * trial, 0.0);
-    guard.place(0, {}, {.linear = Vec3(2000.0 + 10.0 * trial, 0, 0)});  // joints: 2000
+    guard.place(0, {}, {.linear = Vec3(2000.0 + 10.0 * trial, 0, 0)});  // joints: up to 2000
     double kept = 0.198;
     for (int i = 0; i < 40; ++i) {
       const double clear_before = clearance(at, 1.0, *cube, guard.place_of(0));
@@ -224,14 +225,15 @@ TEST(SeveralMeshes, APlaceThatIsNoneStopsUntilThereIsOne) {
   EXPECT_EQ(step_of(guard, at, Vec3::UnitX()).status, Status::free) << "no mesh was touched";
 }
 
-/// A square sheet in the plane z = 0.
+/// Returns a square sheet in the plane z = 0.
 std::shared_ptr<const Mesh> sheet_of(double half) {
   return mesh_of(Surface{{{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}},
                          {{0, 1, 2}, {0, 2, 3}}});
 }
 
-// Each place is at most as far off as the lengths at hand allow, however far the last one was: 100
-// times farther again and again, rounding would outgrow the margin, and all would be certified.
+// The largest accepted distance of a pose depends on the lengths of the scene, not on the last
+// pose. Otherwise each pose could be 100 times farther away than the last one. Rounding would
+// exceed the margin, and motions would still be certified.
 TEST(SeveralMeshes, PlacesDoNotRatchet) {
   const auto sheet = sheet_of(500.0);
   InstrumentConstraint guard = guard_of(sheet, free_ball(1.0), undamped);
@@ -248,7 +250,7 @@ TEST(SeveralMeshes, PlacesDoNotRatchet) {
   EXPECT_EQ(accepted, 1) << "2.5e5 is beyond 100 times the sheet";
 }
 
-/// Three slides carry a tip that can retreat from a sheet that comes on at 20 mm/s for 8 mm.
+/// Three slides carry a tip that can retreat from a sheet, which approaches at 20 mm/s for 8 mm.
 struct ComingSheet {
   explicit ComingSheet(const std::vector<Body>& others, const Chain& chain = free_ball(1.0).chain())
       : guard(guard_of(sheet_of(50.0), instrument(chain, others), {.orientation_weight = 0.0})) {}
@@ -258,7 +260,7 @@ struct ComingSheet {
     return {chain, bodies};
   }
 
-  /// Runs to the end; the operator asks for `way` in each cycle.
+  /// Runs all cycles; the operator commands `way` in each of them.
   void run(const Vec3& way) {
     for (int i = 0; i < 400; ++i) {
       const double z = -8.0 + 0.02 * i;
@@ -282,10 +284,10 @@ struct ComingSheet {
   int stopped = 0;
   int named[3] = {};
   int dropped[3] = {};
-  double least = 1.0;  // of the tip
+  double least = 1.0;  // least clearance of the tip
 };
 
-// A body that cannot retreat must not keep the others from it, nor cost them any of their distance.
+// A body that cannot retreat must not prevent the retreat of others, nor reduce their clearance.
 TEST(MovingSheet, TakesNothingFromABodyThatCanRetreat) {
   ComingSheet alone({});
   alone.run(Vec3::Zero());
@@ -308,9 +310,9 @@ TEST(MovingSheet, TakesNothingFromABodyThatCanRetreat) {
   }
 }
 
-// As above, but the body that cannot give way is on a joint that has reached its limit.
+// As above, but the body that cannot retreat is on a joint at its limit.
 TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
-  // A slide up to its limit that carries a ball, and beyond it two slides that carry the tip.
+  // A slide that moves up to its limit carries a ball. Beyond it, two slides carry the tip.
   std::vector<Joint> joints{{.kind = JointKind::prismatic,
                              .origin = {Vec3(8, 0, 0)},
                              .limits = {.lower = -6.0, .upper = -4.0, .velocity = 1000.0}},
@@ -337,8 +339,8 @@ TEST(MovingSheet, TakesNothingFromABodyBesideOneThatIsBlocked) {
   EXPECT_GT(blocked.named[1], 50);
 }
 
-// As above, but the other body is beside a second mesh that rushes by: more of its triangles are in
-// reach of the cycle than the capacity holds, which only the proof of a motion finds out.
+// As above, but the other body is beside a second mesh that passes fast. More triangles are in
+// reach of the cycle than the capacity holds. Only the proof of a motion detects this.
 TEST(MovingSheet, TakesNothingFromABodyBesideOneWithTooManyTriangles) {
   Surface strip;
   for (int i = 0; i < 8000; ++i) {
@@ -358,9 +360,9 @@ TEST(MovingSheet, TakesNothingFromABodyBesideOneWithTooManyTriangles) {
   std::vector<double> q{0.0, 0.0, -6.0};
   int dropped = 0;
   for (int i = 0; i < 400; ++i) {
-    const double z = -7.2 + 0.02 * i;  // the tip has to retreat in each cycle
+    const double z = -7.2 + 0.02 * i;  // the tip must retreat in each cycle
     guard.place(0, {Vec3(0, 0, z)}, {.linear = Vec3(0, 0, 20)});
-    // Its end is too far off to limit the post, and passes below it in the cycle.
+    // The end of the strip is too far away to limit the post, and passes below it in the cycle.
     guard.place(1, {Vec3(22, 0, 38.1)}, {.linear = Vec3(-3000, 0, 0)});
     const InstrumentStep step = guard.step(q, Twist{});
     ASSERT_TRUE(step.ok()) << i << ' ' << name(step.status);
@@ -375,7 +377,7 @@ TEST(MovingSheet, TakesNothingFromABodyBesideOneWithTooManyTriangles) {
   EXPECT_GT(dropped, 100);
 }
 
-// A mesh that its velocity carries away, until rounding hides the margin.
+// The velocity of a mesh carries it away, until the margin is too small for the rounding errors.
 TEST(SeveralMeshes, AMeshThatGoesTooFarIsNamed) {
   const auto sheet = sheet_of(500.0);
   InstrumentConstraint guard = guard_of(sheet, free_ball(1.0), undamped);
@@ -399,8 +401,8 @@ TEST(SeveralMeshes, AMeshThatGoesTooFarIsNamed) {
   EXPECT_TRUE(step_of(guard, Vec3(0, 0, 1.25), Vec3::Zero()).ok()) << "and it can come back";
 }
 
-// A body that no joint moves is too close to a mesh that stands still: the others are led on all
-// the same, however the mesh is placed, and whatever rounding makes of the place.
+// A body that no joint moves is too close to a mesh at rest. The step must still move the other
+// bodies, for any pose of the mesh and any rounding of the pose.
 TEST(SeveralMeshes, WhatNoJointCanDoIsNotAskedFor) {
   const auto cube = cube_of(10.0);
   const Instrument free = free_ball(1.0);
@@ -411,7 +413,7 @@ TEST(SeveralMeshes, WhatNoJointCanDoIsNotAskedFor) {
     const Vec3 axis = random.direction();
     const Pose pose{10.0 * random.direction(),
                     Eigen::AngleAxisd(random.uniform(0.0, 3.0), axis).toRotationMatrix()};
-    const Vec3 above = pose * Vec3(0.3, 0.1, 6.1);  // its radius and 0.1 off a face
+    const Vec3 above = pose * Vec3(0.3, 0.1, 6.1);  // 0.1 more than its radius off a face
     const Instrument instrument(Chain(joints),
                                 {{"post", {{0, above}}, 1.0}, {"ball", {{3, Vec3::Zero()}}, 1.0}});
     InstrumentConstraint guard = guard_of(cube, instrument, {.orientation_weight = 0.0});
@@ -423,7 +425,7 @@ TEST(SeveralMeshes, WhatNoJointCanDoIsNotAskedFor) {
   }
 }
 
-// What is left to a motion of a body that is too close is half of its distance at the most.
+// A motion may use at most half of the distance of a body that is too close.
 TEST(SeveralMeshes, ABodyThatIsTooCloseNeverUsesUpItsDistance) {
   const auto cube = cube_of(10.0);
   InstrumentConstraint guard =
@@ -461,7 +463,7 @@ TEST(SeveralMeshes, SaysWhatIsWrongWithOneAndStaysAsItWas) {
   EXPECT_THROW(guard.set_options(wide), Error) << "wider than the margin of some mesh";
 }
 
-// Clearances, rows and triangles of the last cycle stay, so the next one costs as much as ever.
+// The refused mesh does not change the next step, nor its work.
 TEST(SeveralMeshes, OneThatIsRefusedTakesNothingFromABodyThatIsTooClose) {
   const auto cube = cube_of(10.0);
   const auto index = std::make_shared<WideBvh>(cube);
@@ -504,19 +506,20 @@ TEST(SeveralMeshes, IsFollowedWhereItIs) {
   EXPECT_NEAR(at.x(), 20.0 - 6.0 - 1.0 - 0.4, 2e-3);
 }
 
-// The velocity damper: never more than a share of what is left, and none of it along the surface.
+// The velocity damper allows at most a fraction of the remaining distance per cycle, and does not
+// slow motion along the surface.
 TEST(Slowing, UsesUpAShareOfTheWayThatIsLeft) {
   const auto cube = cube_of(10.0);
   InstrumentConstraint guard = guard_of(
       cube, ball(1.0),
       {.slowing_within = 2.0, .slowing_time = 0.02, .damping = 1e-9, .orientation_weight = 0.0});
-  Vec3 at(9.5, 0, 0);  // 3.5 from it
+  Vec3 at(9.5, 0, 0);  // 3.5 from the cube
   const double share = 1e-3 / 0.02;
   const Vec3 near(6.5, 0, 0);
   EXPECT_TRUE(guard.prove({near.data(), 3}, std::vector<double>{-0.29, 0, 0}).is_clear())
       << "proofs are not slowed down";
   int slowed = 0;
-  double slowest = 1.0;  // along the surface
+  double slowest = 1.0;  // motion along the surface
   for (int i = 0; i < 200; ++i) {
     const double left = clearance(at, 1.0, *cube, {}) - 0.2;
     const InstrumentStep step = step_of(guard, at, Vec3(-0.3, 0.01, 0.0));

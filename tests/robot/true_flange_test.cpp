@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The true motion of the flange, against the linear task that the solver is given. Joints without
-// velocity limits turn far near a singular pose, where the two differ most.
+// Compares the true motion of the flange with the linear task that the solver receives. Joints
+// without velocity limits turn far near a singular pose, where the two differ most.
 
 #include "guards.h"
 
@@ -18,7 +18,7 @@ Chain draw_chain(Random& random) {
   return Chain(std::move(joints), {}, {random.uniform(0.0, 100.0) * random.direction()});
 }
 
-/// Returns the distance of a pose from another one that is moved by a twist, as the task weighs it.
+/// Returns the distance of `to` from `from` moved by a twist, weighted as in the task.
 double missed(const Pose& from, const Pose& to, const Twist& desired, double weight) {
   const Eigen::AngleAxisd turn(Mat3(to.rotation * from.rotation.transpose()));
   return std::hypot((to.position - from.position - desired.linear).norm(),
@@ -26,9 +26,9 @@ double missed(const Pose& from, const Pose& to, const Twist& desired, double wei
 }
 
 struct Tally {
-  int shortened = 0;  // by the departure from the linear task
+  int shortened = 0;  // because the true motion departs from the linear task
   int truncated = 0;
-  std::vector<double> missed = {};  // of each step, as a fraction of what standing still misses
+  std::vector<double> missed = {};  // of each step, as a fraction of what zero motion misses
 };
 
 void run(double speed, Tally& tally) {
@@ -53,7 +53,7 @@ void run(double speed, Tally& tally) {
       const bool is_shortened = step.limits.has(Limit::linearization);
       tally.shortened += is_shortened ? 1 : 0;
       tally.truncated += step.limits.has(Limit::truncated) ? 1 : 0;
-      // Far from the mesh, nothing else shortens a motion.
+      // Far from the mesh, no other cause shortens a motion.
       ASSERT_EQ(step.status == Status::truncated, step.limits.has(Limit::truncated));
       const bool is_singular = step.limits.has(Limit::singularity);
       ASSERT_TRUE(is_shortened || is_singular || step.status == Status::free);
@@ -73,7 +73,7 @@ TEST_P(TrueFlange, NeverEndsFartherFromWhatWasAskedThanWhereItStood) {
   const auto at = [&](double share) {
     return tally.missed[static_cast<std::size_t>(share * static_cast<double>(tally.missed.size()))];
   };
-  // The median stays near that of the linear task at x1 (0.10), and below it at x20 (1.1).
+  // The median must be near that of the linear task at speed 1 (0.10), and below it at 20 (1.1).
   EXPECT_LT(at(0.5), GetParam() == 1 ? 0.15 : 0.6);
   EXPECT_GT(tally.shortened, test::trials(200));
   EXPECT_GT(tally.truncated, 0);

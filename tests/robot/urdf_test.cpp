@@ -12,7 +12,7 @@
 namespace keepout {
 namespace {
 
-/// A mount of fixed joints, a joint of each kind, and two tips.
+/// An arm with a mount of fixed joints, one joint of each kind, and two tips.
 const std::string arm = R"(<?xml version="1.0"?>
 <robot name="arm">
   <!-- A comment with a <tag> in it. -->
@@ -38,7 +38,7 @@ std::string with(std::string text, const std::string& old, const std::string& ot
   return text.replace(at, old.size(), other);
 }
 
-/// That a text is refused in these words, which follow its name.
+/// Fails unless a text is rejected with these words, after the name of the file.
 void expect_refused(const std::string& text, const std::string& words, const std::string& base = "",
                     const std::string& tip = "tool", double scale = 1000.0) {
   const std::string said = error_of([&] { parse_chain(text, "arm.urdf", base, tip, scale); });
@@ -46,7 +46,7 @@ void expect_refused(const std::string& text, const std::string& words, const std
   EXPECT_CONTAINS(said, words);
 }
 
-/// The same, of the arm where `old` is `other`.
+/// Fails unless the arm, with `old` replaced by `other`, is rejected with these words.
 void expect_fault(const std::string& old, const std::string& other, const std::string& words) {
   expect_refused(with(arm, old, other), words);
 }
@@ -220,20 +220,20 @@ TEST(Urdf, NothingIsPrintedAboutAFaultyFile) {
 
 using std::string;
 
-/// A stretch of at most so many bytes.
+/// Returns the position and the length of a random part of a text, of at most `longest` bytes.
 std::pair<std::size_t, std::size_t> stretch(const string& text, std::size_t longest,
                                             Random& random) {
   const std::size_t at = random.below(text.size());
   return {at, std::min(text.size() - at, 1 + random.below(longest))};
 }
 
-/// The first of these characters from a random place on, or the last place.
+/// Returns the position of one of these characters from a random place on, or the last position.
 std::size_t next(const string& text, const char* characters, Random& random) {
   const std::size_t at = text.find_first_of(characters, random.below(text.size()));
   return at == string::npos ? text.size() - 1 : at;
 }
 
-/// From one '<' to the '>' behind it.
+/// Returns the text from one '<' to the next '>'.
 string element(const string& text, std::size_t at) {
   return text.substr(at, text.find('>', at) - at + 1);
 }
@@ -255,7 +255,7 @@ void mutate(string& text, Random& random) {
     const std::size_t end = text.find_first_not_of("0123456789-.e", at);
     text.replace(at, std::min(end, text.size()) - at, numbers[random.below(numbers.size())]);
   } else if (kind == 4) {
-    // Two elements change places.
+    // Exchanges two elements.
     const std::size_t first = next(text, "<", random);
     const string one = element(text, first);
     const std::size_t second = next(text, "<", random);
@@ -264,7 +264,7 @@ void mutate(string& text, Random& random) {
     text.replace(second, other.size(), one);
     text.replace(first, one.size(), other);
   } else {
-    // What is in quotes becomes what is elsewhere in quotes: names, types and numbers get around.
+    // Copies one quoted text over another one: names, types and numbers appear in wrong places.
     const std::size_t from = text.find('"', next(text, "=", random)) + 1;
     const std::size_t to = text.find('"', next(text, "=", random)) + 1;
     const string word = text.substr(from, text.find('"', from) - from);
@@ -272,7 +272,7 @@ void mutate(string& text, Random& random) {
   }
 }
 
-/// Whether a text is taken, in which case it has to be a chain of numbers.
+/// Returns true if a text is accepted. Fails unless the chain then has finite and valid numbers.
 bool is_taken(const string& text) {
   try {
     const UrdfChain read = parse_chain(text, "mutant", "", "tip");

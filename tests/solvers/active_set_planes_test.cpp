@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems whose rows come from planes: read from the planes they are solved as from the rows, on
-// every instruction set there is.
+// Problems whose rows come from planes. Reading the planes gives the same solution as reading the
+// rows, on every SIMD target.
 
 #include "keepout/solvers/active_set.h"
 #include "solvers/solver_contract.h"
@@ -14,10 +14,10 @@ struct PlaneProblem {
   Problem problem;
   std::vector<HalfSpace> planes;
 
-  /// With the rows, and nothing said of planes.
+  /// Returns the problem with its rows, without planes.
   StepProblem as_rows() const { return problem.view(); }
 
-  /// With the planes only: rows that were read would be refused.
+  /// Returns the problem with its planes. Their rows are NaN, so a solver must not read them.
   StepProblem as_planes() {
     const auto count = static_cast<Eigen::Index>(planes.size());
     unwritten = problem;
@@ -31,7 +31,7 @@ struct PlaneProblem {
   Problem unwritten;
 };
 
-/// Of a point, or of joints with limits.
+/// Returns a problem of a point, or of joints with limits.
 PlaneProblem plane_problem(Planes kind, int n, int m, Random& random) {
   PlaneProblem posed;
   Problem around;
@@ -144,7 +144,7 @@ TEST_F(ActiveSetPlanes, JointsAreMovedTheSameFromPlanesAndFromRows) {
           << name(kind) << ", seed " << i;
       EXPECT_LT((expected.u - from_rows.u).norm(), 1e-9 * (1 + from_rows.u.norm()))
           << name(kind) << ", seed " << i;
-      if (kind != Planes::touching) {  // where any three of many are as good
+      if (kind != Planes::touching) {  // else any three of many planes are as good
         EXPECT_EQ(expected.active, from_rows.active) << name(kind) << ", seed " << i;
       }
       ++posed_in_all;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is particular to the active-set solver: its budget, its range of numbers, its paths for
-// fixed and for any number of variables.
+// Properties of the active-set solver alone: its budget, its range of numbers, its code for fixed
+// and for variable sizes.
 #include "keepout/solvers/active_set.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST_F(ActiveSetTest, ManyVariablesAreSolvedLikeFew) {
 }
 
 TEST_F(ActiveSetTest, FixedAndRunTimeSizesAgree) {
-  // 3, 6 and 7 variables have code of their own; with an idle variable added they do not.
+  // 3, 6 and 7 variables have their own code; an idle variable added to 3 or 7 avoids it.
   for (int i = 0; i < 600; ++i) {
     Random random(static_cast<std::uint64_t>(i));
     const int n = std::array{3, 6, 7}[static_cast<std::size_t>(i % 3)];
@@ -122,7 +122,7 @@ TEST_F(ActiveSetTest, NumbersWhoseSquaresLeaveTheRangeAreRefused) {
 }
 
 TEST_F(ActiveSetTest, AnAnswerOutOfRangeIsWithheld) {
-  // The rows cannot be checked at a point whose square is infinite.
+  // The rows cannot be checked at a point with an infinite square.
   Problem problem;
   problem.jacobian = 1e-60 * StepProblem::Matrix::Identity(3, 3);
   problem.rows = Eigen::RowVector3d(0, 0, 1);
@@ -147,8 +147,8 @@ TEST_F(ActiveSetTest, TheLowestOfEqualRowsIsTheActiveOne) {
 
 TEST_F(ActiveSetTest, RowsThatStopPushingOnTheWayAreLetGo) {
   // Row 0, y >= 1, is violated most at the start (0, -10) and enters first. The task moves y more
-  // easily than x, and so row 1, 0.6 x + 0.8 y >= 2, lifts y beyond 1 all by itself: by
-  // t (J^T J)^-1 (0.6, 0.8) = t (0.006, 0.8) with t = 10 / (0.6 * 0.006 + 0.8 * 0.8).
+  // easily than x. So row 1, 0.6 x + 0.8 y >= 2, alone lifts y beyond 1. Its step is t (J^T J)^-1
+  // (0.6, 0.8) = t (0.006, 0.8) with t = 10 / (0.6 * 0.006 + 0.8 * 0.8).
   Problem problem;
   problem.jacobian = Eigen::Vector2d(10, 1).asDiagonal();
   problem.desired = Eigen::Vector2d(0, -10);
@@ -164,8 +164,9 @@ TEST_F(ActiveSetTest, RowsThatStopPushingOnTheWayAreLetGo) {
 }
 
 TEST_F(ActiveSetTest, ARowThatHoldsWithoutPushingIsNotListed) {
-  // As above in numbers without rounding: row 1 lifts y from -10 to exactly the 1 that row 0 asks
-  // for, by t (0.25, 2) with t = 5.5, and the multiplier of row 0 falls from 22 to exactly 0.
+  // Like the problem above, but without rounding. Row 1 moves the point by t (0.25, 2) with t =
+  // 5.5. This lifts y from -10 to exactly 1, the bound of row 0. The multiplier of row 0 falls from
+  // 22 to exactly 0.
   Problem problem;
   problem.jacobian = Eigen::Vector2d(2, 1).asDiagonal();
   problem.desired = Eigen::Vector2d(0, -10);
@@ -180,8 +181,8 @@ TEST_F(ActiveSetTest, ARowThatHoldsWithoutPushingIsNotListed) {
 }
 
 TEST_F(ActiveSetTest, ACavityOfThousandsOfNearlyEqualPlanesStaysWithinTheBudget) {
-  // Tangent planes of a sphere, pushed against from inside: neighbors differ by milliradians, and
-  // the exact answer has three of them active among hundreds that nearly are.
+  // Tangent planes of a sphere, with a push from inside. Neighbors differ by milliradians. At the
+  // optimum, three planes are active and hundreds are almost active.
   for (int i = 0; i < 50; ++i) {
     Random random(static_cast<std::uint64_t>(i));
     Problem problem;

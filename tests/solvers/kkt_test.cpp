@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The judge of all solvers is judged here: it accepts an optimum worked out by hand, and objects to
-// every way of spoiling it.
+// Tests the judge of all solvers: it accepts an optimum computed by hand, and rejects every way of
+// spoiling it.
 #include "keepout/solvers/kkt.h"
 
 #include "solvers/random_problems.h"
@@ -10,7 +10,7 @@
 namespace keepout::test {
 namespace {
 
-/// A point pushed by (3, 0.5, -2) into the corner of the box -1 <= u <= 1, and its optimum.
+/// A point with target (3, 0.5, -2) in the box -1 <= u <= 1, and its optimum in a corner.
 struct Corner {
   Corner() {
     problem.jacobian = StepProblem::Matrix::Identity(3, 3);
@@ -25,7 +25,7 @@ struct Corner {
   }
 
   Problem problem;
-  /// |d| / |J|, larger than |u| here.
+  /// Returns |d| / |J|, which is larger than |u| here.
   double reach() const { return problem.desired.norm() / std::sqrt(3.0); }
 
   std::vector<double> u = {1, 0.5, -1};
@@ -71,7 +71,7 @@ TEST(KktResidual, SeesAForgottenActiveRow) {
 }
 
 TEST(KktResidual, SeesAnErrorAlongTheWeakDirectionOfTheTask) {
-  // The gradient in u would be 1e-12: invisible without going to task space.
+  // The gradient in u would be 1e-12: only task space shows the error.
   Problem problem;
   problem.jacobian = Eigen::Vector2d(1, 1e-6).asDiagonal();
   problem.desired = Eigen::Vector2d(1, 1);

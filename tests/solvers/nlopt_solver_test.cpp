@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the contract of all solvers does not say: what NLopt claims, and that it is not believed.
+// Properties beyond the contract of all solvers: the report of NLopt's claims, which are never
+// trusted.
 #include "keepout/solvers/nlopt_solver.h"
 
 #include "answer_check.h"
@@ -9,7 +10,7 @@
 namespace keepout::test {
 namespace {
 
-/// x >= 1 as seen from 0, and a push into it.
+/// Returns a problem with the row x >= 1 and a target on its forbidden side.
 Problem wall() {
   StepProblem::RowMatrix rows(1, 2);
   rows << 1, 0;
@@ -60,7 +61,7 @@ TEST(NloptSolver, TheFirstOfEqualRowsIsTheActiveOneAndTheTightestOfParallelOnes)
   StepProblem::RowMatrix rows(5, 2);
   rows << 1, 0, 2, 0, 0, 1, 3, 0, 1, 0;
   Eigen::VectorXd bounds(5);
-  bounds << 0, 2, -9, 3, 1;  // x >= 0, and three times x >= 1
+  bounds << 0, 2, -9, 3, 1;  // x >= 0, three times x >= 1, and y >= -9
   const Problem problem = point_problem(Eigen::Vector2d(-3, 2), rows, bounds);
   Solution solution;
   ASSERT_EQ(solver.solve(problem.view(), solution), SolveStatus::optimal);
@@ -102,11 +103,11 @@ TEST(NloptSolver, EveryFindingHasANameOfItsOwn) {
   EXPECT_EQ(NloptSolver::library().substr(0, 6), "NLopt ");
 }
 
-// The judge of NLopt's answers, given answers that are wrong.
+// Gives wrong answers to the judge of NLopt's answers.
 
 constexpr double accuracy = 1e-6;
 
-/// A problem, and its optimum.
+/// A problem and its optimum.
 struct Posed {
   Posed(Task kind, Planes planes, std::uint64_t seed) : random(seed) {
     const int n = random.integer(1, 7);
@@ -121,7 +122,7 @@ struct Posed {
     return judge.judge(u, problem.view(), solution, accuracy, answer);
   }
 
-  /// In task space.
+  /// Returns the length of a motion in task space.
   double length(const Eigen::VectorXd& v) const {
     return std::sqrt((problem.jacobian * v).squaredNorm() + problem.damping * v.squaredNorm());
   }
@@ -145,7 +146,7 @@ TEST(AnswerCheck, AcceptsTheOptimum) {
 }
 
 TEST(AnswerCheck, AcceptsNothingThatIsFartherFromTheOptimumThanItSays) {
-  // From last digits to wild guesses, in any direction; of every kind of problem.
+  // The errors range from last digits to wild guesses, in any direction, for every kind of problem.
   int accepted = 0, rejected = 0;
   for (std::uint64_t seed = 0; seed < trials(6000u); ++seed) {
     Posed posed(tasks[seed % tasks.size()], plane_kinds[seed / tasks.size() % plane_kinds.size()],

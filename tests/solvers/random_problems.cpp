@@ -17,7 +17,7 @@ StepProblem::Matrix well_conditioned(int k, int n, Random& random) {
   return m;
 }
 
-/// From 1 down to 1e-6.
+/// Returns values from 1 down to 1e-6.
 Eigen::VectorXd spread(int n) {
   Eigen::VectorXd v(n);
   for (int i = 0; i < n; ++i) v[i] = n == 1 ? 1.0 : std::pow(10.0, -6.0 * i / (n - 1));

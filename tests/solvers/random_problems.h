@@ -29,18 +29,18 @@ struct Problem {
   }
 };
 
-/// The task side of a problem.
+/// The kind of a problem's task.
 enum class Task { identity, damped_identity, square, tall, wide_damped, slanted, uneven_columns };
 inline constexpr std::array tasks = {Task::identity,      Task::damped_identity, Task::square,
                                      Task::tall,          Task::wide_damped,     Task::slanted,
                                      Task::uneven_columns};
 
-/// The constraint side. All have a feasible point by construction.
+/// The kind of a problem's constraints. All have a feasible point by construction.
 enum class Planes {
   scattered,      // the feasible point is inside
   touching,       // half of the planes pass through the feasible point
-  duplicated,     // every plane again, some of them scaled
-  redundant,      // every plane again, farther out
+  duplicated,     // each plane twice, some copies scaled
+  redundant,      // each plane twice, one farther out
   uneven,         // row norms from 1e-6 to 1e6
   vertex,         // all planes pass through the feasible point
   near_parallel,  // in bundles, 1e-12 to 1e-4 rad apart
@@ -63,7 +63,7 @@ inline std::string_view name(Planes planes) {
   return names[static_cast<std::size_t>(planes)];
 }
 
-/// Seeded, so that a failure names a problem that can be made again.
+/// Seeded, so that the problem of a failure can be made again.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -72,10 +72,10 @@ class Random {
   double log_uniform(double low, double high) {
     return std::exp(uniform(std::log(low), std::log(high)));
   }
-  int integer(int low, int high) {  // both included
+  int integer(int low, int high) {  // bounds included
     return low + static_cast<int>(unit() * (high - low + 1));
   }
-  /// Roughly normal, from sums: the standard's distribution differs between libraries.
+  /// Returns a roughly normal number: std::normal_distribution differs between libraries.
   double normal() {
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += unit();
@@ -103,22 +103,22 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// J, d and damping for n variables. Random square matrices are sometimes nearly singular by
-/// chance; a little of the identity keeps the classes apart.
+/// Sets J, d and damping for n variables. Random square matrices may be almost singular by chance.
+/// A multiple of the identity prevents this, so that the classes remain distinct.
 void make_task(Problem& problem, Task task, int n, Random& random);
 
-/// Rows and bounds for n variables such that `inside` satisfies them up to rounding.
+/// Sets rows and bounds for n variables such that `inside` satisfies them up to rounding.
 void make_planes(Problem& problem, Planes planes, const Eigen::VectorXd& inside, int m,
                  Random& random);
 
-/// Four kinds at once, around one point, with row norms from 1e-3 to 1e3.
+/// Sets four groups of planes around one point, of random kinds, with rows scaled by 1e-3 to 1e3.
 void make_mixed_planes(Problem& problem, const Eigen::VectorXd& inside, Random& random);
 
-/// Of unit rows, or of the rows as they are, whatever their norms.
+/// The rows that the weights of make_infeasible apply to: unit rows, or the rows with their norms.
 enum class Weights { even, as_they_are };
 
 /// Replaces a row so that it and some others, with weights of order 1, add up to 0 u >= margin > 0:
-/// the certificate of Farkas.
+/// a certificate of infeasibility (Farkas).
 void make_infeasible(Problem& problem, double margin, Random& random,
                      Weights weights = Weights::even);
 

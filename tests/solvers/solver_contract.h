@@ -12,7 +12,6 @@
 
 namespace keepout {
 
-/// What a test prints of a backend.
 inline void PrintTo(const SolverBackend& backend, std::ostream* out) { *out << backend.name; }
 
 }  // namespace keepout
@@ -23,7 +22,7 @@ inline Eigen::VectorXd vector(std::span<const double> values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
-/// Where inside the feasible set the planes are built around: for tasks with a weak direction also
+/// Returns the point around which the planes are built. For tasks with a weak direction, it may be
 /// far out, where such a task sends the tool.
 inline Eigen::VectorXd feasible_point(Task task, int n, Random& random) {
   const bool weak = task == Task::slanted || task == Task::uneven_columns;
@@ -38,7 +37,7 @@ inline Problem make_problem(Task task, Planes planes, int n, int m, Random& rand
   return problem;
 }
 
-/// Push a point against walls: J = I.
+/// Returns the problem of a point that is pushed against planes: J = I.
 inline Problem point_problem(const Eigen::VectorXd& desired, const StepProblem::RowMatrix& rows,
                              const Eigen::VectorXd& bounds) {
   return {.jacobian = StepProblem::Matrix::Identity(desired.size(), desired.size()),
@@ -47,26 +46,26 @@ inline Problem point_problem(const Eigen::VectorXd& desired, const StepProblem::
           .bounds = bounds};
 }
 
-/// How hard a problem is for a solver that does not work exactly.
+/// The difficulty of a problem for a solver that is not exact.
 enum class Difficulty { plain, tangled, weak };
 
-/// tangled: planes that are all but parallel, and slabs that rounding may close. weak: a task of
-/// condition 1e6.
+/// Returns weak for a task of condition 1e6, tangled for almost parallel planes and for slabs that
+/// rounding may close.
 inline Difficulty difficulty_of(Task task, Planes planes) {
   if (task == Task::slanted || task == Task::uneven_columns) return Difficulty::weak;
   return planes == Planes::near_parallel || planes == Planes::slabs ? Difficulty::tangled
                                                                     : Difficulty::plain;
 }
 
-/// What is granted to solvers of libraries, as measured. Nothing is to our own.
+/// The measured limits of solvers of libraries. keepout's own solver must never give up.
 struct Allowance {
-  int stride = 1;                              // of many problems one in so many: they are slow
-  int most_rows = 2000;                        // of a problem
-  std::array<double, 3> gives_up = {0, 0, 0};  // share of the problems, by Difficulty
+  int stride = 1;        // one in `stride` problems is tried, because these solvers are slow
+  int most_rows = 2000;  // of a problem
+  std::array<double, 3> gives_up = {0, 0, 0};  // largest fraction, by Difficulty
 };
 
 inline Allowance allowance_of(std::string_view solver) {
-  // Strides have no factor in common with the kinds of problems, which take turns.
+  // Strides are prime numbers, because the kinds of problems alternate with small periods.
   const auto stride = [](int in_long, int in_short) { return all_trials() ? in_long : in_short; };
   if (solver == "nlopt_slsqp") return {stride(7, 29), 2000, {0.01, 0.02, 0.35}};
   if (solver == "nlopt_cobyla") return {stride(163, 653), 400, {0.1, 0.3, 0.6}};
@@ -74,8 +73,8 @@ inline Allowance allowance_of(std::string_view solver) {
   return {.stride = few_trials() ? 11 : 1};
 }
 
-/// What every solver of the registry must do. A solver's own claim of optimality is never trusted:
-/// the conditions of Karush, Kuhn and Tucker are checked from the problem.
+/// Requirements on every solver of the registry. A solver's claim of optimality is never trusted:
+/// the conditions of Karush, Kuhn and Tucker are checked on the problem.
 class SolverContract : public testing::TestWithParam<SolverBackend> {
  protected:
   void SetUp() override {
@@ -84,7 +83,7 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
     allowance_ = allowance_of(GetParam().name);
   }
 
-  /// What was given up is within what is granted; of a handful no share is told.
+  /// Checks that the solver gave up at most as often as allowed, if it had 12 problems or more.
   void TearDown() override {
     for (std::size_t i = 0; i < posed_.size(); ++i) {
       if (posed_[i] < 12) continue;
@@ -95,7 +94,7 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
 
   SolveStatus solve(const Problem& problem) { return solver_->solve(problem.view(), solution_); }
 
-  /// Optimal, and the conditions of optimality hold.
+  /// Succeeds if the solver returns optimal and the conditions of optimality hold.
   testing::AssertionResult optimal(const Problem& problem) {
     return checked(problem, solve(problem));
   }
@@ -109,7 +108,7 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
            << residual.dual << " complementarity " << residual.complementarity;
   }
 
-  /// The same, or given up as often as the solver may; never anything else. For feasible problems.
+  /// Like optimal(), but the solver may give up as often as allowed. For feasible problems.
   testing::AssertionResult optimal_or_given_up(const Problem& problem,
                                                Difficulty difficulty = Difficulty::plain) {
     const auto kind = static_cast<std::size_t>(difficulty);
@@ -121,7 +120,7 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
     return testing::AssertionSuccess();
   }
 
-  /// Infeasible, or given up as often as the solver may.
+  /// Succeeds if the solver returns infeasible, or gives up as often as allowed.
   testing::AssertionResult infeasible_or_given_up(const Problem& problem, Difficulty difficulty) {
     const auto kind = static_cast<std::size_t>(difficulty);
     ++posed_[kind];
@@ -134,13 +133,13 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
     return testing::AssertionSuccess();
   }
 
-  /// Digits that are expected of an exact solver; of another, twenty times its accuracy, for what
-  /// the condition of the problem adds.
+  /// Returns the tolerance that an exact solver must meet. For another solver, it is at least
+  /// twenty times its accuracy, because of the condition of the problem.
   double digits(double exact) const {
     return GetParam().library == nullptr ? exact : std::max(exact, 20 * GetParam().accuracy);
   }
 
-  /// One in `stride` of the problems that an exact solver is tried with.
+  /// Returns n if one in n of an exact solver's problems is tried.
   int stride() const { return allowance_.stride; }
 
   Eigen::VectorXd u() const { return vector(solution_.u); }
@@ -148,7 +147,7 @@ class SolverContract : public testing::TestWithParam<SolverBackend> {
   std::unique_ptr<Solver> solver_;
   Solution solution_;
   Allowance allowance_;
-  bool gave_up_ = false;                        // the last problem
+  bool gave_up_ = false;                        // on the last problem
   std::array<double, 3> posed_{}, given_up_{};  // by Difficulty
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems without a solution are recognized, and those with one are not mistaken for them.
+// Solvers recognize problems without a solution, and never report a solvable problem as infeasible.
 #include "solvers/solver_contract.h"
 
 namespace keepout::test {
@@ -11,9 +11,9 @@ INSTANTIATE_TEST_SUITE_P(Solvers, SolverInfeasibility, testing::ValuesIn(solver_
                          by_name);
 
 TEST_P(SolverInfeasibility, ContradictionsAreRecognised) {
-  // Some of the rows, made unit rows, add up to 0 u >= margin with weights of order 1. Margins down
-  // to 1e-9, far above rounding; less far for a task of condition 1e6, whose steps go 1e6 times
-  // farther than the planes are apart, and there round to 1e-10.
+  // Some of the rows, made unit rows, add up to 0 u >= margin with weights of order 1. Margins go
+  // down to 1e-9, far above rounding. For a task of condition 1e6, they go down to 1e-3 only. Its
+  // steps are 1e6 times longer than the distances between planes, and round to 1e-10.
   for (const Task task : tasks) {
     for (const Planes planes : {Planes::scattered, Planes::touching, Planes::uneven}) {
       for (int i = 0; i < 500; i += stride()) {
@@ -33,9 +33,9 @@ TEST_P(SolverInfeasibility, ContradictionsAreRecognised) {
 }
 
 TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
-  // The weights span twelve decades. Up to the last few digits the planes are parallel, and meet
-  // where the margin is below rounding: to give up is right there, to claim an optimum that
-  // violates a row is not.
+  // The weights span twelve decades. The planes are parallel up to the last digits, and meet where
+  // the margin is below rounding. A solver may give up there, but must not claim an optimum that
+  // violates a row.
   int recognised = 0, posed = 0;
   for (int i = 0; i < 2000; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 7500000);
@@ -61,9 +61,9 @@ TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
 }
 
 TEST_P(SolverInfeasibility, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding) {
-  // b <= a u <= b + width. Wider than rounding: optimal. Negative beyond rounding: infeasible. In
-  // between the numbers do not tell; what must hold there is that "optimal" satisfies the rows to
-  // the bound, which optimal() checks.
+  // b <= a u <= b + width. Slabs wider than rounding are solvable; widths below minus rounding
+  // are infeasible. In between, either answer is right, but "optimal" must satisfy the rows to the
+  // bound, which optimal() checks.
   for (int i = 0; i < 2000; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 7000000);
     const int n = random.integer(1, 7);
@@ -93,8 +93,8 @@ TEST_P(SolverInfeasibility, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding
 }
 
 TEST_P(SolverInfeasibility, PlanesThatMeetAtATinyAngleStillHaveTheirEdge) {
-  // y >= 0 and -y + angle x >= h meet in a wedge that opens at x = h / angle. Pulled back from
-  // there, the answer is the apex, however slim the wedge.
+  // y >= 0 and -y + angle x >= h meet in a wedge with its apex at x = h / angle. The target is
+  // behind the apex, so the answer is the apex, however slim the wedge.
   for (const double angle : {1e-1, 1e-4, 1e-8, 1e-10}) {
     for (const double h : {0.0, 1e-6, 1e-3}) {
       StepProblem::RowMatrix rows(2, 2);
@@ -102,7 +102,7 @@ TEST_P(SolverInfeasibility, PlanesThatMeetAtATinyAngleStillHaveTheirEdge) {
       const Problem problem = point_problem(Eigen::Vector2d(-1, 0.5), rows, Eigen::Vector2d(0, h));
       ASSERT_TRUE(optimal_or_given_up(problem, Difficulty::weak)) << angle << ", " << h;
       if (gave_up_) continue;
-      // A row holds to 1e-13 of the motion; along the wedge that is 1 / angle times as much.
+      // A row holds to 1e-13 of the motion. Along the wedge, the error is 1 / angle times larger.
       EXPECT_NEAR(u()[0], h / angle, digits(2e-13 / angle) * (1 + h / angle)) << angle << ", " << h;
     }
   }
@@ -122,7 +122,7 @@ TEST_P(SolverInfeasibility, ARowOfZerosCountsOnlyByItsBound) {
   }
 }
 
-// What must not change the answer: units, lengths and order of rows, what was solved before.
+// The answer must not depend on units, on lengths and order of rows, or on earlier problems.
 
 using SolverSymmetry = SolverContract;
 
@@ -205,7 +205,7 @@ TEST_P(SolverSymmetry, EarlierSolvesLeaveNoTrace) {
         make_problem(Task::slanted, Planes::vertex, random.integer(1, 7), 100, random);
     ASSERT_TRUE(optimal_or_given_up(other, Difficulty::weak));
     ASSERT_TRUE(optimal(problem));
-    EXPECT_EQ(u(), first);  // to the last bit
+    EXPECT_EQ(u(), first);  // bitwise identical
     EXPECT_TRUE(std::ranges::equal(solution_.multipliers, multipliers));
     EXPECT_TRUE(std::ranges::equal(solution_.active, active));
   }

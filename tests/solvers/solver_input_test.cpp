@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Input that must be refused, and the registry.
+// Input that solvers must reject, and the registry.
 #include "keepout/solvers/active_set.h"
 #include "keepout/solvers/recording_solver.h"
 #include "messages.h"

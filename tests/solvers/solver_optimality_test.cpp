@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems solved by hand, and many that are held to the conditions of optimality.
+// Problems solved by hand, and many that are checked by the conditions of optimality.
 #include <Eigen/LU>
 #include <optional>
 
@@ -12,11 +12,11 @@ using Real = long double;
 using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// A vertex computed in 64 bits of mantissa from numbers of size 1 is feasible to this.
+/// Feasibility of a vertex that is computed with a 64-bit mantissa from numbers of size 1.
 constexpr Real tolerance = 1e-13L;
 
-/// The minimizer by trying every set of active rows, in extended precision: exponential in m, and
-/// too simple to be wrong. Nothing if no set of rows yields a feasible point.
+/// Returns the minimizer by trying every set of active rows in extended precision: exponential in
+/// m, and too simple to be wrong. Empty if no set of rows yields a feasible point.
 std::optional<Eigen::VectorXd> enumerate_minimum(const StepProblem& problem) {
   const Eigen::Index n = problem.jacobian.cols();
   const Eigen::Index m = problem.rows.rows();
@@ -69,8 +69,8 @@ TEST_P(SolverOptimality, WithoutRowsTheTaskIsMetExactly) {
 }
 
 TEST_P(SolverOptimality, PushIntoTheCornerOfABoxStopsAtTheCorner) {
-  // -1 <= u <= 1, asked for (3, 0.5, -2): stops at (1, 0.5, -1). The gradient 2 (u - d) there is
-  // (-4, 0, 2), held by row 0 (-x >= -1) with 4 and row 5 (z >= -1) with 2.
+  // The box -1 <= u <= 1 with target (3, 0.5, -2) has its optimum at (1, 0.5, -1). Its gradient
+  // (-4, 0, 2) is balanced by row 0 (-x >= -1) with 4 and row 5 (z >= -1) with 2.
   StepProblem::RowMatrix rows(6, 3);
   rows << -1, 0, 0, 1, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, -1, 0, 0, 1;
   const Problem problem =
@@ -85,7 +85,7 @@ TEST_P(SolverOptimality, PushIntoTheCornerOfABoxStopsAtTheCorner) {
 }
 
 TEST_P(SolverOptimality, PushAcrossAnEdgeSlidesAlongTheEdge) {
-  // A wedge z >= x, z >= -x with its edge along y; a push (0, 1, -1) keeps only its part along y.
+  // A wedge z >= x, z >= -x with its edge along y: only this part of (0, 1, -1) is left.
   StepProblem::RowMatrix rows(2, 3);
   rows << -1, 0, 1, 1, 0, 1;
   const Problem problem = point_problem(Eigen::Vector3d(0, 1, -1), rows, Eigen::VectorXd::Zero(2));
@@ -106,7 +106,7 @@ TEST_P(SolverOptimality, DampingShortensTheMotion) {
 }
 
 TEST_P(SolverOptimality, DampingAlonePicksTheShortestFeasibleMotion) {
-  // No task rows at all: the point of x + y >= 2 nearest to 0.
+  // Without task rows, the optimum is the point of x + y >= 2 that is nearest to 0.
   Problem problem;
   problem.jacobian.resize(0, 2);
   problem.desired.resize(0);
@@ -125,9 +125,9 @@ TEST_P(SolverOptimality, AVertexAtRestWithNothingAskedStaysAtRest) {
 }
 
 TEST_P(SolverOptimality, ThousandsOfProblemsOfEveryClassAreOptimal) {
-  // 7 tasks x 9 kinds of planes x 1600: 100800 problems. The planes of every kind have a common
-  // point up to rounding, and so "infeasible" is always wrong. Giving up would be allowed at a
-  // vertex or in a slab that rounding alone may close; none of these problems needs it.
+  // 7 tasks x 9 kinds of planes x 1600 = 100800 problems. The planes of every kind have a common
+  // point up to rounding, so "infeasible" is always wrong. A solver may give up at a vertex, or in
+  // a slab that rounding may close. keepout's own solver never does.
   for (const Task task : tasks) {
     for (const Planes planes : plane_kinds) {
       for (int i = 0; i < 1600; i += stride()) {
@@ -146,7 +146,7 @@ TEST_P(SolverOptimality, ThousandsOfProblemsOfEveryClassAreOptimal) {
 }
 
 TEST_P(SolverOptimality, MixturesOfAllKindsOfPlanesAreOptimal) {
-  // In one of half a million of these, number 397870, rounding lets a row that pulls become active.
+  // Problem 397870 is one of half a million in which rounding activates a row that pulls.
   for (int i = 397870; i > 377870; i -= stride()) {
     Random random(static_cast<std::uint64_t>(i) + 4500000);
     const int n = random.integer(1, 7);
@@ -185,7 +185,7 @@ TEST_P(SolverOptimality, TheMinimumIsTheOneFoundByEnumeration) {
     ASSERT_TRUE(expected.has_value()) << "seed " << i;
     ASSERT_TRUE(optimal_or_given_up(problem)) << "seed " << i;
     if (gave_up_) continue;
-    // In task space, where the accuracy of a solver is stated.
+    // The accuracy of a solver is defined in task space.
     const Eigen::VectorXd off = u() - *expected;
     const auto length = [&](const Eigen::VectorXd& v) {
       return std::sqrt((problem.jacobian * v).squaredNorm() + problem.damping * v.squaredNorm());

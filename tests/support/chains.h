@@ -17,7 +17,7 @@ inline ChainState state_of(const Chain& chain, std::span<const double> q) {
   return state;
 }
 
-/// Positions of the joints within their limits, evenly; of joints without, within half a turn.
+/// Returns random joint positions within the limits, and within half a turn or 300 mm.
 inline std::vector<double> configuration(const Chain& chain, Random& random) {
   std::vector<double> q;
   for (int k = 1; k <= chain.size(); ++k) {

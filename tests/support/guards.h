@@ -13,8 +13,7 @@
 
 namespace keepout {
 
-// Constraints made of given parts, on an index of their own. make_motion_constraint() makes them of
-// parts by name.
+// Constraints made of given parts; make_motion_constraint() makes them from names of parts.
 
 template <class Index = WideBvh>
 MotionConstraint guard_of(const std::shared_ptr<const Mesh>& mesh, const StepOptions& options,
@@ -43,7 +42,7 @@ inline std::vector<double> moved(std::vector<double> q, const InstrumentStep& st
   return q;
 }
 
-/// Returns the base from which a psm points straight down to a place, its port so far above it.
+/// Returns the base of a psm that points straight down to a place, with its port `height` above it.
 inline Pose port_over(const Vec3& place, double height) {
   const ChainState state = test::state_of(psm().chain(), std::vector<double>{0, 0, 100, 0, 0, 0});
   const Vec3 way = state.flange().position.normalized();

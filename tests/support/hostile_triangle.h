@@ -8,8 +8,8 @@
 
 namespace keepout::test {
 
-/// From fair to hopeless, about 1 large: needles and caps down to heights of 1e-18, corners on a
-/// line, segments, points.
+/// Returns a triangle of size about 1, from well-shaped to degenerate: needles and caps with
+/// heights down to 1e-18, collinear corners, segments, points.
 inline Triangle hostile_triangle(Random& random) {
   const auto point = [&]() -> Vec3 { return random.direction() * random.uniform(); };
   Triangle t{point(), point(), point()};
@@ -21,7 +21,7 @@ inline Triangle hostile_triangle(Random& random) {
     case 1:  // cap: the third corner next to the opposite side
       t[2] = t[0] + random.uniform() * (t[1] - t[0]) + tiny * point();
       break;
-    case 2:  // collinear, beyond the end
+    case 2:  // collinear, the third corner beyond the second
       t[2] = t[0] + 2.0 * (t[1] - t[0]);
       break;
     case 3:  // a segment

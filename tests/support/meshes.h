@@ -17,7 +17,7 @@
 
 namespace keepout {
 
-// Meshes as constraints and indices share them.
+// Meshes that constraints and indices share.
 
 inline std::shared_ptr<const Mesh> mesh_of(Surface surface) {
   return std::make_shared<const Mesh>(std::move(surface));
@@ -28,12 +28,12 @@ inline std::shared_ptr<const Mesh> mesh_of(std::string_view shape) {
   return mesh_of(make_shape(shape));
 }
 
-/// Returns one triangle in the plane x = `at`, larger than all that is near it.
+/// Returns one triangle in the plane x = `at`, larger than everything near it.
 inline std::shared_ptr<const Mesh> wall(double at) {
   return mesh_of(Surface{{{at, -300, -300}, {at, 300, -300}, {at, 0, 300}}, {{0, 1, 2}}});
 }
 
-/// Returns a copy, to be changed.
+/// Returns a copy of the surface that a test can change.
 inline Surface surface_of(const Mesh& mesh) {
   return {{mesh.vertices().begin(), mesh.vertices().end()},
           {mesh.triangles().begin(), mesh.triangles().end()}};
@@ -50,16 +50,16 @@ inline Vec3 highest_vertex(const Mesh& mesh) {
 
 // Surfaces small enough to be counted by hand.
 
-/// The corner of a cube cut off: three right angles at the origin; normals point outwards.
+/// Returns a tetrahedron with three right angles at the origin. Normals point outwards.
 inline Surface tetrahedron() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
           {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
-/// One triangle in the plane z = 0, its normal along z.
+/// Returns one triangle in the plane z = 0, with its normal along z.
 inline Surface single_triangle() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}; }
 
-/// A torus about the z axis, radii 3 and 1, of 2 * n * n triangles.
+/// Returns a torus about the z axis, with radii 3 and 1 and 2 * n * n triangles.
 inline Surface torus(VertexId n) {
   Surface surface;
   const auto angle = [&](VertexId i) { return 2.0 * std::numbers::pi * i / n; };
@@ -76,7 +76,7 @@ inline Surface torus(VertexId n) {
   return surface;
 }
 
-/// Both in one, sharing nothing but the frame.
+/// Returns both surfaces as one, without common vertices.
 inline Surface together(Surface one, const Surface& other) {
   const auto first = static_cast<VertexId>(one.vertices.size());
   one.vertices.insert(one.vertices.end(), other.vertices.begin(), other.vertices.end());
@@ -91,32 +91,32 @@ inline Surface moved(Surface surface, const Vec3& by) {
   return surface;
 }
 
-/// The same surface in another unit.
+/// Returns the surface in another unit.
 inline Surface enlarged(Surface surface, double factor) {
   for (Vec3& v : surface.vertices) v *= factor;
   return surface;
 }
 
-/// A surface about the origin that comes and goes by 0.3, at a time in beats.
+/// Returns a surface about the origin, moved outwards or inwards by up to 0.3. `time`: in beats.
 inline Surface beating(Surface surface, double time) {
   const double swing = 0.3 * std::sin(2.0 * std::numbers::pi * time);
   for (Vec3& v : surface.vertices) v += swing * v.normalized();
   return surface;
 }
 
-/// The surface with its coordinates rounded to floats, as those of STL files are.
+/// Returns the surface with coordinates rounded to float, as in STL files.
 inline Surface as_floats(Surface surface) {
   for (Vec3& v : surface.vertices) v = v.cast<float>().cast<double>();
   return surface;
 }
 
-/// The surface with a hole where its last triangle was.
+/// Returns the surface without its last triangle, which leaves a hole in a closed surface.
 inline Surface opened(Surface surface) {
   surface.triangles.pop_back();
   return surface;
 }
 
-/// Each triangle with vertices of its own, as an STL reader gives them.
+/// Returns the surface with separate vertices for each triangle, as in STL files.
 inline Surface unwelded(const Surface& surface) {
   Surface apart;
   for (const Corners& corners : surface.triangles) {
@@ -127,13 +127,14 @@ inline Surface unwelded(const Surface& surface) {
   return apart;
 }
 
-/// The same surface seen from its other side.
+/// Returns the surface with the winding of all triangles reversed.
 inline Surface flipped(Surface surface) {
   for (Corners& c : surface.triangles) std::swap(c[1], c[2]);
   return surface;
 }
 
-/// The same triangles in another order, each begun at another of its corners; and where each went.
+/// Returns the triangles in another order, each with its corners rotated. `new_ids` receives the
+/// new number of each triangle.
 inline Surface shuffled(Surface surface, unsigned seed,
                         std::vector<TriangleId>* new_ids = nullptr) {
   std::mt19937 random(seed);
@@ -152,10 +153,10 @@ inline Surface shuffled(Surface surface, unsigned seed,
   return surface;
 }
 
-// More places to query a mesh at, beside those of keepout/fixtures/poses.h. "Size" is the diagonal
-// of the mesh's bounds.
+// More query points, in addition to those of keepout/fixtures/poses.h. "Size" is the diagonal of
+// the mesh's bounds.
 
-/// Evenly in the mesh's bounds, enlarged by a quarter of its size on all six sides.
+/// Returns points distributed evenly in the mesh's bounds, enlarged by a quarter size on all sides.
 inline std::vector<Vec3> random_points(const Mesh& mesh, std::size_t count, Random& random) {
   const Vec3 border = Vec3::Constant(0.25 * mesh.bounds().size().norm());
   const Vec3 low = mesh.bounds().low - border;
@@ -167,8 +168,8 @@ inline std::vector<Vec3> random_points(const Mesh& mesh, std::size_t count, Rand
   return points;
 }
 
-/// In any direction, 1 to 1e4 sizes from the center of the bounds, each decade alike. The last bit
-/// is up to the system's pow.
+/// Returns points in random directions, 1 to 1e4 sizes from the center of the bounds, as many in
+/// each decade. The last bit depends on the system's pow.
 inline std::vector<Vec3> far_points(const Mesh& mesh, std::size_t count, Random& random) {
   const double size = mesh.bounds().size().norm();
   std::vector<Vec3> points(count);
@@ -179,8 +180,8 @@ inline std::vector<Vec3> far_points(const Mesh& mesh, std::size_t count, Random&
   return points;
 }
 
-/// Normal, mean 0 and deviation 1, by Marsaglia's polar method. The last bit is up to the system's
-/// logarithm.
+/// Returns a normal random number with mean 0 and deviation 1, by Marsaglia's polar method. The
+/// last bit depends on the system's logarithm.
 inline double normal(Random& random) noexcept {
   while (true) {
     const double u = random.uniform(-1, 1);

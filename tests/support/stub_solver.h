@@ -9,7 +9,7 @@
 
 namespace keepout {
 
-/// A solver that does what a test tells it to.
+/// A solver whose answer is a function of the test.
 class StubSolver final : public Solver {
  public:
   using Answer = std::function<SolveStatus(const StepProblem&, Solution&)>;
@@ -28,7 +28,7 @@ inline std::unique_ptr<Solver> solver_that(StubSolver::Answer answer) {
   return std::make_unique<StubSolver>(std::move(answer));
 }
 
-/// Returns a solver that claims the desired motion to be optimal, whatever the rows say.
+/// Returns a solver that reports the desired motion as optimal, even if it violates the rows.
 inline std::unique_ptr<Solver> liar() {
   return solver_that([](const StepProblem& problem, Solution& solution) {
     solution.u = {problem.desired.data(), 3};

@@ -10,7 +10,7 @@
 
 namespace keepout {
 
-/// A folder that nobody else uses, and that goes away with this object.
+/// A new folder for one test; removed with this object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -24,7 +24,7 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const noexcept { return path_; }
 
-  /// Writes a file into the folder, over what had that name before.
+  /// Writes a file into the folder, and replaces a file of that name.
   std::filesystem::path write(std::string_view name, std::string_view contents) const {
     const std::filesystem::path file = path_ / name;
     std::ofstream(file, std::ios::binary).write(contents.data(), std::ssize(contents));

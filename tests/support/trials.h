@@ -14,8 +14,7 @@
 #include "keepout/fixtures/shapes.h"
 #include "keepout/simd_target.h"
 
-// What a test runs over: numbers that are none, random trials, generated shapes, SIMD targets,
-// named cases.
+// NaN and infinity, random trials, generated shapes, SIMD targets, and named cases for tests.
 
 namespace keepout::test {
 
@@ -28,7 +27,7 @@ inline bool all_trials() {
   return all;
 }
 
-/// Returns true in a short test under sanitizers. It takes each path a few times only.
+/// Returns true in a short test under sanitizers, which takes each path only a few times.
 inline bool few_trials() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return !all_trials();
@@ -37,9 +36,9 @@ inline bool few_trials() {
 #endif
 }
 
-/// Returns how many of `all` random trials a test makes: all in a long test, a quarter in a short
-/// test, a tenth in a short test under sanitizers, and at least one of what is counted. A test
-/// scales with it what it expects to have seen in its trials.
+/// Returns how many of `all` random trials a test makes, at least one. A long test makes all of
+/// them, a short test a quarter, and a short test under sanitizers a tenth. A test scales its
+/// expected counts with the same function.
 template <class Count>
 Count trials(Count all) {
   if (all_trials()) return all;
@@ -52,10 +51,10 @@ Count trials(Count all) {
 
 namespace keepout {
 
-/// What a test prints of a shape.
+/// Prints a shape in the messages of a test.
 inline void PrintTo(const Shape& shape, std::ostream* out) { *out << shape.name; }
 
-/// The generated shapes; every third of them where few trials are enough.
+/// Returns the generated shapes, or every third of them if few trials are enough.
 inline std::vector<Shape> shapes_to_try() {
   std::vector<Shape> tried;
   const std::size_t stride = test::few_trials() ? 3 : 1;
@@ -63,16 +62,16 @@ inline std::vector<Shape> shapes_to_try() {
   return tried;
 }
 
-/// Their names, for tests that run once for each.
+/// Returns the names of these shapes, for tests that run once for each.
 inline std::vector<std::string> names_of_shapes() {
   std::vector<std::string> names;
   for (const Shape& shape : shapes_to_try()) names.emplace_back(shape.name);
   return names;
 }
 
-/// Calls with everything running on each SIMD target that there is, the fastest first and the
-/// portable one last; on these two alone where few trials are enough. Which those are is for
-/// SimdTarget to say (engine/simd_target_test.cpp).
+/// Calls a function on each available SIMD target, the fastest first and the portable one last. If
+/// few trials are enough, calls it on these two only. SimdTarget (engine/simd_target_test.cpp)
+/// tests the list of targets.
 template <class Call>
 void on_each_simd_target(Call&& call) {
   struct Restored {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** A made-up record of experiments: with a picture, one that means harm, and one that is none. */
+/** An invented record of experiments, with a good picture, a malicious one, and one that is not SVG. */
 
 const opening =
   'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" viewBox="0 0 9 5"';

@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Judges of paths that a page of `keepout live` has saved, which ask nothing of the engine but how
-// finely it tells lengths apart. They print a verdict as JSON. [mm]
+// Judges a path that a page of `keepout live` has saved, and prints the verdict as JSON. The judges
+// use nothing of the engine except its tolerance. [mm]
 //
 //     judge_path MESH STEPS.csv KEPT
 //
-// The exact oracle on what `keepout replay` has written of the path of a tip: how many motions
-// there were, how many of them end inside, how many touch the mesh on their way, how many come
-// nearer than KEPT less a tenth of a micrometer, and how near the nearest comes, if it is no
-// farther than a tenth of a millimeter beyond that; else null.
+// The exact oracle judges the path of a tip, as written by `keepout replay`. The verdict counts the
+// motions, those that end inside, those that touch the mesh, and those that come nearer than KEPT
+// minus 0.1 µm. It also has the least distance, or null if that is above KEPT + 0.1 mm.
 //
 //     judge_path MESH PATH
 //
-// The judge of campaigns on the path of an instrument, which has kinematics and distances of its
-// own: how many cycles there are, and how many of them begin elsewhere than the one before ended,
-// come closer than margin - band, have the mesh in a body, or break a joint's limits; how close the
-// closest comes; how far the tip goes in all, and by how much the jaw turns from where it began, at
-// the most [rad]; and in how many cycles it makes less than half of the way that is asked for, with
-// a body no farther off than the margin.
+// The judge of campaigns judges the path of an instrument, with independent kinematics and
+// distances. The verdict counts the cycles, and those that begin elsewhere than the last one ended
+// (jumps). It counts the cycles that come closer than margin - band, have the mesh in a body, or
+// break joint limits. It has the least distance, the path length of the tip, and the largest turn
+// of the jaw from its start [rad]. It also counts cycles near the surface that make less than half
+// of the desired motion (held).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -48,7 +47,7 @@ using MeshPointer = std::shared_ptr<const keepout::Mesh>;
 
 constexpr std::string_view mark = "# path: ";
 
-/// A length as JSON; null if it is infinite.
+/// Returns a length as JSON; null if it is infinite.
 Json finite(double length) { return std::isfinite(length) ? Json(length) : Json(); }
 
 Json judged_steps(const MeshPointer& mesh, std::istream& steps, double kept) {
@@ -81,7 +80,7 @@ Json judged_steps(const MeshPointer& mesh, std::istream& steps, double kept) {
           {"nearest", finite(nearest)}};
 }
 
-/// What is JSON in the head of a path; leaves the stream behind it.
+/// Returns the JSON in the head of a path, and leaves the stream after it.
 Json head_of(std::istream& path) {
   for (std::string line; std::getline(path, line);) {
     if (line.starts_with(mark)) return Json::parse(line.substr(mark.size()));

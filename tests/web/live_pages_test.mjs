@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The pages of `keepout live`, with a tip and with an instrument, in a real browser and with real input:
+ * Tests the pages of `keepout live`, for a tip and for an instrument, in a browser with real input:
  *
  *   live_pages_test.mjs KEEPOUT JUDGE_PATH FOLDER [BROWSER]
  *
- * A hand drags the tip into the skull; what the page's tool did is done again by `keepout replay`, as
- * the page says, and must be the same in every bit; the exact oracle judges it. Then without a fixture,
- * with files that are dropped. What the joints of an instrument did is judged by the oracle of `keepout
- * verify --robot`, whose kinematics and distances are its own. Both are led by touch and by keys. Prints
- * times and rates, and asserts none.
+ * The pointer drags the tip into the skull. `keepout replay` repeats the path and must give bitwise the
+ * same result, and the exact oracle judges it. Further tests drag without a fixture, and drop files. The
+ * judge of `keepout verify --robot`, with independent kinematics and distances, judges the paths of an
+ * instrument. Touch and keys move both tools as well. The test prints times and rates, but asserts none.
  */
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -42,11 +41,11 @@ const judged = (...words) => {
 const browser = await launched(browserPath);
 after(() => browser.close());
 
-/** The tabs of the page that is tested. */
+/** The tabs of the tested page. */
 let desk;
 let phone;
 
-/** Waits until there is a tool, whose state is told. */
+/** Waits until the page shows a tool and its clearance. */
 const ready = (tab) =>
   tab.waitForFunction(
     () =>
@@ -56,14 +55,14 @@ const ready = (tab) =>
     { timeout: 60_000 },
   );
 
-/** Where the middle of the hand is on the screen. */
+/** Returns the position of the middle of the grip on the screen. */
 const handAt = (tab) =>
   tab.evaluate(() => {
     const { x, y, width, height } = document.querySelector("#grip").getBoundingClientRect();
     return { x: x + width / 2, y: y + height / 2 };
   });
 
-/** Takes the hand, and leads it for some seconds along a way of the share of the time; holds it. */
+/** Drags the grip for some seconds along `way`, a function of the elapsed fraction; does not release it. */
 async function dragged(seconds, way) {
   const { x, y } = await handAt(desk);
   await desk.mouse.move(x, y);
@@ -76,7 +75,7 @@ async function dragged(seconds, way) {
   }
 }
 
-/** Takes the hand with a finger, and leads it along a way of 50 places; gives the finger, which holds it. */
+/** Drags the grip by touch along 50 places. Returns the finger, which has not released it. */
 async function touched(way) {
   const { x, y } = await handAt(phone);
   const place = (i) => way(i).map((value, axis) => value + [x, y][axis]);
@@ -90,7 +89,7 @@ async function touched(way) {
 
 const textOf = (tab, selector) => tab.$eval(selector, (element) => element.textContent);
 
-/** Waits until an element has a text with certain words. */
+/** Waits until the text of an element contains `words`. */
 const says = (tab, selector, words, timeout = 30_000) =>
   tab.waitForFunction(
     (where, part) => document.querySelector(where).textContent.includes(part),
@@ -102,13 +101,13 @@ const says = (tab, selector, words, timeout = 30_000) =>
 const limitedCycles = async (tab) =>
   Number((await textOf(tab, "#limited")).split(" of ")[0].replaceAll(",", ""));
 
-/** Waits until the tool was held back in so many cycles; a browser may be slow. */
+/** Waits until so many cycles were limited, because a browser may be slow. */
 async function comesTo(tab, cycles) {
   for (let i = 0; i < 200 && (await limitedCycles(tab)) < cycles; ++i) await sleep(50);
-  assert.ok((await limitedCycles(tab)) >= cycles, "it is not led into the anatomy");
+  assert.ok((await limitedCycles(tab)) >= cycles, "the tool does not reach the anatomy");
 }
 
-/** Notes how the control loop keeps its time. */
+/** Prints the rates and times of the control loop. */
 async function noteRates() {
   const [limited, lost, step, rate, frames] = await Promise.all(
     ["#limited", "#lost", "#step-time", "#rate", "#frames"].map((figure) => textOf(desk, figure)),
@@ -118,16 +117,16 @@ async function noteRates() {
   );
 }
 
-/** Waits for the end of a replay, and asserts that the tool went the same way. */
+/** Waits for the end of a replay, and asserts that its path is bitwise identical. */
 async function assertReplayed() {
   await says(desk, "#toast", "Replayed", 60_000);
   assert.match(await textOf(desk, "#toast"), /bit for bit/);
 }
 
-/** Presses a button of the page and gives the file that it saves, and what the path was made with. */
+/** Saves the path by a button of the page. Returns the file, its text and its header. */
 async function savedPath(tab = desk) {
   const before = new Set(readdirSync(folder));
-  await tab.$eval("#save", (button) => button.click()); // on a phone it may be out of sight
+  await tab.$eval("#save", (button) => button.click()); // on a phone it may be outside the view
   for (let i = 0; i < 200; ++i) {
     await sleep(50);
     const name = readdirSync(folder).find((one) => !before.has(one) && one.endsWith(".txt"));
@@ -140,7 +139,7 @@ async function savedPath(tab = desk) {
   assert.fail("no path was saved");
 }
 
-/** Makes a page of the skull, and tests how large it is; gives what opens it. */
+/** Makes a page of the skull, and tests its size. Returns a function that opens the page. */
 function testPage(name, ...options) {
   const page = `${name}.html`;
   run(keepout, "live", skull, ...options, "--no-open", "--out", page);
@@ -150,7 +149,7 @@ function testPage(name, ...options) {
     assert.ok(empty <= 1250e3, "the page without anatomy takes more than a second at 10 Mbit/s");
     assertAlone(join(folder, page), 6e6);
   });
-  /** Opens the page, until the tool can be dragged. Its downloads come to the folder. */
+  /** Opens the page, and waits until the tool can be dragged. Downloads are saved in the folder. */
   return async (viewport) => {
     const tab = await opened(browser, join(folder, page), viewport, async (one) => {
       const client = await one.createCDPSession();
@@ -161,14 +160,14 @@ function testPage(name, ...options) {
   };
 }
 
-/** The last tests of a page: controls have names, contrast holds, and the browser reported no fault. */
+/** The last tests of a page: names of controls, contrast, and no faults reported by the browser. */
 function testLooks(name) {
   for (const [looks, scheme] of Object.entries({ phone: "dark", light: "light", dark: "dark" })) {
     const options = looks === "phone" ? onlyLong : {};
     test(`${name}: controls have names and contrast holds: ${looks}`, options, async () => {
       const tab = looks === "phone" ? phone : desk;
       await tab.bringToFront();
-      await tab.$eval("#save", (button) => button.click()); // a word is told, on a ground of one color
+      await tab.$eval("#save", (button) => button.click()); // shows a toast, which has a plain background
       await assertAccessible(tab, scheme);
       await tab.screenshot({ path: join(folder, `${name}_${looks}.png`) });
     });
@@ -181,7 +180,7 @@ function testLooks(name) {
   });
 }
 
-/** Leads the hand by a key into the anatomy, where a figure is no longer `rest`; and lets it go by Escape. */
+/** Moves the grip by a key into the anatomy, where a figure differs from `rest`. Escape releases it. */
 async function ledByKeys(key, figure, rest) {
   await desk.click("#again");
   await sleep(500);
@@ -204,20 +203,20 @@ async function ledByKeys(key, figure, rest) {
 
 const openTip = testPage("tip");
 
-/** Pushes the tip's hand into the anatomy and rubs it up and down there. */
+/** Drags the tip's grip into the anatomy, and up and down there. */
 async function rub(seconds = 4) {
   await dragged(seconds, (t) => [-130 * Math.min(1, 3 * t), 60 * Math.sin(14 * t)]);
   await desk.mouse.up();
 }
 
-/** Numbers of the lines of a path. */
+/** Returns the numbers in the lines of a path. */
 const linesOf = ({ text }) =>
   text
     .split("\n")
     .filter((line) => line !== "" && !line.startsWith("#"))
     .map((line) => line.split(" ").map(Number));
 
-/** Types what the head of a path says, and gives the rows of STEPS.csv. */
+/** Runs the command in the head of a path. Returns the rows of STEPS.csv. */
 function replayed({ file, text }, mesh, rule) {
   const line = text.split("\n").find((one) => one.startsWith("#   keepout replay "));
   const words = line
@@ -230,7 +229,7 @@ function replayed({ file, text }, mesh, rule) {
   return rows.map((row) => row.split(","));
 }
 
-/** How many cycles of a path have another tool than replay has, in any bit. */
+/** Returns the number of cycles in which the tool positions of path and replay are not bitwise identical. */
 function differing(lines, rows) {
   assert.equal(rows.length, lines.length);
   return lines.filter((line, i) =>
@@ -259,10 +258,10 @@ test("a drag into the skull: limited, out of it, and the same as keepout replay"
   assert.deepEqual([verdict.inside, verdict.crossing, verdict.nearer], [0, 0, 0]);
   assert.ok(
     verdict.nearest !== null && verdict.nearest < kept + 0.01,
-    "it never came to the margin",
+    "the tip never came to the margin",
   );
 
-  // Opened again, the path is played, and goes the same way.
+  // The page replays the opened path and makes the same motions.
   const field = await desk.$("#file");
   await field.uploadFile(join(folder, path.file));
   await assertReplayed();
@@ -293,7 +292,7 @@ test("a corridor that is fitted to the tool holds it, as keepout replay does", a
   const farthest = out.reduce((most, one) => Math.max(most, one), -Infinity);
   assert.ok(farthest > -0.01 && farthest < 0.0021, `${farthest} mm out of the corridor`);
 
-  // What is written is taken as well, and what is no guide is refused.
+  // The page accepts guides in the text field, and rejects text that is no guide.
   const write = async (words) => {
     await desk.$eval("#guide-text", (field) => field.select());
     await desk.type("#guide-text", `${words}\n`);
@@ -314,7 +313,7 @@ test("the same drag without a fixture goes in", async () => {
   await sleep(500);
   await rub(2);
   const rows = linesOf(await savedPath());
-  // As replay would write what happened: from tip to tip.
+  // Writes the motions between the tips in the format of replay.
   const steps = rows.slice(1).map((line, i) => {
     const tip = rows[i].slice(3);
     const motion = tip.map((value, axis) => line[3 + axis] - value);
@@ -346,7 +345,7 @@ test("counterexamples: the paper's rule goes through, the certified one stays ou
 
 test("files are dropped: a mesh, then what is none, and the page lives on", async () => {
   const client = await desk.createCDPSession();
-  /** Drops a file with these bytes. */
+  /** Drops a file with these bytes on the page. */
   const drop = async (name, bytes) => {
     writeFileSync(join(folder, name), bytes);
     const data = { items: [], files: [join(folder, name)], dragOperationsMask: 1 };
@@ -376,7 +375,7 @@ test("files are dropped: a mesh, then what is none, and the page lives on", asyn
   const limitedAfter = await limitedCycles(desk);
   assert.ok(limitedAfter > before + 100, `limited cycles: ${before} before, ${limitedAfter} after`);
 
-  // A path whose settings the engine refuses: those before stay in force.
+  // The engine rejects the settings of this path, and the earlier settings stay in use.
   await drop("refused.txt", path.text.replace('"radius":5', '"radius":-1'));
   await says(desk, "#toast", "longer than --radius");
   note(await textOf(desk, "#toast"));
@@ -394,7 +393,7 @@ test("a tip led by touch, on a phone", onlyLong, async () => {
     assert.ok(card.top >= cards[i].bottom, "cards overlap");
   });
   const finger = await touched((i) => [12 - 2 * i, 20 * Math.sin(i / 6)]);
-  assert.ok((await limitedCycles(phone)) > 100, "touch does not lead into the skull");
+  assert.ok((await limitedCycles(phone)) > 100, "touch does not move the tip into the skull");
   await finger.end();
 });
 
@@ -404,11 +403,11 @@ testLooks("tip");
 
 const openInstrument = testPage("instrument", "--robot", "psm");
 
-/** Takes the jaw, leads it down the view into the anatomy, and about there; holds it. */
+/** Drags the jaw down into the anatomy and sideways there; does not release it. */
 const leadIn = (seconds = 6) =>
   dragged(seconds, (t) => [90 * Math.sin(9 * t), 260 * Math.min(1, 3 * t)]);
 
-/** What the judge says of the path on record, which is clear of the anatomy all the way. */
+/** Returns the path and its verdict. Fails unless the whole path is clear of the anatomy. */
 async function clearPath(tab = desk) {
   const path = await savedPath(tab);
   const verdict = judged(path.file);
@@ -433,7 +432,7 @@ test("the jaw dragged into the skull: held back, and all bodies clear, says the 
   assert.ok(verdict.held >= 500, `held back in ${verdict.held} cycles only`);
   assert.ok(verdict.nearest !== null && verdict.nearest >= verdict.kept - 1e-9);
 
-  // That judge sees what is too close: had the margin been larger, it would say so.
+  // Checks the judge itself: with a larger margin it must report breaches.
   const { margin } = path.header;
   const stricter = path.text.replace(`"margin":${margin}`, `"margin":${margin + 0.3}`);
   writeFileSync(join(folder, "stricter.txt"), stricter);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# How ./run comes by what pages are made from: what it fetches, when, and what it says when it
-# cannot. The programs that fetch, compile and bundle are played by scripts of this test.
+# Tests how ./run builds the pages: when it downloads and builds their parts, and what it reports if it cannot. Scripts
+# of this test replace the programs that download, compile and bundle.
 #   pages_build_test.sh SOURCE WORK
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail
@@ -19,7 +19,7 @@ mkdir "$work/apps/web/src"
 touch "$work"/{LICENSE,apps/web/src/main.ts,apps/web/build.mjs,build/wasm/keepout.mjs,build/wasm/keepout.wasm}
 export calls=$work/calls page=$work/build/web/live.html
 
-# program NAME: is played by the script on stdin, which tells how it was called.
+# program NAME: replaces a program by the script on stdin, and logs its calls.
 program() {
   { printf '#!/bin/bash\necho "%s $*" >> "$calls"\n' "${1##*/}"; cat; } > "$1"
   chmod +x "$1"
@@ -29,7 +29,7 @@ program "$work/programs/sudo" <<< 'exec "$@"'
 program "$work/programs/apt-get" <<< 'exit 1'
 program "$work/programs/dpkg-query" <<< '[ "${*: -1}" = "${not_installed:-}" ] || echo installed'
 program "$work/programs/npm" <<'PROGRAM'
-[ "$1" != ci ] || rm -rf node_modules/*  # as npm does: what begins with a dot stays
+[ "$1" != ci ] || rm -rf node_modules/*  # as npm does: files that begin with a dot stay
 [ -z "${npm_fails:-}" ] || exit 1
 if [ "$1" = ci ]; then
   mkdir -p node_modules
@@ -46,7 +46,8 @@ fi
 PROGRAM
 program "$work/build/release/apps/keepout/keepout" <<< ''
 
-# run STATUS ARGS...: ./run ends so; what it said is in told, what it called in called.
+# run STATUS ARGS...: runs ./run and checks its status (well, fails). Its output is in `told`, the called programs are
+# in `called`.
 run() {
   local expected=$1 status=0
   shift
@@ -72,7 +73,7 @@ for words in "inspect cube" "inspect live" "live --help" "simulate -h" "replay c
   calls_no wasm
 done
 
-# Of a report nobody waits for a compiler; without a network it is plain.
+# A report does not need the WebAssembly compiler. Without a network, it is a plain page.
 npm_fails=yes run well
 says "could not be fetched: is there a network?"
 says "going on: reports will be plain"
@@ -104,7 +105,7 @@ calls_no "npm ci"
 echo second > "$work/apps/web/package-lock.json"
 npm_fails=yes run fails live
 says "could not be fetched: is there a network?"
-[ -s "$page" ] || fault "the page of before is gone"
+[ -s "$page" ] || fault "the earlier page is gone"
 npm_fails=yes run well inspect cube
 echo first > "$work/apps/web/package-lock.json"
 run well live
@@ -112,7 +113,7 @@ calls_it "npm ci"
 
 calls_it "--omit=dev"
 
-# What the tests need holds what the page needs.
+# The packages of the tests include those of the pages.
 : > "$calls"
 PATH=$work/programs:$PATH "$work/apps/web/build" tests 2>/dev/null
 called=$(cat "$calls")
@@ -127,7 +128,7 @@ calls_no "npm ci"
 says "could not be bundled"
 bundled=nothing run fails live
 says "does not have exactly one line"
-grep -qF "anatomy goes here" "$page" || fault "the page of before is gone"
+grep -qF "anatomy goes here" "$page" || fault "the earlier page is gone"
 
 not_installed=emscripten run fails live
 says "installing emscripten"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * The reports of the commands, in a real browser and with real input:
+ * Tests the reports of the commands in a browser with real input:
  *
  *   report_pages_test.mjs KEEPOUT FOLDER [BROWSER]
  *
- * Each command is run on a small mesh; its page is opened. Every number that is read there must be
- * one of the record; tables sort, plots tell what is under the pointer, anatomy turns. Where
- * REPORT_RECORDS names a folder, the records in it are looked at instead.
+ * Each command runs on a small mesh, and the test opens its page. Every number on the page must be one of
+ * the record. Tables sort, plots show what is under the pointer, and the anatomy turns. If REPORT_RECORDS
+ * names a folder, the test reads the records in it instead.
  */
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
@@ -33,7 +33,7 @@ const given = process.env.REPORT_RECORDS;
 const large = { width: 1280, height: 900 };
 empty(folder);
 
-/** Makes a page by a command, which may find that something does not hold. */
+/** Makes a page by a command. The command may find that a check fails (exit status 1). */
 function run(name, ...args) {
   const file = join(folder, `${name}.html`);
   try {
@@ -52,8 +52,8 @@ const experimentsFile = join(folder, "experiments.json");
 writeFileSync(experimentsFile, JSON.stringify(experimentsRecord));
 
 /**
- * A box without one of its triangles, with another one turned, and a piece of a triangle's edge. One of its
- * corners makes the middle of an edge a coordinate near 1e-15 mm.
+ * A box with a missing triangle, a flipped triangle, and a part of a triangle's edge. Because of one corner,
+ * the middle of an edge has a coordinate near 1e-15 mm.
  */
 const faultyFile = join(folder, "faulty.obj");
 writeFileSync(
@@ -107,7 +107,7 @@ const files = given
       run("verify_robot", ..."verify cube gear --robot psm --cycles 300".split(" ")),
     ];
 
-/** The record in a page. */
+/** Returns the record in a page. */
 function recordOf(file) {
   const [, packed] = readFileSync(file, "utf8").match(/id="record">([^<]*)</);
   return JSON.parse(gunzipSync(Buffer.from(packed, "base64")).toString("utf8"));
@@ -130,7 +130,7 @@ const valueAt = (record, pointer) => keysOf(pointer).reduce((value, key) => valu
 const microseconds = { ms: 1e-3, µs: 1, ns: 1e3 };
 const millimetres = { mm: 1, µm: 1e3, nm: 1e6 };
 
-/** By what a number of the record is multiplied when it is shown in a unit. */
+/** Returns the factor that converts a number of the record to the displayed unit. */
 function scaleOf(keys, unit) {
   const kind = keys
     .map((key) => (key === "bins" ? "ns" : key.match(/(?:^|_)(us|ns|s|mm|share)$/)?.[1]))
@@ -145,7 +145,7 @@ function scaleOf(keys, unit) {
 
 const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
-/** Whether a text is what the record has at a pointer. */
+/** Returns true if a text shows the value, name or number that the record has at a pointer. */
 function isOf(record, { text, from, role, unit: apart = "" }) {
   const keys = keysOf(from);
   if (role === "name") return text === keys.at(-1);
@@ -169,7 +169,7 @@ function isOf(record, { text, from, role, unit: apart = "" }) {
   return isNear && (isCoordinate || (exact === 0) === (shown === 0));
 }
 
-/** The page's own words that have digits. */
+/** Words with digits that the page itself contains. */
 const ownWords = [
   "99.999 %",
   "99.9 %",
@@ -184,7 +184,7 @@ const ownWords = [
   "i7-8700",
 ];
 
-/** All texts with digits within elements, and where in the record they are said to be from. */
+/** Returns all texts with digits in elements, each with its stated place in the record. */
 const textsWithDigits = (tab, selector) =>
   tab.$$eval(selector, (elements) =>
     elements.flatMap((element) => {
@@ -202,7 +202,7 @@ const textsWithDigits = (tab, selector) =>
     }),
   );
 
-/** Asserts that every number within elements is one of the record, or one of the page's own words. */
+/** Asserts that every number in elements is from the record or from the page's own words. */
 async function assertNumbers(tab, record, selector) {
   const texts = await textsWithDigits(tab, selector);
   const strange = texts.filter((one) => {
@@ -220,15 +220,15 @@ async function assertNumbers(tab, record, selector) {
 
 const browser = await launched(browserPath);
 
-/** Opens a page; gives it back once it is built. */
+/** Opens a page. Returns it when it is complete. */
 async function opened(file, viewport, prepare) {
   const tab = await openedTab(browser, file, viewport, prepare);
   await tab.waitForSelector("main > section:last-child .command", { timeout: 120_000 });
-  await sleep(500); // for what is drawn when it is first seen
+  await sleep(500); // for elements that are drawn when they first become visible
   return tab;
 }
 
-/** Presses headings, by mouse and by key, and looks whether their columns are in order. */
+/** Sorts tables by their headings, by mouse and by key, and asserts that the columns are in order. */
 async function assertSorts(tab, record) {
   for (const table of await tab.$$("table")) {
     const columns = (await table.$$("thead button")).length;
@@ -259,7 +259,7 @@ async function assertSorts(tab, record) {
   }
 }
 
-/** Where marks of a plot are on the screen; of a line, some places along it. */
+/** Returns the screen positions of the marks of a plot, and of some points along a line. */
 const marksOf = (plot) =>
   plot.evaluate((one) => {
     const kinds = ["dot", "bar", "line", "rect"].map(
@@ -283,7 +283,7 @@ const marksOf = (plot) =>
       .filter(({ x, y }) => x > room.left && x < room.right && y > room.top && y < room.bottom);
   });
 
-/** Points at marks of each plot that is seen, until it tells of one; gives how many plots do. */
+/** Points at the marks of each visible plot until a tooltip appears. Returns the number of plots with one. */
 async function assertTips(tab, record) {
   let told = 0;
   for (const plot of await tab.$$(".plot")) {
@@ -302,7 +302,7 @@ async function assertTips(tab, record) {
     }
     assert.ok(tip, `nothing is told by: ${await plot.evaluate((one) => one.ariaLabel)}`);
     await tip.evaluate((one) => one.setAttribute("id", "told"));
-    assert.ok((await assertNumbers(tab, record, "#told")) > 0, "a tip tells no number");
+    assert.ok((await assertNumbers(tab, record, "#told")) > 0, "a tooltip shows no number");
     await tip.evaluate((one) => one.removeAttribute("id"));
     told += 1;
   }
@@ -317,7 +317,7 @@ const contrastOf = (picture) =>
     return Math.max(...reds) - Math.min(...reds);
   });
 
-/** Brings all pictures into sight, one after another, and asserts that each is drawn. */
+/** Scrolls to each picture and asserts that it is drawn. */
 async function assertDrawn(tab) {
   const pictures = await tab.$$("canvas.anatomy");
   assert.ok(pictures.length > 0);
@@ -327,7 +327,7 @@ async function assertDrawn(tab) {
   }
 }
 
-/** Waits until something holds, for at most ten seconds. */
+/** Waits until a condition is true, for at most ten seconds. */
 async function until(holds, otherwise) {
   for (let i = 0; i < 100 && !(await holds()); ++i) await sleep(100);
   assert.ok(await holds(), otherwise);
@@ -340,7 +340,7 @@ for (const { file, name, record } of pages) {
   const isOnPhone = given || ["simulate", "bench", "experiments"].includes(name);
   const onPhone = isOnPhone ? {} : onlyLong;
   const testAnatomy = hasAnatomy ? test : () => {};
-  let desk; // goes on from one test to the next
+  let desk; // shared by the next tests
 
   testAnatomy(`${name}: a drag turns all pictures of a group alike`, ifDrawn, async () => {
     const tab = await opened(file, large);
@@ -371,7 +371,7 @@ for (const { file, name, record } of pages) {
       assert.notEqual(await now(), before, "the time does not move");
       await assertNumbers(tab, record, "body");
     }
-    // Another stroke of an instrument, and the worst moment of each mode of it.
+    // Selects another stroke of an instrument, and the worst moment of each of its modes.
     for (const list of await tab.$$('select[aria-label="stroke"] ~ select')) {
       await tab.select('select[aria-label="stroke"]', "1");
       for (const [number, run] of record.meshes[0].strokes[1].runs.entries()) {
@@ -395,7 +395,7 @@ for (const { file, name, record } of pages) {
     note(`${tips} plots told`);
     const hasPlots = ["simulate", "bench", "speed", "compare"].includes(record.keepout_record);
     assert.equal(tips > 0, hasPlots);
-    // What legends and choices change is of the record too.
+    // After a change of legends and choices, numbers are still from the record.
     for (const list of await tab.$$(".selection select")) {
       const values = await list.$$eval("option", (all) => all.map(({ value }) => value));
       for (const value of [...values.slice(1), values[0]]) {
@@ -482,7 +482,7 @@ test("claims come first; pictures of a record do nothing", { skip: given }, asyn
   );
   assert.match(broken.told, /no SVG/);
   assert.equal(await tab.evaluate(() => window.harmed), undefined);
-  // In the dark it is another colour; on paper never.
+  // The dark scheme has another color. Paper does not.
   const colorNow = () =>
     tab.$eval(
       ".picture_of_record",
@@ -509,7 +509,8 @@ test("faults of a mesh are marked where they are", { skip: given || !inspected }
   );
   const tab = await opened(inspected.file, large);
   await assertDrawn(tab);
-  // Of each kind a picture, in which a ring is around the first fault, and red around that.
+  // Each kind of fault has a picture, with a ring around the first fault and red parts around the
+  // ring.
   const pictures = await tab.$$(".picture");
   assert.equal(pictures.length, findings.length);
   for (const picture of pictures) {
@@ -549,7 +550,7 @@ test("coordinates have a fixed number of digits", { skip: given || !inspected },
   await tab.close();
 });
 
-/** A plate with two small holes that are close together and one in a corner. */
+/** Returns a plate with two small holes close together and one in a corner. */
 function plateWithHoles() {
   const [side, holes] = [21, ["10,10", "10,12", "18,2"]];
   const vertex = (i, j) => i * side + j + 1;
@@ -571,7 +572,7 @@ test("each number is at its ring, and close ones share a label", { skip: given }
   await assertDrawn(tab);
   const hint = await tab.$eval(".hint", (one) => one.textContent);
   assert.ok(hint.startsWith("Drag to turn. "), hint);
-  /** The numbers of the rings in the picture, and the texts of labels beside their rings. */
+  /** Returns the numbers of the rings in the picture, and the texts of labels beside their rings. */
   const labels = () =>
     tab.$eval(".picture", (picture) => {
       const { clientWidth, clientHeight } = picture;
@@ -703,7 +704,7 @@ test("findings are told, of records without their numbers too", {
   );
   await tab.close();
 
-  // As it was written before there were such numbers.
+  // A record of an older version, which has no such numbers.
   const older = structuredClone(bench.record);
   older.account = ["Medians of 7 steps."];
   delete older.benchmark.fastest;

@@ -5,12 +5,14 @@
 //
 //     node same_bits_test.mjs KEEPOUT BUILD_WASM
 //
-// The same seeded poses are stepped by `keepout replay` and by the module that pages load, one by one
-// and in a closed loop, close to the surface and into it. All that both tell is compared as numbers,
-// the sign of a zero included: status, tip, motion, distance, planes, and the triangles in reach. Not so
-// the triangles that the certified rule asked about: floats pass over those that they find clear, by a
-// reciprocal square root that each processor rounds in its own way, so that native AVX2 and SSE4 differ
-// in some of 10,000 steps, too. One mesh is read as text, so that numerals are compared as well.
+// `keepout replay` and the module of the pages make the steps of the same seeded poses, one by one
+// and in a closed loop, near the surface and into it. All common results are compared as numbers,
+// including the sign of zero: status, tip, motion, distance, planes, and triangles in reach.
+//
+// The number of triangles that the certified rule examined is not compared. It depends on a
+// reciprocal square root in single precision, which each processor rounds differently. Native AVX2
+// and SSE4 also differ in some of 10,000 steps. One mesh is read as text, so that parsed numbers
+// are compared as well.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -27,7 +29,7 @@ const fixtures = join(process.env.KEEPOUT_CACHE || join(repository, ".cache"), "
 const scratch = mkdtempSync(join(tmpdir(), "keepout-same-bits-"));
 process.on("exit", () => rmSync(scratch, { recursive: true, force: true }));
 
-// As pages have it, in TypeScript that node cannot read.
+// The pages use this module. It is in TypeScript, which node cannot read.
 const { buildSync } = createRequire(join(repository, "apps/web/package.json"))("esbuild");
 const engine = join(scratch, "keepout.mjs");
 const source = join(repository, "apps/web/src/engine/keepout.ts");
@@ -43,7 +45,7 @@ const openSteps = 8000 / share;
 const closedSteps = 4000 / share;
 const settings = { radius: 1.2, toolRadius: 0.5, margin: 0.2, maxStep: 0.8, guides: [] };
 
-/** Numbers from 0 to 1, the same in each run. */
+/** Returns a generator of numbers from 0 to 1, the same in each run. */
 function seeded(state) {
   return () => {
     state = (state + 0x6d2b79f5) | 0;
@@ -53,7 +55,7 @@ function seeded(state) {
   };
 }
 
-/** The corners of a binary STL file, nine numbers a triangle. */
+/** Returns the corners in a binary STL file, nine numbers for each triangle. */
 function trianglesOf(file) {
   const bytes = readFileSync(file);
   const count = bytes.readUInt32LE(80);
@@ -62,14 +64,14 @@ function trianglesOf(file) {
   );
 }
 
-/** Where a mesh of the cache lies; it is made there if it is not yet. */
+/** Returns the file of a sample mesh in the cache, and makes it if it is missing. */
 function fixture(name) {
   const file = join(fixtures, `${name}.stl`);
   if (!existsSync(file)) execFileSync(command, ["inspect", name], { stdio: "ignore" });
   return file;
 }
 
-/** The same triangles as text. */
+/** Writes the triangles as text. Returns the file. */
 function asText(triangles, name) {
   const file = join(scratch, `${name}.obj`);
   const vertices = triangles.flatMap((t) =>
@@ -80,7 +82,7 @@ function asText(triangles, name) {
   return file;
 }
 
-/** A place on the surface, and the normal there. */
+/** Returns a random point of the surface and its normal. */
 function placeOn(triangles, random) {
   for (;;) {
     const t = triangles[Math.floor(random() * triangles.length)];
@@ -102,7 +104,7 @@ function placeOn(triangles, random) {
 
 const along = (from, way, length) => from.map((x, i) => x + length * way[i]);
 
-/** Tips at about the distance that is kept, and increments into the surface. */
+/** Returns tips at about the required clearance, and increments into the surface. */
 function openPoses(triangles, random) {
   return Array.from({ length: openSteps }, () => {
     const { at, normal } = placeOn(triangles, random);
@@ -117,7 +119,7 @@ function openPoses(triangles, random) {
   });
 }
 
-/** Goals of a hand that goes in, along below the surface, and on to the next place. */
+/** Returns goals that go into the surface, along below it, and on to the next place. */
 function closedPoses(triangles, random) {
   const poses = [];
   let reset;
@@ -138,10 +140,10 @@ function closedPoses(triangles, random) {
   return poses.slice(0, closedSteps);
 }
 
-/** How many triangles a step rests on, if that is the same on every processor. */
+/** Returns the triangle count of a step if it is the same on every processor, else 0. */
 const comparable = (rule, triangles) => (rule === "certified" ? 0 : triangles);
 
-/** The rows of a CSV file, without its heading. */
+/** Returns the rows of a CSV file without its heading. */
 function rowsOf(file) {
   return readFileSync(file, "latin1")
     .trimEnd()
@@ -150,7 +152,7 @@ function rowsOf(file) {
     .map((line) => line.split(","));
 }
 
-/** What native keepout makes of poses: for each step its numbers in a row, and its planes'. */
+/** Returns the native result of each step: its status, and its numbers with those of its planes. */
 function native(mesh, rule, loop, poses) {
   const file = (name) => join(scratch, name);
   const [steps, planes] = [file("steps.csv"), file("planes.csv")];
@@ -177,7 +179,7 @@ function native(mesh, rule, loop, poses) {
   return told;
 }
 
-/** What a cycle told, in the order of native(), all planes included. */
+/** Returns the result of a cycle, in the order of native(), with all planes. */
 function toldBy(rule, tool, cycle, tip) {
   const { distance, motion, planeCount } = cycle;
   const numbers = [...tip, ...motion, comparable(rule, cycle.triangles), distance];
@@ -187,7 +189,7 @@ function toldBy(rule, tool, cycle, tip) {
   return { status: statuses[cycle.status].name, planes: planeCount, numbers };
 }
 
-/** What the module makes of the same poses. */
+/** Returns the results of the module for the same poses. */
 function byModule(tool, rule, loop, poses) {
   let tip = tool.place(poses[0].slice(3)).positions;
   return poses.map((pose) => {
@@ -199,7 +201,7 @@ function byModule(tool, rule, loop, poses) {
   });
 }
 
-/** How many steps are not the same. */
+/** Returns the number of steps that differ. */
 function differences(one, other) {
   assert.equal(one.length, other.length);
   const isSame = (a, b) =>
@@ -211,7 +213,7 @@ function differences(one, other) {
 }
 
 const total = { steps: 0, limited: 0, planes: 0, different: 0 };
-let isAwake = false; // whether it was seen that another margin is noticed
+let isAwake = false; // true once the test has noticed a changed margin
 for (const name of ["skull", "aneurysm", "airway"]) {
   const file = fixture(name);
   const triangles = trianglesOf(file);
@@ -250,8 +252,8 @@ console.log(
 assert.equal(total.steps, 108e3 / share);
 assert(
   3 * total.limited >= total.steps,
-  "fewer than a third of the steps were limited: little was asked",
+  "fewer than a third of the steps were limited: the test is too easy",
 );
 assert(total.planes >= total.limited, "planes were not compared");
-assert(isAwake, "a margin that is longer by 1e-12 of itself went unnoticed");
+assert(isAwake, "the test did not notice a margin that is larger by a factor of 1 + 1e-12");
 assert.equal(total.different, 0, "native keepout and the module differ");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** A page of keepout in a real browser: what the tests of all pages share. */
+/** Functions for tests of the pages of keepout in a browser. */
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, rmSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -38,7 +38,7 @@ export const launched = (browserPath = "/usr/bin/chromium") =>
     ],
   });
 
-/** Opens a page, once `prepare` is done with its tab; the tab has a list of faults. */
+/** Opens a page after `prepare` has set up its tab. Returns the tab, with a list of faults. */
 export async function opened(browser, file, viewport, prepare = () => {}) {
   const tab = await browser.newPage();
   tab.faults = [];
@@ -55,7 +55,7 @@ export async function opened(browser, file, viewport, prepare = () => {}) {
   return tab;
 }
 
-/** Asserts that a page is at most so large, and names no file beside it. */
+/** Asserts that a page has at most `most` bytes and names no other file. */
 export function assertAlone(file, most) {
   const text = readFileSync(file, "utf8");
   note(`${(text.length / 1e3).toFixed(0)} kB`);
@@ -63,7 +63,7 @@ export function assertAlone(file, most) {
   assert.doesNotMatch(text, /(src|href)="(?!data:)[^"]*"/, "it names another file");
 }
 
-/** Controls have names, and texts stand out, in this scheme of colors. */
+/** Asserts that controls have names and texts have contrast, in this color scheme. */
 export async function assertAccessible(tab, scheme) {
   await tab.emulateMediaFeatures([{ name: "prefers-color-scheme", value: scheme }]);
   await tab.addScriptTag({ path: packages.resolve("axe-core") });
@@ -72,7 +72,7 @@ export async function assertAccessible(tab, scheme) {
   );
   assert.ok(
     passes.some(({ id }) => id === "color-contrast"),
-    "contrast was not looked at",
+    "contrast was not checked",
   );
   assert.deepEqual(
     violations.map(({ id, nodes }) => [id, ...nodes.map(({ html }) => html)]),

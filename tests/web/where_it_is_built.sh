@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs a test of the pages where what it needs is there; else says what is missing, and is skipped.
+# Runs a test of the pages. If a file or program is missing, reports it and skips the test.
 #   where_it_is_built.sh ROOT COMMAND...
 # SPDX-License-Identifier: BSD-3-Clause
 set -euo pipefail

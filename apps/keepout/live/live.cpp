@@ -18,6 +18,7 @@
 #include "page/gzip.h"
 #include "page/packed_mesh.h"
 #include "page/page_template.h"
+#include "record/record.h"
 #include "shared/clip.h"
 #include "shared/columns.h"
 #include "shared/command_line.h"

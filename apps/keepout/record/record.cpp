@@ -13,7 +13,6 @@
 #include "record/json_parts.h"
 #include "record/plain_page.h"
 #include "record/report_page.h"
-#include "shared/command_line.h"
 #include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
@@ -94,6 +93,15 @@ std::string fault_of(const Json& json) {
   const bool has_texts =
       is_whole && std::ranges::all_of(json["account"].get<std::vector<Json>>(), &Json::is_string);
   return has_texts ? "" : none;
+}
+
+CLI::Validator name_of_page() {
+  const auto check = [](const std::string& text) -> std::string {
+    const std::string extension = std::filesystem::path(text).extension().string();
+    if (extension.empty() || extension == ".html" || extension == ".htm") return "";
+    return "expected a name that ends with .html, as it is an HTML page, not '" + text + "'";
+  };
+  return {check, ""};
 }
 
 void RecordFiles::add_to(CLI::App& command) {

@@ -16,7 +16,8 @@
 
 namespace CLI {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace keepout::app {
 
@@ -42,6 +43,9 @@ std::ifstream open_record(const std::filesystem::path& path);
 /// Returns why this is not a record of the known format, judged by its common members; empty if it
 /// is.
 std::string fault_of(const Json& json);
+
+/// Accepts the name of an HTML page: with .html, .htm or no extension.
+CLI::Validator name_of_page();
 
 /// The files that a command writes: its record, its report, and its rows as a table.
 struct RecordFiles {

@@ -10,7 +10,6 @@
 #include "record/plain_page.h"
 #include "record/record.h"
 #include "record/report_page.h"
-#include "shared/command_line.h"
 #include "shared/number_text.h"
 #include "shared/output_file.h"
 #include "shared/progress.h"

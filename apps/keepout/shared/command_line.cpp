@@ -190,15 +190,6 @@ CLI::Validator not_empty() {
   return {check, ""};
 }
 
-CLI::Validator name_of_page() {
-  const auto check = [](const std::string& text) -> std::string {
-    const std::string extension = std::filesystem::path(text).extension().string();
-    if (extension.empty() || extension == ".html" || extension == ".htm") return "";
-    return "expected a name that ends with .html, as it is an HTML page, not '" + text + "'";
-  };
-  return {check, ""};
-}
-
 CLI::Option* add_length(CLI::App& command, const std::string& name, double& value, Zero zero,
                         const std::string& description) {
   return command.add_option(name, value, description)

@@ -92,9 +92,6 @@ inline constexpr std::uint64_t most_steps = 1'000'000'000'000;
 /// Accepts any text that is not empty.
 CLI::Validator not_empty();
 
-/// Accepts the name of an HTML page: with .html, .htm or no extension.
-CLI::Validator name_of_page();
-
 /// A command of ./run that is not a command of this program.
 inline constexpr const char* run_command = "experiments";
 

@@ -64,11 +64,10 @@ struct SimulateOptions {
 /// is finished, nothing is written. Throws Error, also if the report would overwrite the mesh; then
 /// there is no report.
 ///
-/// Returns the exit status. It is a failure if a certified cycle of an instrument broke a guarantee
-/// of docs/joint-space-step.md, or if a timed part gave a wrong answer. It is a failure as well if
-/// a guarded tip left a guide, if a guarded convex tool touched the surface, or if nothing was
-/// tested: no guarded tool moved, or none was ever inside a guide. It is exit_interrupted if a
-/// signal stopped the simulation.
+/// Returns the exit status; after a signal, exit_interrupted. It is a failure if a certified cycle
+/// broke a guarantee of docs/joint-space-step.md, or if a guarded tip left a guide. It is a failure
+/// as well if a guarded convex tool touched the surface, or if a timed part gave a wrong answer. It
+/// is also a failure if nothing was tested: no guarded tool moved, or no tool was inside a guide.
 int simulate(const SimulateOptions& options, std::ostream& out);
 
 }  // namespace keepout::app

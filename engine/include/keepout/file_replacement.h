@@ -8,7 +8,7 @@
 
 namespace keepout {
 
-/// Returns the path after all symbolic links; its end need not exist. Sets `error` if the links
+/// Returns the path after all symbolic links. The file need not exist. Sets `error` if the links
 /// form a loop.
 std::filesystem::path follow_links(std::filesystem::path path, std::error_code& error);
 

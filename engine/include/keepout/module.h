@@ -11,11 +11,12 @@
 
 namespace keepout {
 
-// A module is a shared object, such as keepout-modules/fcl.so, with parts that use another library.
-// Only the module links that library. keepout loads a module at the first request for one of its
-// parts. It searches the directory in the environment variable KEEPOUT_MODULES. Without that
-// variable, it searches the directory `keepout-modules` beside the program or the library, or in
-// the library directory of their prefix.
+// Here, a part is an index, a narrow phase or a solver. A module is a shared object, such as
+// keepout-modules/fcl.so, with parts that use another library. Only the module links that library.
+// keepout loads a module at the first request for one of its parts. It searches the directory in
+// the environment variable KEEPOUT_MODULES. Without that variable, it searches the directory
+// `keepout-modules` beside the program or the library, or in the library directory of their
+// installation prefix.
 
 /// Returns true if the file of the module exists.
 bool has_module(const char* module);
@@ -61,7 +62,7 @@ class PartTable {
     return {kind_, all_, absent_};
   }
 
-  /// Returns the part of that name. Loads at most the module with the part. Throws Error for an
+  /// Returns the part of that name. Loads no module except that of the part. Throws Error for an
   /// unknown or absent part, like refuse_name, and for a module that cannot be loaded.
   const Part& named(std::string_view name) const {
     if (const Part* const own = with_name(own_, name)) return *own;

@@ -18,8 +18,8 @@
 namespace keepout {
 
 // A table of options describes each member of a struct of options once: name, unit, range and
-// meaning. It is read by the range checks, the Python module and its stubs, `keepout serve`, the
-// commands and docs/options.md.
+// meaning. The range checks, the Python module and its stubs, `keepout serve`, the commands and
+// docs/options.md use the table.
 
 /// The allowed numbers of an option: from `least` to `most`, and 0 if `has_zero`.
 struct Range {

@@ -11,11 +11,12 @@
 
 namespace keepout {
 
-/// Returns the known name that is most similar to a mistyped one, for "did you mean". This is the
-/// name with the fewest letters inserted, deleted, replaced or swapped with their neighbor, if they
-/// are at most a third of all. Otherwise it is the first name that contains the mistyped one. Upper
-/// and lower case are equal, and so are '_' and '-'; ties go to the first name. Returns empty if no
-/// name is similar. Allocates.
+/// Returns the known name that is most similar to a mistyped one, for "did you mean". The most
+/// similar name differs by the fewest letters that are inserted, deleted, replaced or swapped with
+/// their neighbor. If these are more than a third of the letters for every name, returns the first
+/// name that contains the mistyped one. Upper and lower case are equal, and so are '_' and '-'. If
+/// several names are equally similar, returns the first. Returns empty if no name is similar.
+/// Allocates.
 std::optional<std::string_view> nearest_name(std::string_view mistyped,
                                              std::span<const std::string_view> names);
 
@@ -25,7 +26,8 @@ enum class Allocation : std::uint8_t {
   inside  // the underlying library allocates: for comparison, not for real time
 };
 
-/// A part that uses another library, provided by a module: see keepout/module.h.
+/// A part (index, narrow phase or solver) that uses another library. A module provides it: see
+/// keepout/module.h.
 struct PeerPart {
   std::string_view name;         // for Registry::named
   std::string_view needs;        // the library, its Debian package and the build option

@@ -15,7 +15,7 @@ std::vector<std::string_view> simd_targets();
 std::string_view simd_target() noexcept;
 
 /// Selects the target for this process, to measure or test what another processor would do. No
-/// other thread may run a step meanwhile. Throws Error unless simd_targets() has the name.
+/// other thread may run a step during the call. Throws Error unless simd_targets() has the name.
 void use_simd_target(std::string_view name);
 
 }  // namespace keepout

@@ -10,7 +10,7 @@ namespace keepout {
 /// The outcome of a step or a query. The first five come with a motion that may be executed (it may
 /// be zero). All others come with zero motion.
 enum class Status : std::uint8_t {
-  free,              // the desired increment: no constraint limits it; of a polytope: complete
+  free,              // the motion is the desired increment; or a polytope is complete
   limited,           // the nearest motion that the constraints allow: see Limits
   recovering,        // a tip or body too close, or a guided point outside its region, recovers
   truncated,         // a shorter motion, as no longer motion was proved: see Limits

@@ -20,7 +20,8 @@
 namespace keepout {
 namespace {
 
-/// Increases with every change of the contents of the file, or of their meaning.
+/// The version of the file format. Increase it with every change of the contents of the file, or of
+/// their meaning.
 constexpr std::uint32_t version = 2;
 
 constexpr std::string_view magic = "keepout wide_bvh";

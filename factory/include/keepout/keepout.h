@@ -2,6 +2,7 @@
 #pragma once
 
 // Includes all that most programs need: constraints for a tip and for a whole instrument.
+// docs/glossary.md explains the terms of the headers.
 #include "keepout/error.h"
 #include "keepout/factory/convex_tool_text.h"
 #include "keepout/factory/guide_text.h"

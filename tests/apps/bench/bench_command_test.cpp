@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout bench as a user meets it.
+// keepout bench, as a user runs it.
 
 #include <algorithm>
 #include <map>
@@ -135,7 +135,7 @@ TEST_F(BenchCommand, NamesTheMeshOfWhichNothingCanBeMeasured) {
 }
 
 TEST_F(BenchCommand, RanksNoRowWhoseMotionsReachNoTriangle) {
-  // Tips are 0.2 mm off the cube: a sphere of 0.1 mm reaches nothing.
+  // Tips are 0.2 mm from the cube, so a sphere of 0.1 mm reaches no triangle.
   succeeded(folder.run(
       "bench --mesh cube.stl --index pd_tree,brute_force --activation paper --radius 0.1 "
       "--queries 100 --json b.json"));
@@ -150,7 +150,7 @@ TEST_F(BenchCommand, RanksNoRowWhoseMotionsReachNoTriangle) {
 }
 
 TEST_F(BenchCommand, KeepsTheRowsThatAreFinishedWhenItIsInterrupted) {
-  // Of so many motions that no row is done before the signal for the first has arrived.
+  // Rows take so long that the signal after the first one arrives before all are finished.
   const ProcessOutcome outcome =
       folder.interrupted({KEEPOUT_COMMAND,    "bench",        "--mesh",    "cube.stl", "--index",
                           "wide_bvh,pd_tree", "--activation", "paper",     "--radius", "5,1",

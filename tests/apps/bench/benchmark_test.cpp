@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a benchmark measures and what it finds: which rows its headline compares, which it leaves
-// out, and equal steps.
+// The rows that the headline of a benchmark compares or leaves out, and its groups of equal steps.
 #include <algorithm>
 #include <set>
 #include <utility>
@@ -15,7 +14,7 @@
 namespace keepout::app {
 namespace {
 
-/// Two meshes, two spheres, and two pairs, of which the first takes 4 us for a step, the other 200.
+/// Two meshes, two spheres, two pairs of parts. A step takes 4 µs with the first pair, else 200 µs.
 Benchmark duel() {
   Benchmark benchmark;
   for (const std::size_t triangles : {1000, 64000}) {
@@ -110,7 +109,7 @@ TEST(BenchmarkStepGroups, CountTheGroupsInWhichAllIndicesMadeTheSameSteps) {
   }
   benchmark.rows.push_back(benchmark.rows.back());
   benchmark.rows.back()["activation"] = "certified";
-  // Brute force was asked the first 200 motions only: of these 128 have a hash in common.
+  // Brute force solved only the first 200 motions. The longest common hash is of 128 steps.
   const Json expected = {
       {"groups", 2},          {"rows", 6},   {"same", 2},        {"fewest_steps", 128},
       {"most_steps", 10'000}, {"single", 1}, {"not_verified", 0}};

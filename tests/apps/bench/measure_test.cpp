@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is wrong is not timed, by whatever part, and however rarely.
+// Wrong answers are not timed, whichever part is wrong, and however rarely.
 #include <bit>
 #include <functional>
 
@@ -17,7 +17,7 @@
 namespace keepout::app {
 namespace {
 
-/// An index that is right until its answers are spoiled.
+/// An index that is right, except where `spoil` changes its answers.
 class Spoiled final : public SpatialIndex {
  public:
   Spoiled(std::shared_ptr<const Mesh> mesh, std::function<void(TriangleBuffer&)> spoil)
@@ -34,7 +34,7 @@ class Spoiled final : public SpatialIndex {
   std::function<void(TriangleBuffer&)> spoil_;
 };
 
-/// An exact solver, of which each answer is looked at, and may be changed.
+/// An exact solver. `watch` receives each answer, and may change it.
 class Watched final : public Solver {
  public:
   using Watch = std::function<SolveStatus(const StepProblem&, Solution&, SolveStatus)>;
@@ -54,7 +54,7 @@ class Watched final : public Solver {
 
 enum class Flaw { shorter, gives_up, none };
 
-/// Errs, or gives up, now and then: always at the same problems.
+/// Returns a solver that is wrong, or fails, at a few problems: always the same ones.
 std::unique_ptr<Solver> flawed(Flaw flaw) {
   return std::make_unique<Watched>([flaw, u = Vec3{0, 0, 0}](const StepProblem& problem,
                                                              Solution& solution,
@@ -132,7 +132,7 @@ TEST_P(Measure, TimesWhatIsRight) {
 }
 
 TEST_P(Measure, DoesNotTimeAnIndexThatForgetsATriangle) {
-  // One that is in reach of a motion that brute force is asked about.
+  // A triangle in reach of a motion that brute force solves as well.
   TriangleBuffer candidates(mesh->triangle_count());
   HitBuffer hits(mesh->triangle_count());
   for (std::size_t sample = 0; sample < 8 && hits.empty(); ++sample) {
@@ -156,7 +156,7 @@ TEST_P(Measure, DoesNotTimeAnIndexThatForgetsATriangle) {
 TEST_P(Measure, DoesNotTimeASolverThatErrsNowAndThen) {
   const BenchmarkRow row = measured(tree, flawed(Flaw::shorter), 1e-6);
   EXPECT_GT(row["worse_share"], 0.005);
-  // Under a rule that proves each motion they are right all the same.
+  // Under a rule that proves each motion, the results are right nevertheless.
   EXPECT_EQ(row["verified"], reference->proves_motions());
   EXPECT_NE(row["wrong"], row["verified"]);
   if (row["verified"]) return;
@@ -184,16 +184,16 @@ TEST_P(Measure, GivesTheSameHashForTheSameStepsOnly) {
 }
 
 TEST_P(Measure, VerifiesTheVeryStepsThatItTimes) {
-  // Searched by the rule, which leaves planes out for a solver that says that it skips them.
+  // The rule traverses this index. It leaves planes out for a solver that ignores idle planes.
   const auto index = std::make_shared<const WideBvh>(mesh);
   Given given;
   const BenchmarkRow row = measured(index, taking_down(given), 0.0);
   ASSERT_TRUE(row["verified"]) << row["remark"];
-  // Stage by stage, and as a whole: in each round the solver is given the same.
+  // Stage by stage, and as a whole: the solver receives the same problems in both rounds.
   ASSERT_EQ(given.size() % 2, 0u);
   const auto half = given.begin() + static_cast<std::ptrdiff_t>(given.size() / 2);
   EXPECT_TRUE(std::equal(given.begin(), half, half, given.end()));
-  // As the assembly that users have gives it.
+  // An assembly as users make it gives the solver the same problems.
   Given shipped;
   MotionConstraint constraint(mesh, index, make_activation(GetParam()), taking_down(shipped),
                               settings.options);
@@ -206,7 +206,7 @@ TEST_P(Measure, HasNoTimeOfAQueryThatTheRuleDoesNotMake) {
   const BenchmarkRow row = measured(index, std::make_unique<ActiveSet>(), 0.0);
   ASSERT_TRUE(row["verified"]) << row["remark"];
   EXPECT_TRUE(row["step_query_us"].is_null());
-  // But of the query by itself, which is that of every index.
+  // The query by itself is timed, as with every index.
   const BenchmarkRow other = measured(tree, std::make_unique<ActiveSet>(), 0.0);
   ASSERT_FALSE(row["query_us"].is_null() || other["step_query_us"].is_null());
   EXPECT_GT(row["query_us"]["p50"], row["collect_us"]["p50"])
@@ -218,12 +218,12 @@ TEST_P(Measure, HasNoTimeOfAQueryThatTheRuleDoesNotMake) {
 
 TEST_P(Measure, HoldsEveryQueryThatItTimesToTheReference) {
   constexpr int strength = 1 << 20;
-  int left = strength;  // right answers, before it finds one triangle less
+  int left = strength;  // right answers, before one triangle is missing
   const auto tiring = std::make_shared<const Spoiled>(mesh, [&left](TriangleBuffer& found) {
     if (--left < 0 && !found.empty()) found.begin()[0] = TriangleId{0};
   });
   EXPECT_TRUE(measured(tiring, std::make_unique<ActiveSet>(), 0.0)["verified"]);
-  // Queries are the last that is asked of it: all but the last few are right.
+  // Queries are measured last, so only the last few answers are wrong.
   left = strength - left - 50;
   const BenchmarkRow row = measured(tiring, std::make_unique<ActiveSet>(), 0.0);
   EXPECT_FALSE(row["verified"]);

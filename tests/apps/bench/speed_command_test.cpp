@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout bench --speed as a user meets it, on small meshes.
+// keepout bench --speed, as a user runs it, on small meshes.
 
 #include <algorithm>
 #include <cstdlib>
@@ -19,7 +19,7 @@ using nlohmann::json;
 
 class SpeedCommand : public testing::Test {
  protected:
-  /// The fixtures as they are, and what is made of them in this folder.
+  /// Links the sample meshes; meshes made from them go into this folder.
   void SetUp() override {
     std::filesystem::create_directory_symlink(fixture_cache() / "fixtures",
                                               folder.file("fixtures"));
@@ -32,7 +32,7 @@ class SpeedCommand : public testing::Test {
 
   json read(const std::string& name) const { return json::parse(folder.contents(name)); }
 
-  /// Returns what docs/figures makes of a record: its tables in Markdown, and single figures.
+  /// Returns what docs/figures prints of a record: tables in Markdown, and single figures.
   std::string figures_of(const std::string& json_file) const {
     const std::string script =
         "python3 '" KEEPOUT_FIGURES "' --show " + folder.file(json_file).string();
@@ -60,7 +60,7 @@ TEST_F(SpeedCommand, KeepsWhatItHasMeasuredWhenItIsInterrupted) {
 TEST_F(SpeedCommand, MeasuresEveryRowAndSaysWhatFallsShort) {
   const ProcessOutcome outcome = succeeded(folder.run(
       "bench --speed --quick --triangles 4000 --steps 3000 --largest 80000 --json s.json "
-      "--out s.html"));  // falling short is no failure
+      "--out s.html"));  // a missed target is no failure
   const json record = read("s.json");
   EXPECT_EQ(record["mesh"], "bunny, 4,000 triangles");
   const std::string figures = figures_of("s.json");

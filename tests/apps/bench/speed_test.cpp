@@ -39,7 +39,7 @@ TEST(Timing, OfVeryManyTimesIsThatOfAnEvenPartAndOfTheLongest) {
   const Timing timing = times.timing();
   EXPECT_EQ(timing.samples, count);
   EXPECT_EQ(timing.max, 1e9);
-  EXPECT_NEAR(timing.p50, 500.0, 8.0);  // one in eight is kept
+  EXPECT_NEAR(timing.p50, 500.0, 8.0);  // one of eight times is stored
   EXPECT_NEAR(timing.p99.value_or(0.0), 990.0, 8.0);
 }
 
@@ -103,7 +103,7 @@ TEST(TimeHistogram, APercentileIsTheEndOfTheBinThatReachesIt) {
   EXPECT_EQ(histogram.percentile(0.9999), of_5000);
 }
 
-// The motions on which bench --speed is measured are what they claim to be.
+// The motions of bench --speed have the properties that they claim.
 
 IndexedMesh star() { return with_index(mesh_of(make_star_bumps(2.0))); }
 
@@ -158,7 +158,7 @@ TEST(Disagreement, IsToldOfAnyBitOfAStepAndOfNothingElse) {
 }
 
 TEST(Trajectories, SayWhereThereIsNoSuchSpace) {
-  // Nowhere within a sphere of radius 50 is as far from it.
+  // No place inside a sphere of radius 50 is that far from it.
   const IndexedMesh on = with_index(mesh_of(make_concave_sphere(10.0)));
   EXPECT_THROW(free_motions(on, 10, {.nearest = 60.0, .farthest = 70.0}, {}, Random(3)), Error);
 }

@@ -40,7 +40,7 @@ TEST(IndexAgreement, StepsTheFormsThatAreShipped) {
   EXPECT_EQ(asked, 3u * 3 * 30) << "of brute force and of each index, under each rule";
   for (const IndexAgreement& row : rows) {
     SCOPED_TRACE(row.index + " " + row.activation);
-    // The one offers a traversal along motions, both their triangles in blocks.
+    // wide_bvh offers a traversal along motions; both indices offer their triangles in blocks.
     const bool offers = row.activation == "certified"
                             ? row.index == "wide_bvh"
                             : row.activation == "paper" && row.index != "fcl_obbrss";
@@ -60,7 +60,7 @@ TEST(IndexAgreement, KeepsTheRowsThatWereFinishedWhenItIsStopped) {
 }
 
 TEST(Compare, EndsAtOnceWhenTheSignalHasCome) {
-  std::signal(SIGINT, SIG_DFL);  // which is ignored where tests run in the background
+  std::signal(SIGINT, SIG_DFL);  // it is ignored if tests run in the background
   const StopSignal stop;
   ASSERT_EQ(std::raise(SIGINT), 0);
   const IndexComparison on = on_a_cube();
@@ -200,7 +200,7 @@ TEST(ComparisonFindings, PartsAgreeUnlessAnIndexDiffersOrASolverIsWrong) {
   EXPECT_LACKS(headline(Comparison{}), "All indices") << "nothing was compared";
 }
 
-/// keepout compare as a user meets it.
+/// keepout compare, as a user runs it.
 class CompareCommand : public testing::Test {
  protected:
   void SetUp() override { write_binary_stl(folder.file("cube.stl"), make_cube(5.0)); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page that `keepout live` writes, what it says, and what it refuses.
+// The page that `keepout live` writes, its messages and its errors.
 
 #include <Eigen/LU>
 #include <chrono>
@@ -35,7 +35,7 @@ class Live : public testing::Test {
     return folder_.run("live " + arguments,
                        "env -u DISPLAY -u WAYLAND_DISPLAY KEEPOUT_WEB=web " + environment);
   }
-  /// What stands in the element with this id, up to the first that a browser takes for its end.
+  /// Returns the content of the element with this id, up to what a browser takes for its end.
   std::string element(const std::string& id, const std::string& page = "keepout-live.html") const {
     const std::string text = folder_.contents(page);
     const std::string start = "id=\"" + id + "\">";
@@ -155,7 +155,7 @@ TEST_F(Live, WarningsOfAMeshAreInThePageToo) {
 }
 
 TEST_F(Live, NoNameOfAFileEndsAScriptOrIsLost) {
-  // A slash is in no name, but is in a path.
+  // File names contain no slash, but paths do.
   for (const std::string name : {"<!--<script>.stl", "<", "a\"b\\c'.stl"}) {
     fs::create_directories(folder_.file(name + "<"));
     const std::string path = name + "</script><b>.stl";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every bit of a mesh comes back from what a page carries of it.
+// Unpacking a mesh from a page gives a bitwise identical mesh.
 #include "page/packed_mesh.h"
 
 #include <random>

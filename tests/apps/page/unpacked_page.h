@@ -16,7 +16,7 @@
 
 namespace keepout::test {
 
-// What a page does to have its meshes back.
+// Functions that unpack meshes as a page does.
 
 inline std::vector<std::uint8_t> from_base64(std::string_view text) {
   constexpr std::string_view digits =
@@ -36,7 +36,7 @@ inline std::vector<std::uint8_t> from_base64(std::string_view text) {
   return bytes;
 }
 
-/// Throws where the file is not whole, or has something behind it.
+/// Returns the unpacked file. Throws if it is incomplete, or if bytes follow it.
 inline std::vector<std::uint8_t> gunzipped(std::vector<std::uint8_t> file) {
   z_stream stream = {};
   if (inflateInit2(&stream, MAX_WBITS + 16) != Z_OK) throw std::runtime_error("no zlib");
@@ -57,7 +57,7 @@ inline std::vector<std::uint8_t> gunzipped(std::vector<std::uint8_t> file) {
   return bytes;
 }
 
-/// The numbers that stand one after the other, each with its lowest byte first.
+/// Returns the number at an index of a sequence, with its lowest byte first.
 template <class Bits>
 Bits number_at(std::span<const std::uint8_t> bytes, std::size_t index) {
   Bits bits = 0;
@@ -92,7 +92,7 @@ inline Surface unpacked(std::string_view coordinates, std::span<const std::uint8
   return surface;
 }
 
-/// Whether the two are the same in every bit: 0 and -0 are not.
+/// Returns true if the two are bitwise identical: 0 and -0 differ.
 inline bool same_bits(const Surface& surface, const Mesh& mesh) {
   if (surface.vertices.size() != mesh.vertex_count()) return false;
   if (!std::equal(surface.triangles.begin(), surface.triangles.end(), mesh.triangles().begin(),

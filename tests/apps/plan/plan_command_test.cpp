@@ -63,7 +63,7 @@ TEST_F(PlanCommandTest, TheSameSeedPlansTheSame) {
 }
 
 TEST_F(PlanCommandTest, OfASmallMeshEachPathAlongTheGridIsSearchedOnlyWhereItLeads) {
-  // On a grid of 300 cells a side, of which the mesh takes 40, few pairs need such a detour.
+  // The grid has 300 cells on a side, of which the mesh takes 40, so few pairs need such a detour.
   write_binary_stl(folder_.file("small.stl"), make_cube(3.0));
   const ProcessOutcome outcome =
       succeeded(folder_.run("plan small.stl --problems 12 --seconds 1 --resolution 0.01 --quiet "
@@ -119,7 +119,7 @@ TEST_F(PlanCommandTest, NoPathOfAWholeInstrumentUnderCertifiedCheckingComesTooCl
     EXPECT_EQ(run.at("path").front(), run.at("start"));
     EXPECT_EQ(run.at("path").back(), run.at("goal"));
     EXPECT_EQ(run.at("motions").get<std::size_t>() + 1, run.at("path").size());
-    // A sampled motion that breaks the margin is not proven either.
+    // A sampled motion that violates the margin is not proved either.
     EXPECT_LE(run.at("too_close"), run.at("unproven"));
   }
   EXPECT_NE(runs[4].at("path"), runs[5].at("path")) << "another seed, another path";

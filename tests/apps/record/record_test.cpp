@@ -13,7 +13,7 @@
 namespace keepout::app {
 namespace {
 
-/// With names as a hostile file may have them.
+/// Returns a record with HTML in its names, as a hostile file may have it.
 Json some_record() {
   Json record = new_record({.kind = "bench",
                             .command = "keepout bench --mesh '<b>&\"'",
@@ -33,7 +33,7 @@ TEST(Record, IsReadBackAsItWasWritten) {
   print_json(text, record);
   EXPECT_EQ(Json::parse(text.str()), record);
   EXPECT_EQ(fault_of(record), "");
-  // A line for each row, so that two records can be compared with diff.
+  // Each row is one line, so that diff can compare two records.
   EXPECT_CONTAINS(text.str(), "\n{\"mesh\":\"b\"");
   EXPECT_CONTAINS(text.str(), "\n\"series\": [1.0,2.0,3.0]");
 }
@@ -154,7 +154,7 @@ TEST(DrawnMesh, ACoarserOneIsNearTheSurfaceAndWholeWhereOneLooksClosely) {
   EXPECT_GT(coarse.triangles.size(), most / 8);
   for (const Vec3& vertex : coarse.vertices) EXPECT_NEAR(vertex.norm(), 50.0, 1e-3);
 
-  // Triangles of the mesh with all corners in the box are all there, however many.
+  // All triangles of the mesh with all corners in the box are included, whatever their number.
   const Surface close = coarsened(mesh, most, top);
   const auto within = [&](std::span<const Vec3> vertices, std::span<const Corners> triangles) {
     return std::ranges::count_if(triangles, [&](const Corners& corners) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout report, and what the commands do where the front end of pages is there or missing; the
-// front end is played by two files.
+// keepout report, and commands with and without the front end of pages. Two small files stand for
+// the front end.
 
 #include <nlohmann/json.hpp>
 
@@ -30,7 +30,7 @@ class Report : public testing::Test {
   Outcome run(const std::string& arguments, const std::string& environment = "KEEPOUT_WEB=web ") {
     return folder_.run(arguments, "env " + environment);
   }
-  /// The record in a page.
+  /// Returns the record in a page.
   Json record_in(const std::string& page) const {
     const std::string text = folder_.contents(page);
     const std::string opening = "<script type=\"application/octet-stream\" id=\"record\">";
@@ -146,7 +146,7 @@ TEST_F(Report, EveryCommandWritesOne) {
     EXPECT_EQ(record_in("c.html"), record) << command;
     EXPECT_TRUE(folder_.contents("c.html").starts_with("<p>report</p>"));
     EXPECT_EQ(record["command"], "keepout " + command + " --json c.json --out c.html");
-    // In lines of the terminal or as it is: the same words.
+    // The terminal breaks lines, but prints the same words.
     std::string printed = outcome.output, headline = record["headline"];
     for (std::string* text : {&printed, &headline}) {
       std::erase_if(*text, [](char c) { return c == ' ' || c == '\n'; });

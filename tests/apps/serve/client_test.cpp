@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a client of 'keepout serve' is answered, line by line.
+// The answers of `keepout serve` to a client, line by line.
 #include <bit>
 #include <charconv>
 #include <deque>
@@ -24,12 +24,12 @@ namespace {
 
 using Answer = nlohmann::json;
 
-/// A client, and what it has sent.
+/// A client, and the bytes that it has sent.
 class Talk {
  public:
   explicit Talk(Service& service) : client_{service} {}
 
-  /// All that is answered as soon as more bytes have come.
+  /// Sends more bytes; returns the answers that are ready then.
   std::string sent(std::string_view bytes) {
     received_ += bytes;
     std::string all;
@@ -64,7 +64,7 @@ std::string step_line(const Vec3& tip, const Vec3& desired) {
          numbers({desired.data(), 3}) + '}';
 }
 
-/// As a client in another language would read it.
+/// Returns the motion of an answer, read as a client in another language would read it.
 Vec3 motion_in(std::string_view answer) {
   Vec3 motion;
   const char* at = answer.data() + answer.find("\"motion\":[") + 9;
@@ -88,7 +88,7 @@ class RequestLine : public testing::Test {
     return settings;
   }
 
-  /// The id, the kind of error and its message.
+  /// Returns the id, the kind of error and its message.
   std::string outcome(std::string_view line) {
     const Answer answer = talk_.told(line);
     const Answer error = answer.value("error", Answer{{"kind", "none"}, {"message", ""}});
@@ -324,7 +324,7 @@ TEST_F(RequestLine, LinesDoNotDependOnThePiecesTheyComeIn) {
   std::vector<std::pair<std::string, Lines>> table{
       {"one\ntwo\r\n\n\r\n \t\n12345678\n12345678\r\n123456789\nafter\n",
        {text, text, number, number, large, text}},
-      // What is left at the end is a line.
+      // Bytes after the last line end are a line.
       {"a\nb", {text, text}},
       {"a\nb\r", {text, text}},
       {"a\n", {text}},
@@ -352,7 +352,7 @@ TEST_F(RequestLine, LinesDoNotDependOnThePiecesTheyComeIn) {
         answers += talk.sent(bytes.substr(at, count));
         at += count;
       }
-      std::istringstream answered(answers + talk.ask(""));  // the last line needs no end
+      std::istringstream answered(answers + talk.ask(""));  // the last line needs no line end
       Lines kinds;
       for (std::string line; std::getline(answered, line);) {
         kinds.push_back(Answer::parse(line)["error"]["kind"]);
@@ -362,7 +362,7 @@ TEST_F(RequestLine, LinesDoNotDependOnThePiecesTheyComeIn) {
   }
 }
 
-/// Clients of one service.
+/// Several clients of one service.
 class ClientTest : public testing::Test {
  protected:
   static ServiceSettings settings() {
@@ -381,7 +381,7 @@ class ClientTest : public testing::Test {
 TEST_F(ClientTest, ClosedLoopsOfSeveralClientsAreThoseOfTheirOwnConstraintsBitForBit) {
   Random random(3);
   std::vector<Vec3> tips = surface_points(*mesh_, 4, 0.6, random);
-  tips.push_back(surface_points(*mesh_, 1, -0.3, random).front());  // inside: it is led out
+  tips.push_back(surface_points(*mesh_, 1, -0.3, random).front());  // inside: it escapes
   std::deque<Talk> talks;
   std::vector<MotionConstraint> own;
   for (std::size_t i = 0; i < tips.size(); ++i) {
@@ -418,7 +418,7 @@ TEST(ClientWithTools, AToolThatAClientOpensStepsAsPutTogetherByHandBitForBit) {
   const auto phases = narrow_phase_backends();
   std::size_t number = 0;
   for (const auto& [text, tool] : test::tools_by_name()) {
-    const std::string phase(phases[number++ % phases.size()].name);  // each of them once
+    const std::string phase(phases[number++ % phases.size()].name);  // each of them in turn
     Talk talk(service);
     EXPECT_EQ(talk.ask(R"({"do":"tool","tool":")" + text + R"(","narrow_phase":")" + phase + "\"}"),
               "{\"id\":null,\"ok\":true}\n");
@@ -472,7 +472,7 @@ TEST_F(ClientTest, GuidesThatAClientSetsHoldHisTipAsByHandAndNobodyElses) {
 }
 
 #if KEEPOUT_HAS_URDF
-/// Opens what fixtures/robots.h has as psm(), its port in the middle of the mesh, 200 above.
+/// Opens the psm() of fixtures/robots.h, with its port 200 above the middle of the mesh.
 constexpr std::string_view open_line =
     R"({"do":"instrument","urdf":")" KEEPOUT_ROBOTS
     R"(/psm.urdf","frame":[[1,0,0,0],[0,1,0,0],[0,0,1,200],[0,0,0,1]],"margin":0.5,"capsules":)"
@@ -555,7 +555,7 @@ TEST_F(ClientTest, AnInstrumentKeepsGuidesAndAnatomyThatIsAddedAndMoves) {
   EXPECT_EQ(added["warnings"].size(), 1u);
   EXPECT_CONTAINS(std::string(added["warnings"][0]), "wall.off: the surface is open");
   EXPECT_EQ(talk_.refusal(R"({"do":"anatomy","file":"/none.stl"})"), "no_anatomy");
-  // The tip is at 200 - 60 - 3.7, and the wall comes up to the jaw from 2.001 mm below.
+  // The tip is at 200 - 60 - 3.7. The wall approaches the jaw from 2.001 mm below.
   ASSERT_EQ(talk_.told(place(1, "133.299", R"(,"linear":[0,0,200])"))["ok"], true);
   const Answer pushed = step("[0,0,0]");
   EXPECT_EQ(pushed["nearest_mesh"], 1) << pushed;
@@ -618,7 +618,7 @@ TEST_F(ClientTest, JointsOfATipAndAPolytopeAreAnsweredAsByItsOwnConstraint) {
     std::string line = step_line(tip, desired);
     line.insert(line.size() - 1, R"(,"jacobian":[[1,0,0],[0,1,0],[0,0,1]])");
     std::vector<double> increment(step.increment.begin(), step.increment.end());
-    increment.resize(3, 0.0);  // nothing moves unless the step is ok
+    increment.resize(3, 0.0);  // zero motion unless the step is ok
     EXPECT_EQ(talk_.told(line)["increment"], Answer(increment));
     carried_out += step.ok();
     const Polytope polytope = own.free_polytope(tip, 1.5);
@@ -664,7 +664,7 @@ TEST_F(ClientTest, InfoAndStatusesTellWhatThereIs) {
 }
 
 TEST_F(ClientTest, ATurnEndsSoThatOthersHaveTheirsAndAnswersTakeUpLittle) {
-  // A client that does not read is answered no further.
+  // A client that does not read gets no more answers.
   for (const std::string line : {"{\"do\":\"ping\"}\n", "{\"do\":\"statuses\"}\n", " \n"}) {
     std::string lines;
     while (lines.size() < 3900) lines += line;

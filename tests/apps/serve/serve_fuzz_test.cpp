@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines that are broken in every way at hand: each is answered once, by what it is, and moves
-// nothing unless it is a request.
+// Garbled lines: each gets one answer of the right kind, and moves nothing unless it is a request.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +39,7 @@ app::ServiceSettings settings() {
   return settings;
 }
 
-/// The line as JSON; discarded if it is none, or has a key twice.
+/// Returns the line as JSON; discarded if it is not JSON, or has a key twice.
 Json parsed(std::string_view line) {
   if (line.find('\0') != std::string_view::npos) return Json(Json::value_t::discarded);
   std::set<std::string> keys;
@@ -55,7 +54,7 @@ Json parsed(std::string_view line) {
   return is_twice ? Json(Json::value_t::discarded) : json;
 }
 
-/// True if a value is what a field's documentation says.
+/// Returns true if a value has the type that a field's documentation states.
 bool is_value(const Json& value, const app::Field& field) {
   if (field.option != nullptr) {
     const OptionKind kind = field.option->kind;
@@ -88,8 +87,7 @@ bool contains(const std::vector<std::string_view>& names, std::string_view name)
   return std::ranges::find(names, name) != names.end();
 }
 
-/// Returns the verb of a line of the keys and values that the service lists; null if the line is no
-/// such request.
+/// Returns the verb of a line that has the keys and values of a request; null if it is no request.
 const app::Verb* verb_of(const Json& line, std::span<const app::Field> fields) {
   if (!line.is_object() || !line.contains("do") || !line["do"].is_string()) return nullptr;
   if (line.contains("id") && !is_id(line["id"])) return nullptr;
@@ -107,7 +105,7 @@ const app::Verb* verb_of(const Json& line, std::span<const app::Field> fields) {
   return &*verb;
 }
 
-/// True if the values of a request fit together.
+/// Returns true if the values of a request fit together.
 bool is_consistent(const Json& request) {
   if (request.contains("of") && request["of"] != "tip" && request["of"] != "instrument") {
     return false;
@@ -124,7 +122,7 @@ bool is_consistent(const Json& request) {
          (request["rows"].empty() || request["rows"][0].size() == columns);
 }
 
-/// As the service reads a number.
+/// Returns a number as the service reads it.
 double number(const Json& value) {
   return value.is_number_integer() && !value.is_number_unsigned() && value == 0
              ? -0.0
@@ -141,7 +139,7 @@ std::vector<double> row_by_row(const Json& rows) {
   return numbers;
 }
 
-/// What a step is answered with.
+/// Returns the expected answer to a step.
 std::string step_text(const Json& request, MotionConstraint& constraint, SideWatch& tip) {
   Motion motion{.tip = vector(request["tip"]), .desired = vector(request["desired"])};
   const Json jacobian = request.value("jacobian", Json::array({Json::array()}));
@@ -160,7 +158,7 @@ std::string step_text(const Json& request, MotionConstraint& constraint, SideWat
   return text;
 }
 
-/// What a batch is answered with.
+/// Returns the expected answer to a batch.
 std::string steps_text(const Json& request, MotionConstraint& constraint, SideWatch& tip) {
   std::string text;
   for (const Json& motion : request["motions"]) {
@@ -171,14 +169,14 @@ std::string steps_text(const Json& request, MotionConstraint& constraint, SideWa
   return ",\"steps\":[" + text + ']';
 }
 
-/// True if a step is one of an instrument of six joints.
+/// Returns true if a step is one of an instrument with six joints.
 bool has_six_joints(const Json& request) {
   return std::ranges::all_of(std::array{"q", "increment", "weights"}, [&](const char* key) {
     return !request.contains(key) || request[key].size() == 6;
   });
 }
 
-/// What must hold of a step of an instrument, whatever it is.
+/// Returns true if the answer has the properties of any step of an instrument.
 bool is_joint_step(const Json& request, const Json& answer) {
   const bool ok = answer["ok"];
   const auto increment = answer["increment"].get<std::vector<double>>();
@@ -187,7 +185,7 @@ bool is_joint_step(const Json& request, const Json& answer) {
          (ok ? answer["fraction"] >= 0.0 && answer["fraction"] <= 1.0 : increment == zeros);
 }
 
-/// The lines of a text that are to be answered.
+/// Returns the lines of a text that the service must answer.
 std::vector<std::string_view> lines_of(std::string_view bytes) {
   std::vector<std::string_view> lines;
   while (!bytes.empty()) {
@@ -201,13 +199,12 @@ std::vector<std::string_view> lines_of(std::string_view bytes) {
   return lines;
 }
 
-/// A service, and one who knows what it must answer: by another JSON parser, and by a motion
-/// constraint of his own.
+/// A service and its judge. The judge has another JSON parser and a motion constraint of its own.
 class JudgedService {
  public:
-  /// Sends bytes as one client, in pieces of random sizes, and judges all that is answered: one
-  /// line for each that is not blank, in order, with its id; motions and planes for requests alone,
-  /// and those of the constraint. Returns what is wrong; empty if nothing is.
+  /// Sends bytes as one client, in pieces of random sizes, and judges all answers. Each line that
+  /// is not blank gets one answer, in order, with its id. Only requests get motions and planes, and
+  /// these are those of the judge's constraint. Returns what is wrong; empty if nothing is.
   std::string converse(std::string_view bytes, std::mt19937_64& random) {
     app::Client client{service_};
     std::string received;
@@ -247,8 +244,8 @@ class JudgedService {
   }
 
   std::span<const app::Field> fields() const noexcept { return service_.requests.fields(); }
-  std::size_t lines() const noexcept { return lines_; }        // that were answered
-  std::size_t refusals() const noexcept { return refusals_; }  // among them
+  std::size_t lines() const noexcept { return lines_; }        // answered lines
+  std::size_t refusals() const noexcept { return refusals_; }  // lines refused
   /// Returns how often a verb was carried out.
   std::size_t done(const std::string& verb) { return done_[verb]; }
 
@@ -276,8 +273,8 @@ class JudgedService {
     return is_right ? "" : "another kind of error";
   }
 
-  /// True if a request may be refused in this way: for a file, a text or a number that is none, or
-  /// because of what was opened before.
+  /// Returns true if a request may be refused in this way: because a file, text or number is
+  /// invalid, or because of what was opened before.
   bool may_refuse(const Json& request, const app::Verb& verb, std::string_view kind) const {
     if (verb.name == "joint_step" && has_instrument_) {
       return kind == "not_a_request" && !has_six_joints(request);
@@ -321,7 +318,7 @@ class JudgedService {
     return make_motion_constraint(cube(), own);
   }();
   SideWatch tip_;             // of the client
-  bool has_own_tip_ = false;  // a tool or guides: the reference says nothing of its steps
+  bool has_own_tip_ = false;  // a tool or guides: the reference has no such steps
   bool has_instrument_ = false;
   std::size_t lines_ = 0;
   std::size_t refusals_ = 0;
@@ -334,7 +331,7 @@ constexpr std::size_t enough = 10'000;  // lines
 constexpr std::size_t enough = 100'000;
 #endif
 
-/// A value of a key that a service may accept, where hardly any random one is.
+/// Returns a value that a service may accept, for keys whose random values are rarely valid.
 std::string_view useful_value(std::string_view key) {
   static const TemporaryFolder folder;
   static const std::string file =
@@ -367,7 +364,7 @@ class Garbler {
   Garbler(std::mt19937_64& random, std::span<const app::Field> fields)
       : random_(random), fields_(fields) {}
 
-  /// A request, or what is left of one.
+  /// Returns a request, half of the time with changes.
   std::string line() {
     std::string text = request();
     const std::size_t changes = below(2) == 0 ? 0 : 1 + below(4);
@@ -378,7 +375,7 @@ class Garbler {
  private:
   std::size_t below(std::size_t end) { return random_() % end; }
 
-  /// One of the words of a text.
+  /// Returns one of the words of a text.
   std::string any(std::string_view text) {
     std::istringstream stream{std::string(text)};
     const std::vector<std::string> words{std::istream_iterator<std::string>(stream), {}};
@@ -396,7 +393,7 @@ class Garbler {
     return text.data();
   }
 
-  /// As many values as a field may have, near a number of them; another count now and then.
+  /// Returns an array with about `wanted` values, as the field allows; rarely, with another number.
   template <class Value>
   std::string array(std::size_t wanted, const app::Field::Count& count, const Value& value) {
     const std::size_t items =
@@ -406,7 +403,7 @@ class Garbler {
     return text + "]";
   }
 
-  /// A value of a field's shape, or one that may be accepted.
+  /// Returns a value of a field's shape, or one that may be accepted.
   std::string value(const app::Field& field) {
     const std::string_view useful = useful_value(field.name);
     if (!useful.empty() && below(3) > 0) return std::string(useful);
@@ -423,20 +420,20 @@ class Garbler {
     return field.rank == 0 ? item() : field.rank == 1 ? row() : array(rows_, field.rows, row);
   }
 
-  /// A request of any verb that the service lists, or of none.
+  /// Returns a request with a verb that the service lists, or with an unknown one.
   std::string request() {
     const auto verbs = app::verbs();
     std::string text = "{\"id\":" + any(R"(1 "a" null -5 1.5 "\u0000\"" [1] 18446744073709551615)");
     if (below(40) == 0) return text + R"(,"do":"fly"})";
     const app::Verb* verb = &verbs.front();
-    // What opens something takes long, and ends the comparison with the reference.
+    // Requests that open something take long, and end the comparison with the reference.
     if (below(2) > 0) {
       do verb = &verbs[below(verbs.size())];
       while (!verb->refusal.empty() && below(6) > 0);
     }
     rows_ = below(5);
     columns_ = std::array<std::size_t, 5>{3, 6, 6, 6, 1 + below(7)}[below(5)];
-    const std::size_t optional = below(6);  // none, all, or any of them
+    const std::size_t optional = below(6);  // none, all or some of the optional fields
     text += ",\"do\":\"" + std::string(verb->name) + '"';
     for (const app::Field& field : fields_) {
       const bool is_drawn = optional == 1 || (optional > 1 && below(3) == 0);
@@ -488,9 +485,9 @@ class Garbler {
 
   std::mt19937_64& random_;
   std::span<const app::Field> fields_;
-  double size_ = 1.0;        // of the numbers to come
-  std::size_t rows_ = 0;     // of the arrays to come, where there may be any number
-  std::size_t columns_ = 3;  // the same
+  double size_ = 1.0;        // of the next numbers
+  std::size_t rows_ = 0;     // of the next arrays, if any number is allowed
+  std::size_t columns_ = 3;  // of the next arrays, if any number is allowed
 };
 
 TEST(ServeFuzz, EveryGarbledLineIsAnsweredOnceAndMovesNothing) {
@@ -507,7 +504,7 @@ TEST(ServeFuzz, EveryGarbledLineIsAnsweredOnceAndMovesNothing) {
     const std::string fault = service.converse(bytes, random);
     ASSERT_TRUE(fault.empty()) << fault;
   }
-  // It is worth something only if both kinds of line are there.
+  // The test is meaningful only if it has many lines of both kinds.
   EXPECT_GT(service.refusals(), service.lines() / 4);
   EXPECT_LT(service.refusals(), 3 * service.lines() / 4);
 #if KEEPOUT_HAS_URDF

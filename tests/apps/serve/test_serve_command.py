@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""'keepout serve' as other programs meet it: a process at the end of a pipe or a socket."""
+"""'keepout serve', as other programs use it: a process at the end of a pipe or a socket."""
 
 import csv
 import fnmatch
@@ -17,9 +17,9 @@ import pytest
 
 keepout = os.environ["KEEPOUT_COMMAND"]
 root = Path(__file__).parents[3]
-# The sanitizers keep what was freed for a while.
+# The sanitizers keep freed memory for a while.
 memory_is_plain = not os.environ.get("KEEPOUT_SANITIZE")
-patience = 120  # until a server on a busy machine has done something [s]
+patience = 120  # for an action of the server on a busy machine [s]
 
 ping = '{"id":1,"do":"ping"}\n'
 pong = '{"id":1,"ok":true}\n'
@@ -39,7 +39,7 @@ class Talk:
         self.sink.flush()
 
     def line(self):
-        """The next line that arrives; "" at the end."""
+        """Returns the next line that arrives; "" at the end."""
         return self.source.readline().decode()
 
     def ask(self, text):
@@ -48,7 +48,7 @@ class Talk:
 
 
 class Servers:
-    """Starts servers in a folder; what they say to people goes into the file "log"."""
+    """Starts servers in a folder; their messages to people go into the file "log"."""
 
     def __init__(self, folder):
         self.folder, self.process, self.sockets = folder, None, []
@@ -60,7 +60,7 @@ class Servers:
         return Talk(self.process.stdout, self.process.stdin)
 
     def connected(self):
-        """A socket of the server that listens at "s", as soon as there is one."""
+        """Returns a socket connected to the server at "s", as soon as the server listens."""
         while True:
             self.sockets.append(socket.socket(socket.AF_UNIX))
             try:
@@ -74,19 +74,19 @@ class Servers:
         return Talk(files, files)
 
     def end(self, number=None):
-        """Its exit status, or minus the signal that has ended it."""
+        """Sends a signal, if one is given. Returns the exit status, or minus the signal that ended the server."""
         if number:
             self.process.send_signal(number)
         return self.process.wait()
 
     def run(self, arguments):
-        """The status and the words of a command line."""
+        """Returns the exit status and the output of a command line."""
         ended = subprocess.run(f"'{keepout}' {arguments}", shell=True, cwd=self.folder, text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         return ended.returncode, ended.stdout
 
     def resident(self):
-        """[KiB]"""
+        """Returns the memory that the server occupies. [KiB]"""
         status = Path(f"/proc/{self.process.pid}/status").read_text()
         return int(status.split("VmRSS:")[1].split()[0])
 
@@ -117,7 +117,7 @@ def test_a_pipe_is_served_until_it_ends(servers):
     assert "not_json" in talk.ask("nonsense\n")
     assert talk.ask("\r\n\n  \n" + ping.replace("\n", "\r\n") + ping[:-1]) == pong
     talk.sink.close()
-    assert talk.line() == pong  # the last line, which has no end
+    assert talk.line() == pong  # the last line, which has no line end
     assert talk.line() == ""
     assert servers.end() == 0
     assert "keepout: serving cube.off (12 triangles) on stdin and stdout" in (servers.folder / "log").read_text()
@@ -143,7 +143,7 @@ def test_a_reader_who_has_gone_ends_it(servers):
     talk = servers.start()
     assert talk.ask(ping) == pong
     talk.source.close()
-    assert servers.end() == 0  # and nothing had to be sent
+    assert servers.end() == 0  # although it had nothing to send
 
 
 def test_a_client_who_never_reads_holds_up_himself_alone(servers):
@@ -175,11 +175,11 @@ def test_clients_come_and_go_as_they_like(servers):
     fourth = servers.connect()
     assert "too_many_clients" in fourth.line()
     assert fourth.line() == ""
-    talks[1].send('{"id":5')  # and leaves
+    talks[1].send('{"id":5')  # and disconnects
     for client in servers.sockets[-3:-1]:
         client.shutdown(socket.SHUT_RDWR)
     for _ in range(200):
-        # Who asks and leaves at once may still be there when the next one comes.
+        # A client that sends a request and disconnects at once may still count when the next one connects.
         with servers.connected() as hasty:
             try:
                 hasty.sendall(2 * ping.encode())
@@ -212,7 +212,7 @@ def test_a_socket_that_is_left_behind_is_replaced_and_a_live_one_is_not(servers)
     assert (servers.folder / "s").exists()
     servers.start("--socket", "s")
     assert servers.connect().ask(ping) == pong
-    # One that somebody else has put in its place stays.
+    # A file that has replaced the socket stays.
     (servers.folder / "s").unlink()
     (servers.folder / "s").write_text("mine")
     assert servers.end(signal.SIGTERM) == 0
@@ -293,7 +293,7 @@ def test_its_memory_does_not_grow_with_what_it_is_asked(servers):
     ask(10_000)
     early = servers.resident()
     ask(100_000)
-    assert servers.resident() - early < 64  # less than a byte for each
+    assert servers.resident() - early < 64  # less than a byte for each request
 
 
 @pytest.mark.parametrize("client", ["python3 python/serve_client.py", "./serve_client.sh"])
@@ -315,6 +315,6 @@ def test_the_dialogue_on_the_page_is_what_the_command_answers(servers):
     talk = servers.start(mesh="cube")
     assert len(lines) >= 8
     for request, printed in zip(lines[0::2], lines[1::2], strict=True):
-        # "..." on the page stands for what it leaves out; brackets are meant as they are.
+        # "..." on the page stands for text that it omits; brackets are literal.
         pattern = printed.strip().replace("[", "[[]").replace("...", "*")
         assert fnmatch.fnmatchcase(talk.ask(request + "\n").strip(), pattern), printed

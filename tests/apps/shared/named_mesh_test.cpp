@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes as a user names them: files, and fixtures that are prepared or generated.
+// Meshes as a user names them: files, and sample meshes that are prepared or generated.
 
 #include <utility>
 
@@ -23,7 +23,7 @@ class NamedMesh : public testing::Test {
     return folder.run(arguments, "KEEPOUT_CACHE=cache KEEPOUT_PREPARE= " + more);
   }
 
-  /// Writes the cube under the name of a fixture, or into any other file.
+  /// Writes the cube under the name of a sample mesh, or into any other file.
   void write_cube(const std::string& name, double factor = 1.0) const {
     Surface cube = make_cube(25.0);
     for (Vec3& vertex : cube.vertices) vertex *= factor;
@@ -33,7 +33,7 @@ class NamedMesh : public testing::Test {
   test::CommandFolder folder;
 };
 
-/// Every command that takes a mesh, on MESH, with as little to do as there can be.
+/// Every command that takes a mesh, on MESH, with as little work as possible.
 const std::vector<std::string> commands{
     "replay MESH --poses poses.txt --out s.csv",
     "simulate MESH --out r.html --strokes 1 --cycles 10 --activation certified",
@@ -132,7 +132,7 @@ TEST_F(NamedMesh, EveryCommandTellsOfMetresHolesAndWindingOnceOnStderr) {
     const auto told = [&](const std::string& mesh) {
       return run(with_mesh(command, mesh) + " >/dev/null 2>told.txt; cat told.txt").output;
     };
-    // Whether or not the command can do something with it.
+    // The warning is printed even if the command rejects the mesh.
     const std::string metres = told("meters.stl");
     EXPECT_EQ(occurrences(metres, "keepout: meters.stl: the mesh is 0.1 mm across"), 1u)
         << command << '\n'
@@ -144,7 +144,7 @@ TEST_F(NamedMesh, EveryCommandTellsOfMetresHolesAndWindingOnceOnStderr) {
         << command << '\n'
         << open;
   }
-  // Whose findings they are.
+  // inspect prints findings instead of warnings.
   const std::string findings = run("inspect bad.stl").output;
   EXPECT_CONTAINS(findings, "3 inconsistently wound edges");
   EXPECT_LACKS(findings, "keepout:");

@@ -70,7 +70,7 @@ TEST_F(OutputFileTest, APathWithoutAFileNameIsRefused) {
 
 TEST_F(OutputFileTest, ALinkIsFollowedAndStays) {
   fs::create_directory(file("results"));
-  fs::create_symlink("results/a.csv", file("one"));  // which does not exist yet
+  fs::create_symlink("results/a.csv", file("one"));  // a file that does not exist yet
   fs::create_symlink("one", file("two"));
   for (const char* text : {"first", "second"}) {
     OutputFile output(file("two"));
@@ -123,7 +123,7 @@ TEST_F(OutputFileTest, TwoOutputsAreRefusedWhenTheyWouldBeTheSameFile) {
   EXPECT_EQ(error_of(make_two), "no error");
 }
 
-/// The exit status, as waitpid tells it, of a child process.
+/// Returns the status of a child process, as waitpid reports it.
 int status_of(auto&& act) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -143,7 +143,7 @@ TEST_F(OutputFileTest, ASignalEndsTheProcessAndLeavesNoPartialFile) {
       OutputFile one(file("a.csv"));
       OutputFile other(file("b.csv"));
       one.stream() << "half" << std::flush;
-      if (entries() != 3) ::_exit(3);  // the partial files are there
+      if (entries() != 3) ::_exit(3);  // the partial files exist
       ::raise(signal);
     });
     EXPECT_TRUE(WIFSIGNALED(status)) << status;

@@ -85,7 +85,7 @@ TEST_F(PoseFile, WhatAFileSaysIsQuotedShortAndWithoutControlCharacters) {
 
 TEST_F(PoseFile, ALineThatDoesNotEndIsReadNoFurtherThanLinesGo) {
   const std::filesystem::path file = write("1 2 3 4 5 6\n#");
-  std::filesystem::resize_file(file, std::uintmax_t{1} << 28);  // a hole, which takes no room
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 28);  // a hole: no disk space
   EXPECT_CONTAINS(error_of([&] { read_poses(file); }), "poses.txt:2: is longer");
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sides of a surface and the passages through it. That of a closed one is the oracle's:
-// oracle/inside_test_test.cpp.
+// Sides of a surface, and passages through it. Closed surfaces: tests/oracle/inside_test_test.cpp.
 #include "simulate/audit.h"
 
 #include <Eigen/Geometry>
@@ -48,7 +47,7 @@ TEST(Audit, FindsTheNearestTriangleThatAnIndexFinds) {
     NearestTriangle expected(*mesh, index);
     Audit audit(mesh);
     std::vector<Vec3> points = random_points(*mesh, 100, random);
-    // Where several are equally near.
+    // Several triangles are equally near to a vertex.
     for (VertexId v = 0; v < 100; ++v) points.push_back(mesh->vertex(v));
     for (const Vec3& point : points) {
       const Hit found = audit.nearest(point);
@@ -59,7 +58,7 @@ TEST(Audit, FindsTheNearestTriangleThatAnIndexFinds) {
   }
 }
 
-/// How often a tip that goes straight from one point to the next passes through.
+/// Returns how often a tip that moves straight from each point to the next passes through the mesh.
 std::size_t passages(const std::shared_ptr<const Mesh>& mesh, const std::vector<Vec3>& way) {
   Audit audit(mesh);
   PathAudit path(audit, way.front());
@@ -68,7 +67,7 @@ std::size_t passages(const std::shared_ptr<const Mesh>& mesh, const std::vector<
   return count;
 }
 
-/// The same, straight down at one place.
+/// Returns the same for a tip that moves along one vertical line.
 std::size_t passages(const std::shared_ptr<const Mesh>& mesh, const std::vector<double>& heights) {
   std::vector<Vec3> way;
   for (const double z : heights) way.emplace_back(1.3, 2.1, z);
@@ -99,7 +98,7 @@ TEST(PathAudit, SeesAPassageThroughAThinPlateWithinOneMove) {
 }
 
 TEST(PathAudit, SeesAPassageThroughTwoOpenSheetsWithinOneMove) {
-  // Wound away from each other, so that in front of the one and of the other is outside.
+  // The sheets face away from each other, so the space in front of each one is outside.
   const auto sheets =
       mesh_of({{Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(9, 9, 0), Vec3(0, 9, 0), Vec3(0, 0, -0.2),
                 Vec3(9, 0, -0.2), Vec3(9, 9, -0.2), Vec3(0, 9, -0.2)},
@@ -128,7 +127,7 @@ TEST(PathAudit, ARimMayBeWalkedAround) {
 TEST(PathAudit, AgreesWithTheHeightOfATerrainAlongARandomWalk) {
   const auto terrain = mesh_of(make_shape("saddle_terrain"));
   Audit audit(terrain);
-  // The side by the height of the triangle above or below: shares nothing with the audit.
+  // Finds the side by the height of the triangle above or below, and shares no code with the audit.
   const auto is_below = [&](const Vec3& point) {
     for (TriangleId t = 0; t < terrain->triangle_count(); ++t) {
       const Triangle c = terrain->triangle(t);
@@ -150,7 +149,7 @@ TEST(PathAudit, AgreesWithTheHeightOfATerrainAlongARandomWalk) {
   std::size_t changes = 0;
   for (int i = 0; i < test::trials(1000); ++i) {
     const Vec3 to = (0.98 * tip + 1.5 * random.direction()).eval();
-    // Over a crest, a move may go in and come out again.
+    // Over a crest, a move may enter and leave the terrain.
     bool changes_side = false;
     for (int share = 1; share <= 100; ++share) {
       changes_side |= is_below(tip + 0.01 * share * (to - tip)) != below;

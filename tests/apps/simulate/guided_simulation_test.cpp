@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout simulate --guide and --tool: a judge of its own follows the tool, and the record says
-// what it found.
+// keepout simulate --guide and --tool: an independent judge follows the tool, and the record has
+// its findings.
 
 #include "apps/command_process.h"
 #include "keepout/factory/convex_tool_text.h"
@@ -154,7 +154,7 @@ TEST(SimulateGuides, OfAnInstrumentAreKeptInEachModeThatHasThem) {
   EXPECT_GT(left, 0U);
 }
 
-/// Removes the members that differ from one run to the next: times, and what tells of the machine.
+/// Removes the members that differ between runs: times, and properties of the machine.
 Json without_times(Json record) {
   for (const char* name : {"date", "machine", "account"}) record.erase(name);
   for (Json& run : record["runs"]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// keepout simulate --robot: the same strokes in each mode, judged body by body.
+// keepout simulate --robot: each mode makes the same strokes, and each body is judged.
 
 #include <algorithm>
 #include <initializer_list>
@@ -11,7 +11,7 @@
 namespace keepout::app {
 namespace {
 
-/// Makes a record; at such a speed straight lines are far from what the joints do.
+/// Runs the command; returns its record.
 Json record_of_robot(const test::CommandFolder& folder, const std::string& arguments) {
   const test::ProcessOutcome outcome =
       succeeded(folder.run("simulate gear --robot psm --json r.json --out r.html " + arguments));

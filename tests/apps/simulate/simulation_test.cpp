@@ -25,7 +25,7 @@ Cycle cycle(double clearance, float step_us = 0.0F, Outcome outcome = Outcome::m
 
 using Cycles = std::vector<Cycle>;
 
-/// Straight down, from 0.4 above a plane to a given height.
+/// Returns the cycles of a motion straight down, from 0.4 above a plane to `lowest` below it.
 Cycles plunge(double lowest) {
   Cycles cycles;
   for (int i = 0; i <= 40; ++i) {
@@ -35,7 +35,8 @@ Cycles plunge(double lowest) {
   return cycles;
 }
 
-/// Without a fixture, where the operator has the tip, and under one rule after the other.
+/// Returns a stroke whose goals are the places of the first run, the one without a guard. Each
+/// other run has its own rule.
 FollowedStroke stroke_of(std::vector<Cycles> runs) {
   FollowedStroke followed{.stroke = {}, .runs = std::move(runs)};
   for (const Cycle& one : followed.runs.front()) {
@@ -44,7 +45,7 @@ FollowedStroke stroke_of(std::vector<Cycles> runs) {
   return followed;
 }
 
-/// The record of such strokes over a mesh.
+/// Returns the record of such strokes over a mesh.
 Json record_of(const std::vector<FollowedStroke>& strokes, const char* mesh = "cube") {
   SimulateOptions options;
   options.meshes = {mesh};
@@ -61,14 +62,14 @@ Json record_of(const std::vector<FollowedStroke>& strokes, const char* mesh = "c
   return tool->result(runs).record;
 }
 
-/// What the record says of one run alone.
+/// Returns the part of the record for one run.
 Json run_of(const std::vector<Cycles>& strokes, const char* mesh = "cube") {
   std::vector<FollowedStroke> followed;
   for (const Cycles& cycles : strokes) followed.push_back(stroke_of({cycles}));
   return record_of(followed, mesh)["runs"][0];
 }
 
-/// The tip goes in without a fixture, stays out under the first rule, and gets in under the other.
+/// The tip goes in without a guard, stays out under the first rule, and gets in under the second.
 const std::vector<Cycles> one_rule_fails{plunge(0.15), plunge(-0.05), plunge(0.02)};
 
 TEST(Summary, FiguresAreThoseCountedByHand) {
@@ -134,7 +135,7 @@ TEST(Text, IsAsciiForATerminalUnlessTheLocaleIsUtf8) {
   EXPECT_EQ(text, "1.50 µs, 1.23 µm");
   EXPECT_EQ(in_ascii(text), "1.50 us, 1.23 um");
   const char* const set = std::getenv("LC_ALL");
-  const std::string before = set == nullptr ? "" : set;  // an empty one is none
+  const std::string before = set == nullptr ? "" : set;  // empty if it is not set
   for (const auto& [locale, shown] : {std::pair("C", in_ascii(text)), std::pair("de_DE.utf8", text),
                                       std::pair("C.UTF-8", text)}) {
     ::setenv("LC_ALL", locale, 1);
@@ -264,14 +265,14 @@ Surface joined(Surface one, const Surface& other) {
   return one;
 }
 
-/// A shell: half of its area is the wall of a cavity that has room enough.
+/// Returns a shell. Much of its area is the wall of a cavity that is large enough for strokes.
 Surface shell() {
   Surface cavity = make_concave_sphere(5.0);
   for (Vec3& vertex : cavity.vertices) vertex *= 0.8;
   return joined(make_sphere(5.0), cavity);
 }
 
-/// Twelve strokes of 200 cycles.
+/// Returns twelve strokes of 200 cycles.
 std::vector<std::vector<Pose>> strokes_over(Audit& audit, std::uint64_t seed = 1) {
   const auto next = tip_strokes(audit, {.seed = seed, .cycles = 200});
   std::vector<std::vector<Pose>> all;
@@ -318,7 +319,7 @@ TEST(TipStrokes, OfTheSameSeedAreAlike) {
 }
 
 TEST(TipStrokes, WithoutRoomAnywhereTheErrorNamesTheRemedy) {
-  Audit audit = audit_of(inside_out(make_thin_plates(10.0)));  // free are the plates: 1 mm
+  Audit audit = audit_of(inside_out(make_thin_plates(10.0)));  // free: inside a plate, 1 mm
   const std::string message = error_of([&] { strokes_over(audit); });
   for (const char* word : {"no free place", "8 mm of free space", "flip", "keepout inspect"}) {
     EXPECT_CONTAINS(message, word);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No campaign breaks a promise, with tips or with instruments.
+// No campaign finds a breach, with tips or with instruments.
 
 #include "verify/campaign.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 using oracle::Breach;
 
-/// On the default index, which searches along the motion, and on one that is queried for balls.
+/// On the default index, which is traversed along the motion, and on one that is queried for balls.
 class CampaignOnIndex : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Indices, CampaignOnIndex, testing::Values("wide_bvh", "pd_tree"), by_name);
 
@@ -37,12 +37,12 @@ TEST_P(CampaignOnIndex, NoStepBreaksTheTheoremOnAnyGeneratedShape) {
   EXPECT_EQ(reported, 200'000u);
   EXPECT_EQ(sum["trajectories"], 400u);
   EXPECT_EQ(findings.rows.size(), shapes().size());
-  // It is no traversal in the park.
+  // The campaign must be hard enough.
   EXPECT_GT(sum["statuses"]["limited"], 60'000u);
   EXPECT_GT(sum["statuses"]["free"], 20'000u);
   EXPECT_GT(sum["statuses"]["recovering"], 500u);
   EXPECT_GT(sum["led_out"], 50u);
-  EXPECT_LT(sum["least_beyond_margin_in_tau"], -0.5);  // some go to where rounding counts
+  EXPECT_LT(sum["least_beyond_margin_in_tau"], -0.5);  // some steps end where rounding matters
 }
 
 TEST(Campaign, TheSameSeedGivesTheSameAndAnotherSeedDoesNot) {
@@ -142,7 +142,7 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
       sum.*count += row.*count;
     }
   }
-  // It is no traversal in the park.
+  // The campaigns must be hard enough.
   EXPECT_GT(sum.cycles, 4000 * arenas.size());
   EXPECT_GT(sum.blocked, 100 * arenas.size());
   EXPECT_GT(sum.rows, 1000 * arenas.size());
@@ -150,8 +150,8 @@ TEST_P(RobotCampaignWith, NoCycleComesTooCloseOrBreaksAJointsLimit) {
   EXPECT_GT(sum.samples, 0u);
 }
 
-// A step that stands still although a motion is allowed costs no safety, but it is of no use. The
-// judge searches for such a motion in every blocked cycle.
+// A step that stands still although a motion is allowed is safe, but useless. The judge searches
+// for such a motion in every blocked cycle.
 TEST(Campaign, BlockedCyclesOnHostileMeshesAreBlocked) {
   std::uint64_t samples = 0, movable = 0;
   for (const std::uint64_t seed : {1u, 70000u}) {

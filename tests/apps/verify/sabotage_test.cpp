@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The campaigns can fail: each step here is broken in a way of its own, and its breach is found.
+// Campaigns can fail: each step here is broken in one respect, and the campaign finds its breach.
 
 #include <algorithm>
 #include <optional>
@@ -15,7 +15,7 @@ namespace {
 
 using oracle::Breach;
 
-/// A step of a tip that is broken in a single respect. The judge goes on with what was drawn.
+/// A step of a tip that is broken in one respect. The judge assumes the options that were drawn.
 struct TipDefect {
   void (*of_options)(const Scene&, StepOptions&, Inside&) = [](auto&, auto&, auto&) {};
   void (*of_step)(const Motion&, Step&) = [](auto&, auto&) {};
@@ -62,14 +62,14 @@ class PaperGuard final : public Guard {
   std::optional<MotionConstraint> constraint_;
 };
 
-/// Goes wherever it is asked to.
+/// Makes every desired motion.
 constexpr TipDefect no_guard{.of_step = [](const Motion& motion, Step& step) {
   step = {};
   step.status = Status::free;
   step.motion = motion.desired;
 }};
 
-/// Keeps less than it should, by so little that only exact distances show it.
+/// Keeps too little clearance, by so little that only exact distances show it.
 constexpr TipDefect careless{.of_options = [](const Scene& scene, StepOptions& options, Inside&) {
   double& part = options.margin > 0.0 ? options.margin : options.tool_radius;
   part = std::max(0.0, part - 3.5 * scene.judged().tolerance(options, Vec3::Zero()));
@@ -88,16 +88,16 @@ constexpr TipDefect restless{.of_step = [](const Motion& motion, Step& step) {
   if (!step.ok()) step.motion = 1e-12 * motion.desired;
 }};
 
-/// Does not classify on which side a tip is.
+/// Does not classify the side of a tip.
 constexpr TipDefect lenient{
     .of_options = [](const Scene&, StepOptions&, Inside& inside) { inside = Inside::taken_as_is; }};
 
-/// Leads tips that are inside the wrong way.
+/// Moves tips that are inside in the wrong direction.
 constexpr TipDefect perverse{.of_step = [](const Motion&, Step& step) {
   if (step.status == Status::recovering) step.motion = -step.motion;
 }};
 
-/// A step of an instrument that is broken in a single respect.
+/// A step of an instrument that is broken in one respect.
 struct Defect {
   void (*of_setup)(RobotSetup&) = [](RobotSetup&) {};
   void (*of_step)(InstrumentStep&, std::vector<double>&) = [](auto&, auto&) {};
@@ -144,7 +144,7 @@ void widen_guides(RobotSetup& setup) {
   }
 }
 
-/// Removes the first of three points or more of the last body.
+/// Removes the first point of the last body, which has at least three.
 void cut_off_a_corner(RobotSetup& setup) {
   const auto cut = [](auto& points) { points.erase(points.begin()); };
   cut(setup.robot.bodies.back().points);
@@ -153,12 +153,12 @@ void cut_off_a_corner(RobotSetup& setup) {
 
 void forget_a_mesh(RobotSetup& setup) { setup.meshes.pop_back(); }
 
-/// Stands still where it should give way.
+/// Stands still instead of retreating.
 void freeze(InstrumentStep& step, std::vector<double>&) {
   if (step.status != Status::free) step = {.status = Status::unsolved, .clearance_fraction = 0.0};
 }
 
-/// Makes twice the motion that is free.
+/// Makes 2.2 times a free motion.
 void overshoot(InstrumentStep& step, std::vector<double>& longer) {
   if (step.status != Status::free) return;
   longer.assign(step.increment.begin(), step.increment.end());

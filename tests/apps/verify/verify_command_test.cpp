@@ -63,7 +63,7 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
 
 TEST_F(Verify, WhatIsInterruptedKeepsWhatIsFinishedAndIsNotTakenForWhole) {
   for (const char* signal : {"INT", "TERM"}) {
-    // In the foreground `timeout` sends one signal; else two, and the second ends the process.
+    // Without --foreground, `timeout` sends two signals, and the second one ends the process.
     const Outcome outcome =
         run("cube.stl --steps 1e9 --shard 1/2 --json part.json",
             "timeout --foreground --preserve-status -k 30 -s " + std::string(signal) + " 2 ");

@@ -15,7 +15,7 @@ namespace {
 
 using Verdict = Judgement::Verdict;
 
-/// A rule, and what a step does before it asks it.
+/// A rule, prepared and opened as in a step.
 class Scene {
  public:
   Scene(Surface surface, const StepOptions& options, std::size_t room = 100'000)
@@ -50,7 +50,7 @@ class Scene {
 
 constexpr StepOptions options{.radius = 1.0, .margin = 0.2, .recovery = 0.05};
 
-/// z = 0; free above.
+/// Returns a square at z = 0, free above.
 Surface table() {
   return {{Vec3(-5, -5, 0), Vec3(5, -5, 0), Vec3(5, 5, 0), Vec3(-5, 5, 0)}, {{0, 1, 2}, {0, 2, 3}}};
 }
@@ -87,7 +87,7 @@ TEST(CertifiedRule, TooCloseItLeadsStraightAwayByTheRecovery) {
   const Opening opening = scene.open(above(0.1), Vec3::Zero());
   EXPECT_EQ(opening.status, Status::recovering);
   EXPECT_LT((opening.target - Vec3(0, 0, 0.05)).norm(), 1e-15);
-  // No farther than the margin.
+  // The retreat ends at the margin.
   EXPECT_LT((scene.open(above(0.18), Vec3::Zero()).target - Vec3(0, 0, 0.02)).norm(), 1e-15);
 }
 
@@ -134,7 +134,7 @@ TEST(CertifiedRule, LooksWhereMotionsMayLead) {
   scene.open(tip, desired);
   Random random(2);
   for (int i = 0; i < 1'000; ++i) {
-    // A projection of the aim on a plane that leaves the tip allowed.
+    // A projection of the target onto a plane that allows zero motion.
     const Vec3 n = random.direction();
     const double offset = -random.uniform();
     const Vec3 motion = desired + std::max(offset - n.dot(desired), 0.0) * n;
@@ -174,7 +174,7 @@ TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
     ASSERT_EQ(prepared.support(plane.normal) + 0.2, plane.offset);
     ASSERT_GE(judgement.free_fraction, 0.0);
     ASSERT_LE(judgement.free_fraction, 1.0);
-    // Up to the contact the way is free.
+    // The motion is free up to the contact.
     ASSERT_EQ(scene.rule.judge(scene.input, judgement.free_fraction * trial, scene.planes).verdict,
               Verdict::accepted);
   }
@@ -232,7 +232,7 @@ TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
       const Judgement judgement = scene.rule.judge(scene.input, trial, scene.planes);
       if (judgement.verdict != Verdict::objected) continue;
       const HalfSpace old = scene.planes[0];
-      // Along the plane, which is what a solver would answer.
+      // A motion along the plane, as a solver would return.
       const Vec3 accepted = trial + (old.offset - old.normal.dot(trial)) * old.normal;
       scene.turned.clear();
       scene.input.accepted = accepted;

@@ -29,7 +29,7 @@ MotionConstraint guard(const std::shared_ptr<const Mesh>& mesh, const ConvexTool
                           std::make_unique<ConvexToolRule>(tool, std::move(narrow_phase)));
 }
 
-/// Returns the distance that a plane proves, in 64-bit arithmetic: at most the true one, for any
+/// Returns the distance that a plane proves, in long double: at most the true distance, for any
 /// normal. [length]
 double proven_by(const Vec3& normal, std::span<const Vec3> core, const Triangle& triangle) {
   using Real = long double;
@@ -43,8 +43,8 @@ double proven_by(const Vec3& normal, std::span<const Vec3> core, const Triangle&
   return static_cast<double>((low - high) / std::sqrt(along(normal)));
 }
 
-/// Judges each motion of a tool against all triangles that it can reach. Only the index and the
-/// proposed normals are the engine's.
+/// Judges each motion of a tool against all triangles that it can reach. Uses only the index and
+/// the proposed normals of the engine.
 class ToolJudge {
  public:
   ToolJudge(std::shared_ptr<const Mesh> mesh, const ConvexTool& tool)
@@ -103,12 +103,12 @@ TEST(ConvexToolRule, ASphereMovesAsAPointWithAsMuchMoreMargin) {
 }
 
 TEST(ConvexToolRule, AsksForNoPolytopeAroundTheTipAlone) {
-  // A shaft below the tip: free space around the tip says nothing of it.
+  // A shaft below the tip: free space around the tip does not prove the shaft clear.
   MotionConstraint shaft = guard(mesh_of("cube"), ConvexTool::capsule({0, 0, 0}, {0, 0, -10}, 0.5));
   const Polytope polytope = shaft.free_polytope(Vec3(0, 0, 61), 5.0);
   EXPECT_EQ(polytope.status, Status::unsupported);
   EXPECT_FALSE(polytope.ok());
-  // What is returned all the same allows standing still only.
+  // The returned planes allow zero motion only.
   EXPECT_EQ(polytope.planes.size(), planes_to_hold_still);
 }
 
@@ -148,7 +148,7 @@ TEST(ConvexToolRule, ASpheresPlanesAreThoseThroughTheClosestPoints) {
     if (judgement.verdict == Judgement::Verdict::accepted) continue;
     ASSERT_EQ(planes.size(), 1u);
     const HalfSpace& plane = planes[0];
-    // At the contact the plane goes through the point nearest to the center.
+    // At the contact, the center is on the plane, whose normal points away from the closest point.
     const Vec3 there = tip + judgement.free_fraction * trial;
     const ClosestPoint closest = closest_point(mesh->triangle(plane.source), there);
     EXPECT_NEAR(closest.distance, r + margin, 1e-8);
@@ -225,15 +225,15 @@ TEST(ConvexToolRule, WhatCannotBeKeptIsRefusedWhenItIsMade) {
   EXPECT_THROW(guard(mesh, tool, nullptr, {.radius = radius, .margin = 1e-12}), Error);
 }
 
-// Closed loops: tools pushed at shapes, each motion judged by an arithmetic of its own.
+// Closed loops push tools at shapes; independent arithmetic judges each motion.
 
 struct Pushed {
   int held = 0;     // steps that were not free
-  int refused = 0;  // that ended without a motion
+  int refused = 0;  // steps that ended without a motion
   double way = 0.0;
 };
 
-/// Pushes a tool at the shape from all sides; every motion keeps the margin.
+/// Pushes a tool at the shape from all sides. Checks that every motion maintains the margin.
 Pushed push(const std::shared_ptr<const Mesh>& mesh, MotionConstraint& constraint,
             const ConvexTool& tool, int cycles, std::uint64_t seed) {
   ToolJudge judge(mesh, tool);
@@ -295,7 +295,7 @@ TEST(ConvexToolLoop, NoNarrowPhaseCanTakeTheToolIn) {
   }
 }
 
-/// Says anything but the truth.
+/// A narrow phase that returns wrong distances, wrong normals, NaN and failures.
 class Liar final : public NarrowPhase {
  public:
   NarrowPhaseAnswer separation(const Vec3& position, const Triangle& triangle) noexcept override {

@@ -14,7 +14,7 @@
 namespace keepout {
 namespace {
 
-/// A tip before a mesh, and what is asked about it. All [length].
+/// A query for a free polytope. All [length].
 struct Question {
   Vec3 tip;
   double radius;
@@ -46,8 +46,8 @@ Answer polytope(const std::shared_ptr<const Mesh>& mesh, const Question& q,
   return {status, {planes.begin(), planes.end()}, std::move(hits)};
 }
 
-/// The set of a closest-point plane for each hit, which keeps the same distance: what a caller
-/// without a polytope would do.
+/// Returns a closest-point plane for each hit, for the same clearance, as a caller without a
+/// polytope would.
 std::vector<HalfSpace> naive_planes(const std::vector<Hit>& hits, double margin) {
   double kept = margin;
   for (const Hit& hit : hits) kept = std::min(kept, hit.closest.distance);
@@ -64,7 +64,7 @@ bool is_within(const std::vector<HalfSpace>& planes, const Vec3& d) {
                      [&](const HalfSpace& p) { return p.normal.dot(d) >= p.offset; });
 }
 
-/// The share of the ball that the planes leave.
+/// Returns the fraction of the ball that the planes leave free.
 double share_of_ball(const std::vector<HalfSpace>& planes, double radius, Random& random) {
   constexpr int samples = 1000;
   int within = 0;
@@ -83,8 +83,8 @@ double nearest_of(const Mesh& mesh, const std::vector<Hit>& hits, const Vec3& po
   return nearest;
 }
 
-/// Looks for motions within planes and ball that come too close: at random, on the boundary, in
-/// the corners, and as near as can be to the corners of the triangles.
+/// Searches for motions within planes and ball that come too close. Tries random motions, the
+/// boundary, the corners of the polytope, and the motions nearest to the triangles' corners.
 class Attack {
  public:
   Attack(const Mesh& mesh, const Question& question, const Answer& answer)
@@ -97,12 +97,12 @@ class Attack {
         size = std::max(size, (corner - question.tip).norm());
       }
     }
-    // As promised; and tip + d is rounded, here as in the caller's code.
+    // The promised clearance, less the rounding of tip + d, here as in the caller's code.
     allowed_ = nearest - 1e-12 * question.radius - 2e-14 * size - 4e-16 * question.tip.lpNorm<1>() -
                4e-16 * question.radius;
   }
 
-  /// The motions found that come too close, out of those tried.
+  /// Returns the number of tried motions that come too close.
   int run(Random& random) {
     for (int i = 0; i < 40; ++i) {
       const Vec3 out = outermost(random.direction());
@@ -129,7 +129,7 @@ class Attack {
     return few;
   }
 
-  /// As far as planes and ball allow along d: both hold 0, and both are convex.
+  /// Returns the farthest allowed motion along d. Planes and ball contain 0 and are convex.
   Vec3 outermost(const Vec3& d) const { return reduced(d * (question_.radius / d.norm())); }
 
   Vec3 reduced(const Vec3& d) const {
@@ -141,7 +141,7 @@ class Attack {
     return share * d;
   }
 
-  /// The allowed motion nearest to a point, all but: Dykstra's alternating projections.
+  /// Returns almost the nearest allowed motion to a point, by Dykstra's alternating projections.
   Vec3 toward(const Vec3& point) const {
     const auto& planes = answer_.planes;
     std::vector<Vec3> corrections(planes.size() + 1, Vec3::Zero());
@@ -162,7 +162,7 @@ class Attack {
     return d.norm() > 0.0 ? reduced(d) : d;
   }
 
-  /// Where three planes meet, and where two meet the sphere.
+  /// Tries the points where three planes meet, or two planes and the sphere.
   void corners() {
     const std::vector<HalfSpace> planes = some(answer_.planes, 10);
     for (std::size_t i = 0; i < planes.size(); ++i) {
@@ -200,7 +200,7 @@ class Attack {
   int violations_ = 0;
 };
 
-/// Tips at all kinds of places near a mesh, on either side.
+/// Returns tips at all kinds of places near a mesh, on both sides.
 std::vector<Vec3> tips_near(const Mesh& mesh, std::size_t count, Random& random) {
   std::vector<Vec3> tips;
   for (const double offset : {0.5, -0.5, 0.01}) {
@@ -312,7 +312,7 @@ TEST(FreePolytope, CloserThanTheMarginThePlateCanStillBeFollowed) {
 }
 
 TEST(FreePolytope, WhatTheBallCannotReachOfATriangleDoesNotCount) {
-  // A ramp that rises out of the plate, beyond the ball.
+  // A ramp rises out of the plate, beyond the ball.
   const Surface surface{{{-50, -50, 0}, {50, -50, 0}, {0, 50, 0}, {-50, 0, 30}, {-50, 1, 30}},
                         {{0, 1, 2}, {1, 3, 4}}};
   const auto mesh = mesh_of(surface);
@@ -358,8 +358,7 @@ TEST(FreePolytope, OnTheMeshNoSideIsGuessed) {
   }
 }
 
-/// The same surface with its vertices in another order, and every other triangle wound the other
-/// way.
+/// Returns the same surface with its vertices shuffled and about half of its triangles flipped.
 Surface disguised(const Surface& original, unsigned seed, std::vector<TriangleId>& new_ids) {
   Surface surface = shuffled(original, seed, &new_ids);
   std::mt19937 random(seed + 1);
@@ -432,12 +431,12 @@ TEST(FreePolytope, ItLeavesMoreThanAPlaneForEachHitAndWithFewerPlanes) {
       planes += static_cast<double>(answer.planes.size()) / tips;
       naive_count += static_cast<double>(naive.size()) / tips;
     }
-    // Where a ball meets one triangle or two, the standoff is all the difference.
+    // If the ball meets one or two triangles only, both sets differ by the standoff alone.
     EXPECT_GT(of_shape, naive_of_shape - 0.02) << shape.name;
     share += of_shape / static_cast<double>(shapes().size());
     naive_share += naive_of_shape / static_cast<double>(shapes().size());
   }
-  // Measured: 0.50 against 0.31 of the ball; an eighth of the planes.
+  // Measured: 0.50 of the ball against 0.31, with an eighth of the planes.
   EXPECT_GT(share, 1.4 * naive_share);
   EXPECT_LT(planes, 0.2 * naive_count);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sources of triangles that indices offer, held to each other by the certified rule bit for
-// bit: the traversal of a WideBvh, and all hits around.
+// Compares the sources of triangles that indices offer: the traversal of a WideBvh, and all hits of
+// a query. The certified rule must give bitwise identical results with both.
 
 #include "engine/activation/sources.h"
 #include "index/wide_bvh/traversal/tree_traversal.h"
@@ -12,15 +12,15 @@
 namespace keepout {
 namespace {
 
-/// Lengths as shares of the mesh's size.
+/// Lengths as fractions of the size of the mesh.
 struct Scale {
   double margin;
   double motion;
 };
 constexpr Scale scales[] = {{0.005, 0.003}, {0.001, 0.02}, {0.03, 0.002}, {0.02, 0.1}};
 
-/// What a hand does that presses and drags, from tips that keep the margin, are too close, touch,
-/// or are inside; the tip goes where the rule lets it.
+/// Moves a tip as an operator does who presses and drags. The tips start clear, too close, on the
+/// surface or inside. Each moves by the result of `ask`.
 template <class Ask>
 void drag(Sources& sources, const Scale& scale, std::size_t strokes, Ask&& ask) {
   const double size = sources.mesh->bounds().size().norm();
@@ -130,8 +130,8 @@ TEST(TreeTraversalMemory, DoesNotChangeAnswers) {
   EXPECT_GT(limited, 50u);
 }
 
-/// A reach that grew with every stroke until large boxes were left over would have each cycle look
-/// into them, and would cover all that is asked about, so that nothing would ever mend it.
+/// The padding of the cached region must not grow until large boxes stay unopened. Each cycle would
+/// examine these boxes, and the region would cover all later queries, so nothing would replace it.
 TEST(TreeTraversalMemory, IsOfLeavesHoweverManyStrokesThereWere) {
   const auto mesh = mesh_of("cortex");
   const auto tree = std::make_shared<WideBvh>(mesh);
@@ -158,7 +158,7 @@ TEST(TreeTraversalMemory, IsOfLeavesHoweverManyStrokesThereWere) {
     }
   }
   EXPECT_GT(limited, 3000);
-  EXPECT_LT(unopened, 60);  // one in a hundred, at the end of a reach that was tried
+  EXPECT_LT(unopened, 60);  // 1 % of the cycles, when a padding was tried that was too large
 }
 
 TEST(MotionTraversal, IsOfferedByWideBvhAndMadeOfHitsForOthers) {
@@ -170,7 +170,7 @@ TEST(MotionTraversal, IsOfferedByWideBvhAndMadeOfHitsForOthers) {
   EXPECT_NE(make_motion_traversal(near), nullptr);
 }
 
-/// The wall comes to where it was free: what was known of free space must not let the tip through.
+/// The wall moves to a place that was free. Cached free space must not let the tip through.
 TEST(TreeTraversal, StopsOnceItsTreeIsRefit) {
   Sources sources(make_cube(5.0));
   const Motion motion{.tip = Vec3(0.0, 0.0, 58.0), .desired = Vec3(0.0, 0.0, -4.0)};
@@ -187,8 +187,8 @@ TEST(TreeTraversal, StopsOnceItsTreeIsRefit) {
   EXPECT_NEAR(anew.motion.z(), -2.0, 1e-6);
 }
 
-/// Near the least margin that a rule may have, in units of its tolerance, where what one source
-/// takes for refused at once has to be what the others prove to be refused.
+/// Tests margins near the smallest valid margin, in units of its tolerance. If one source rejects a
+/// motion at once, the proof of the other must reject it too.
 TEST(SourcesAtTheLeastMargin, AgreeBitForBitOnEachTarget) {
   const auto agree_on = [](const char* shape, double times) {
     Sources sources(make_shape(shape));
@@ -227,7 +227,7 @@ TEST(SourcesAtTheLeastMargin, AgreeBitForBitOnEachTarget) {
   });
 }
 
-/// Far from the origin, where a tip's second float matters, and coordinates are no floats.
+/// Far from the origin, the second float of a tip matters, and coordinates are not floats.
 TEST(SourcesFarOff, AgreeBitForBitFarFromTheOrigin) {
   Surface surface = make_shape("cortex");
   for (Vec3& v : surface.vertices) v = 1.1 * v + Vec3(1234.5678, -987.654321, 3456.789);
@@ -244,8 +244,8 @@ TEST(SourcesFarOff, AgreeBitForBitFarFromTheOrigin) {
   EXPECT_GT(limited, 50u);
 }
 
-/// A tip all but on the surface, so much too close that all triangles of the mesh are: they and the
-/// walls, which count again, are more than the mesh has.
+/// The tip is almost on the surface, so all triangles of the mesh are too close. Together with the
+/// walls, which count again, they outnumber the triangles of the mesh.
 TEST(SourcesOfFewTriangles, AgreeBitForBitWhereAllOfThemAreTooNear) {
   Sources sources(make_shape("fan"));
   const StepOptions options{.radius = 0.77441466440074269,

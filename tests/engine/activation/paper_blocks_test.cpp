@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's rule on an index that has its triangles in blocks, held to the plain rule bit for
-// bit.
+// Compares two forms of the rule of Li et al.: on an index with blocks of triangles, and by queries
+// only. The results must be bitwise identical.
 
 #include <array>
 
@@ -27,7 +27,7 @@ bool are_equal(std::span<const HalfSpace> one, std::span<const HalfSpace> other)
                     [](const HalfSpace& a, const HalfSpace& b) { return a == b; });
 }
 
-/// The rule on one mesh: on an index of this type, with its blocks and by queries only.
+/// The rule on one mesh in two forms: with the blocks of an index of type Tree, and by queries.
 template <class Tree = WideBvh>
 class PaperForms {
  public:
@@ -44,7 +44,7 @@ class PaperForms {
     plain_.prepare(plain_near_);
   }
 
-  /// How a cycle begins with blocks and without, and the planes of both.
+  /// Starts a cycle with blocks and without. Returns both statuses, and fills the planes of both.
   std::array<Status, 2> start(const Vec3& tip, double radius, double margin) {
     const RuleInput input =
         rule_input_of({.tip = tip, .desired = Vec3::Zero()}, {.radius = radius, .margin = margin},
@@ -94,7 +94,7 @@ class PaperForms {
   MotionConstraint plain_guard_;
 };
 
-/// Above, on and below faces, edges and corners, and farther off.
+/// Returns tips above, on and below faces, edges and corners, and farther away.
 std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count) {
   const double size = mesh.bounds().size().norm();
   Random random(3);
@@ -107,7 +107,7 @@ std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count) {
     add(surface_points(mesh, count, offset * size, random));
   }
   add(random_points(mesh, count, random));
-  // Right above a corner or an edge: the neighbors' nearest points are the same.
+  // If a tip is right above a corner or an edge, neighbors share their closest point.
   for (std::size_t i = 0; i < 2 * count; ++i) tips.push_back(tips[i] + Vec3(0, 0, 1e-3 * size));
   return tips;
 }
@@ -143,7 +143,7 @@ TEST_P(PaperBlocksOn, ThePlanesAreThoseOfThePlainRuleOnEachTarget) {
   });
 }
 
-/// Increments towards the surface, along it and away from it, up to the radius.
+/// Returns motions toward the surface, along it and away from it, up to the radius.
 std::vector<Motion> motions_around(const Mesh& mesh, double radius) {
   Random random(5);
   std::vector<Motion> motions;
@@ -164,7 +164,7 @@ void expect_same_step(const Step& got, const Step& expected) {
   for (std::size_t i = 0; i < got.active.size(); ++i) {
     ASSERT_TRUE(got.planes[got.active[i]] == expected.planes[expected.active[i]]);
   }
-  // The planes that were left out leave the others in their order.
+  // Omitted planes do not change the order of the others.
   ASSERT_TRUE(std::includes(
       expected.planes.begin(), expected.planes.end(), got.planes.begin(), got.planes.end(),
       [](const HalfSpace& a, const HalfSpace& b) { return a.source < b.source; }));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's Table I, corrected as its errata say, case by case; then what it leaves open.
+// Checks Table I of Li et al. (2020), corrected by its errata, case by case, and then the cases
+// that the paper leaves open.
 #include "keepout/activation/paper.h"
 
 #include <gtest/gtest.h>
@@ -10,8 +11,8 @@
 namespace keepout {
 namespace {
 
-/// Two triangles that share the edge from (0, -2, 0) to (0, 2, 0): T1 to the left, T2 to the right,
-/// with their apexes at the given heights and the free side above.
+/// Returns two triangles with the free side above. T1 (left) and T2 (right), with the given apexes,
+/// share the edge from (0, -2, 0) to (0, 2, 0).
 std::shared_ptr<const Mesh> two_triangles(const Vec3& left, const Vec3& right) {
   return mesh_of(Surface{{Vec3(0, -2, 0), Vec3(0, 2, 0), left, right}, {{0, 1, 2}, {1, 0, 3}}});
 }
@@ -27,7 +28,7 @@ constexpr TriangleId t1 = 0;
 constexpr TriangleId t2 = 1;
 constexpr double far_enough = 20.0;
 
-/// What Table I writes in brackets: {normal, closest point} of a triangle.
+/// An entry of Table I, {normal, closest point} of a triangle. The test computes the closest point.
 struct Bracket {
   TriangleId triangle;
   Vec3 normal;
@@ -107,7 +108,7 @@ TEST(TableOne, ConcaveE_BeyondBothNothingIsDecided) {
   expect_planes(mesh, tip, {});
 }
 
-// What the paper leaves open, as decided in paper.h.
+// Cases that Li et al. leave open: paper.h documents the decisions.
 
 TEST(PaperRule, ACoplanarEdgeCountsAsConvexSoAFlatQuadHasNoGap) {
   const auto mesh = ridge(0.0);
@@ -132,7 +133,7 @@ TEST(PaperRule, ANonManifoldEdgeIsReadAsABoundary) {
 }
 
 TEST(PaperRule, BelowTheSurfaceEveryPlaneVanishes) {
-  // The paper's own weakness, on record: a tool that is inside is not held at all.
+  // A known weakness of the rule of Li et al.: it does not constrain a tool that is inside.
   const auto mesh = ridge(0.0);
   expect_planes(mesh, {1, 0, -0.5}, {});
 }
@@ -146,8 +147,8 @@ TEST(PaperRule, AToolThatSlidesOnAFaceIsHeldAlthoughRoundingPutsItAHairBelow) {
   EXPECT_DOUBLE_EQ(planes[0].offset, 1e-13) << "back up to the face";
 }
 
-/// Four triangles around the origin, as a closed fan: apexes at the given heights on the x and y
-/// axes in turn.
+/// Returns a closed fan of four triangles around the origin. The apexes on the x and y axes have
+/// the given heights.
 std::shared_ptr<const Mesh> fan(double at_x, double at_y) {
   return mesh_of(Surface{
       {Vec3(0, 0, 0), Vec3(2, 0, at_x), Vec3(0, 2, at_y), Vec3(-2, 0, at_x), Vec3(0, -2, at_y)},
@@ -162,8 +163,8 @@ TEST(PaperRuleAtAVertex, OverASummitOneTriangleSpeaksForAll) {
 }
 
 TEST(PaperRuleAtAVertex, ASummitWithValleysKeepsThePlaneOfTheRidge) {
-  // Edges along x are valleys, along y ridges: each triangle has one of either kind here, and
-  // Condition 2 goes first.
+  // Edges along x are valleys and edges along y are ridges. Each triangle has one of each, and
+  // Condition 2 applies first.
   const auto mesh = fan(0.5, -4);
   const Vec3 tip(-0.2, 0, 1);
   PaperRule rule;
@@ -172,7 +173,7 @@ TEST(PaperRuleAtAVertex, ASummitWithValleysKeepsThePlaneOfTheRidge) {
   for (TriangleId t = 0; t < 4; ++t) {
     const ClosestPoint closest = closest_point(mesh->triangle(t), tip);
     if (!is_vertex(closest.feature)) continue;
-    // Whichever condition it was, the triangle is behind one of the planes.
+    // Under either condition, the triangle must be behind one of the planes.
     bool behind = false;
     for (const HalfSpace& plane : planes) {
       bool all = true;
@@ -186,7 +187,7 @@ TEST(PaperRuleAtAVertex, ASummitWithValleysKeepsThePlaneOfTheRidge) {
 }
 
 TEST(PaperRuleAtAVertex, AValleyAtEitherEdgeKeepsTheFace) {
-  // T1's closest point is its corner on the shared edge, an end of a valley; T2's is elsewhere.
+  // T1's closest point is its corner at an end of the valley; T2's closest point is elsewhere.
   const auto mesh = valley(0.5);
   const Vec3 tip = Vec3(1, -2.5, 0.25) + 0.3 * mesh->normal(t2);
   ASSERT_TRUE(is_vertex(feature_of(mesh, t1, tip)));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Against the oracle, whose distances share nothing with the engine, and dense samples.
+// Compares PreparedTriangle with the oracle, whose distances share no code with the engine, and
+// with dense samples.
 #include "keepout/activation/prepared_triangle.h"
 
 #include <Eigen/Geometry>
@@ -25,12 +26,12 @@ Vec3 random_point(Random& random, double size) {
   return size * random.uniform(0.1, 1.0) * random.direction();
 }
 
-/// A triangle about `size` large, of the given flatness.
+/// A class of random triangles, with the tolerances that its flatness requires.
 struct Kind {
   const char* name;
-  double height;    // of the triangle, in lengths of its base
-  double rounding;  // of what is found, in sizes of the problem
-  double hidden;    // what is not found for its rounding, in sizes of the problem
+  double height;    // of the triangle, as a fraction of its base
+  double rounding;  // of distances, in sizes of the problem
+  double hidden;    // clearance that rounding may hide, in sizes of the problem
 };
 
 void PrintTo(const Kind& kind, std::ostream* out) { *out << kind.name; }
@@ -65,18 +66,18 @@ double sampled_distance(const Triangle& triangle, const Vec3& from, const Vec3& 
   return least;
 }
 
-/// How much of a motion is free.
+/// Returns the free fraction of a motion.
 double share_of(const Contact& contact) { return std::clamp(contact.time, 0.0, 1.0); }
 
 class PreparedTriangleOfKind : public testing::TestWithParam<Kind> {};
 
-/// A motion past a random triangle, and a level near to what decides.
+/// A motion past a random triangle, and a required clearance near the value that decides.
 struct Case {
   Triangle triangle;
   Vec3 z;
   double size;
   double slack;
-  double distance;  // of the whole motion
+  double distance;  // of the whole motion from the triangle
   double level;
 };
 
@@ -86,7 +87,7 @@ Case random_case(Random& random, double height) {
   c.triangle = random_triangle(random, size, height);
   c.z = random.uniform(0.01, 2.0) * size * random.direction();
   const std::size_t place = random.below(3);
-  if (place > 0) {  // the motion starts or ends right over the face, which a needle's rarely does
+  if (place > 0) {  // start or end right over the face: a random motion past a needle rarely does
     const Vec3 normal = unit_normal(c.triangle);
     const double a = random.uniform(0.0, 0.5);
     const double b = random.uniform(0.0, 0.5);
@@ -96,7 +97,7 @@ Case random_case(Random& random, double height) {
     const Vec3 tip = place == 1 ? over : Vec3(over - c.z);
     for (Vec3& corner : c.triangle) corner -= tip;
   }
-  if (place == 1 && random.below(2) == 0) {  // and leads along it
+  if (place == 1 && random.below(2) == 0) {  // almost parallel to an edge
     const Vec3 along = c.triangle[1] - c.triangle[0];
     c.z = random.uniform(-1.0, 1.0) * along + 1e-9 * random.uniform(-1.0, 1.0) * c.z;
   }
@@ -108,19 +109,18 @@ Case random_case(Random& random, double height) {
     case 0:
       c.level = random.uniform() * at_tip;
       break;
-    case 1:  // all but decided by the slack
+    case 1:  // within a few slacks of the limit
       c.level = c.distance + random.uniform(-4.0, 4.0) * c.slack;
       break;
     default:
       c.level = c.distance * (1.0 + std::pow(10.0, random.uniform(-9.0, -1.0)));
   }
-  // Nearer than 4 tolerances the rule does not ask: there is no side.
+  // The rule never judges a tip within 4 tolerances: it has no side.
   c.level = std::clamp(c.level, std::min(256.0 * c.slack, at_tip), at_tip);
   return c;
 }
 
-/// Calls with random cases, the prepared triangles of their triangles, and what names them in
-/// messages.
+/// Calls `check` with random cases and their prepared triangles. Failures report the case number.
 template <class Check>
 void for_each_case(std::uint64_t seed, int cases, double height, const Check& check) {
   Random random(seed);
@@ -194,8 +194,8 @@ TEST_P(PreparedTriangleOfKind, ThePlaneOfAContactExcludesTheMotion) {
   std::size_t contacts = 0;
   for_each_case(5, 30'000, GetParam().height,
                 [&](const Case& c, const PreparedTriangle& prepared, Random&) {
-                  // The rule objects an eighth of a tolerance later than the slack of
-                  // a contact.
+                  // The rule rejects a motion only if the clearance falls an eighth of a tolerance
+                  // (8 slacks) below the level.
                   const double demand = c.level - 8.0 * c.slack;
                   if (demand <= 0.0 || keeps_clear(prepared, c.z, demand, 0.125 * c.slack)) return;
                   ++contacts;
@@ -210,8 +210,8 @@ TEST_P(PreparedTriangleOfKind, TheSearchForALateContactIsGivenUpOnlyBeyondTheLat
                 [&](const Case& c, const PreparedTriangle& prepared, Random& r) {
                   if (keeps_clear(prepared, c.z, c.level, c.slack)) return;
                   const Contact whole = first_contact(prepared, c.z, c.level, c.slack, 1.0);
-                  // Now and then at the very contact: of two that tie, either may have been found
-                  // first.
+                  // Half of the searches end exactly at the contact. There, two features may tie,
+                  // and either may be found first.
                   const double latest = r.below(2) == 0 ? r.uniform() : whole.time;
                   const Contact some = first_contact(prepared, c.z, c.level, c.slack, latest);
                   if (whole.time <= latest) {
@@ -250,7 +250,7 @@ TEST_P(PreparedTriangleOfKind, TheNormalPointsFromTheClosestPoint) {
         const Vec3& n = nearest.normal;
         if (distance < 1e-3 * c.size) return;
         ASSERT_NEAR(distance, closest_point(c.triangle, c.z).distance, 1e-14 * c.size);
-        // All of the prepared triangle is behind: that is what makes the point the closest one.
+        // The whole triangle is behind the plane, which proves that the point is the closest.
         ASSERT_LE(prepared.support(n) + distance, n.dot(c.z) + GetParam().rounding * c.size);
       });
 }
@@ -292,7 +292,7 @@ TEST(PreparedTriangle, AContactStraightDownIsWhereTheLevelIs) {
 }
 
 TEST(PreparedTriangle, AMotionPastACornerTouchesItFromTheSide) {
-  // Along x at height 0.3 above the corner's level, straight over it.
+  // The motion is along x, 0.3 above the corner, and ends straight over it.
   const PreparedTriangle prepared({Vec3(0, 0, 0), Vec3(1, 1, -1), Vec3(1, -1, -1)},
                                   Vec3(-2, 0, 0.3), 3);
   EXPECT_TRUE(keeps_clear(prepared, Vec3(2, 0, 0), 0.3, 1e-12));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every rule of the registry must do, whatever planes it chooses.
+// Requirements on every rule of the registry, whichever planes it chooses.
 
 #include <Eigen/Geometry>
 
@@ -13,14 +13,13 @@
 
 namespace keepout {
 
-/// What a test prints of a rule.
 static void PrintTo(const ActivationEntry& rule, std::ostream* out) { *out << rule.name; }
 
 namespace {
 
 class RuleContract : public testing::TestWithParam<ActivationEntry> {
  protected:
-  /// Calls check(tip, planes) for tips close above every generated shape.
+  /// Calls check(mesh, tip, planes) for tips close above every generated shape.
   template <class Check>
   void for_each_situation(double margin, Check&& check) const {
     for (const Shape& shape : shapes_to_try()) {
@@ -36,8 +35,8 @@ class RuleContract : public testing::TestWithParam<ActivationEntry> {
   }
 };
 
-/// How far a corner may stick out of a face's own plane: the normal of a triangle with sides l and
-/// height h is known to some epsilon l / h. [length]
+/// Returns the distance by which rounding may move a corner out of the plane of its face. The
+/// normal of a triangle with sides l and height h has an error of some epsilon l / h. [length]
 double rounding_of_normal(const Triangle& t) {
   const double side = std::max({(t[1] - t[0]).norm(), (t[2] - t[1]).norm(), (t[0] - t[2]).norm()});
   const double height = (t[1] - t[0]).cross(t[2] - t[0]).norm() / side;
@@ -67,7 +66,7 @@ TEST_P(RuleContract, EachPlaneHasItsOwnTriangleBehindIt) {
   for_each_situation(0.25, [&](const Mesh& mesh, const Vec3& tip, const auto& planes) {
     for (const HalfSpace& plane : planes) {
       const Triangle triangle = mesh.triangle(plane.source);
-      // As far as the margin, or as it is already.
+      // The required clearance, or the present distance if that is smaller.
       const double kept = std::min(0.25, closest_point(triangle, tip).distance);
       for (const Vec3& corner : triangle) {
         ASSERT_LE(plane.normal.dot(corner - tip) + kept,

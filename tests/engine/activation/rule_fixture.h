@@ -11,8 +11,8 @@
 
 namespace keepout {
 
-/// The planes that a rule activates at a tip: those it begins with, and its answers to motions as
-/// long as the radius, along and across the axes.
+/// Returns the planes that a rule activates at a tip: those of open(), and those that reject trial
+/// motions of length `radius` along and across the axes.
 inline std::vector<HalfSpace> planes_at(const std::shared_ptr<const Mesh>& mesh,
                                         ActivationRule& rule, const Vec3& tip, double radius,
                                         double margin = 0.0) {

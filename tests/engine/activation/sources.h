@@ -12,7 +12,7 @@
 
 namespace keepout {
 
-/// All that a step comes to.
+/// The complete result of a step.
 struct Outcome {
   Status status;
   Vec3 motion;
@@ -27,7 +27,7 @@ struct Outcome {
         planes(step.planes.begin(), step.planes.end()),
         distance(step.distance) {}
 
-  /// The sources of planes count too, but for triangles that are one on top of the other.
+  /// Ignores the sources of planes: they may differ if triangles coincide.
   friend bool operator==(const Outcome& a, const Outcome& b) {
     return a.status == b.status && a.motion == b.motion && a.increment == b.increment &&
            a.distance == b.distance &&
@@ -46,7 +46,7 @@ inline std::unique_ptr<MotionConstraint> guard(const std::shared_ptr<const Mesh>
       options, Capacity{.nodes = 16, .work_units = Budget::unlimited});
 }
 
-/// The rule on one mesh and two indices: one that traverses along motions, and one that does not.
+/// The rule on one mesh with two indices: one traverses along motions, one only answers queries.
 class Sources {
  public:
   explicit Sources(Surface surface)
@@ -65,7 +65,7 @@ class Sources {
     asking_->set_options(options);
     return asking(motion);
   }
-  /// Of all steps to come.
+  /// Sets the options of all later steps.
   void set_options(const StepOptions& options) {
     traversing_->set_options(options);
     asking_->set_options(options);

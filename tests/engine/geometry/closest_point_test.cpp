@@ -13,8 +13,8 @@
 namespace keepout {
 namespace {
 
-// An independent computation: 113-bit arithmetic, and no shared frame. The nearest
-// point of a triangle is that of one of its seven features, each a small linear problem.
+// An independent computation in 113-bit arithmetic, without a shared frame. The nearest point of a
+// triangle is the nearest of its seven features, and each is a small linear problem.
 using Quad = __float128;
 using Quad3 = std::array<Quad, 3>;
 
@@ -61,7 +61,7 @@ double reach(const Triangle& triangle, const Vec3& query) {
       {(triangle[0] - query).norm(), (triangle[1] - query).norm(), (triangle[2] - query).norm()});
 }
 
-/// Queries near and far, and right on the triangle's face, edges and corners.
+/// Returns a point near the face, an edge or a corner, a corner itself, or a point anywhere.
 Vec3 random_query(const Triangle& t, Random& random) {
   const double near = std::pow(10.0, random.uniform(-12.0, 3.0));
   double a = random.uniform(), b = random.uniform();
@@ -92,8 +92,8 @@ TEST(ClosestPoint, DistanceAgreesWithAnIndependentComputationInQuadruplePrecisio
     const Vec3 query = random_query(triangle, random);
     const double expected = independent_distance(triangle, query);
     const double got = closest_point(triangle, query).distance;
-    // Within 1e-12 of the distance; where the query all but touches the triangle, what is left is
-    // a few roundings of the corners' own coordinates.
+    // Within 1e-12 of the distance. If the query almost touches the triangle, the roundings of the
+    // corners' coordinates remain.
     const double allowed = std::max(1e-12 * expected, 2e-15 * reach(triangle, query));
     ASSERT_NEAR(got, expected, allowed) << "pair " << i;
     if (expected > 1e-3 * reach(triangle, query)) {
@@ -103,8 +103,8 @@ TEST(ClosestPoint, DistanceAgreesWithAnIndependentComputationInQuadruplePrecisio
   EXPECT_LT(worst_relative, 1e-12);
 }
 
-/// A triangle around a tip at 0, at a distance from 4e-10 to 0.1 of its size; every other one is a
-/// needle.
+/// Returns a triangle around a tip at 0, at a distance from 4e-10 to 0.1 of its size. About half of
+/// the triangles are needles.
 Triangle near_tip(Random& random) {
   Triangle t;
   for (Vec3& corner : t) corner = random.direction() * random.uniform();
@@ -122,7 +122,7 @@ Triangle near_tip(Random& random) {
   return t;
 }
 
-/// docs/certified-step.md, assumption A9.
+/// Checks assumption A9 of docs/certified-step.md.
 void expect_a9(const Triangle& t) {
   const double size = reach(t, Vec3::Zero());
   const double tau = 2e-10 * size;
@@ -143,7 +143,7 @@ void expect_a9(const Triangle& t) {
 }
 
 TEST(PreparedTriangle, DistancesNearTheTipAreAsTheProofAssumes) {
-  // The worst that a search found: the normal proves 0.0133 tau less than the distance.
+  // The worst triangle that a search found: the normal proves 0.0133 tau less than the distance.
   expect_a9({Vec3(-0x1.251e468024715p-1, -0x1.1f496e2a4161p-1, 0x1.0234b444f1349p-1),
              Vec3(0x1.9772aa3be8f97p-6, 0x1.8f578a807abb7p-6, -0x1.66eb08564746fp-6),
              Vec3(0x1.d29fb74670cfep-6, 0x1.c9a67ebe64fa2p-6, -0x1.9b34a36e320c3p-6)});
@@ -225,7 +225,7 @@ TEST(ClosestPoint, AQueryOnTheTriangleHasDistanceZero) {
 }
 
 TEST(ClosestPoint, AnObtuseCornerDoesNotHideTheNearerSide) {
-  // The projection lies beyond the long side, but the short side is nearer.
+  // The projection is beyond the long side, but the short side is nearer.
   const Triangle obtuse{Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(-8, 1, 0)};
   const ClosestPoint closest = closest_point(obtuse, {-6, -1, 0});
   EXPECT_NEAR(closest.distance, independent_distance(obtuse, {-6, -1, 0}), 1e-15);

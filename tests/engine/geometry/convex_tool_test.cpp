@@ -25,7 +25,7 @@ TEST(ConvexTool, ABoxHasThreeFaceNormals) {
   const ConvexTool box = ConvexTool::box({Vec3(-1, -2, -3), Vec3(1, 2, 3)});
   EXPECT_EQ(box.face_normals().size(), 3u);
   EXPECT_GE(box.edge_directions().size(), 3u);
-  EXPECT_LE(box.edge_directions().size(), 9u);  // and the diagonals of its faces
+  EXPECT_LE(box.edge_directions().size(), 9u);  // with the diagonals of its faces
 }
 
 TEST(ConvexTool, ItsBallHoldsIt) {

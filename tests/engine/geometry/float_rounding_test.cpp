@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Screens in float stand on a tip being the sum of two floats. GCC 12 once dropped the second.
+// Float filters rely on a tip being the sum of two floats. GCC 12 once dropped the second float.
 #include <gtest/gtest.h>
 
 #include "index/wide_bvh/traversal/filters.h"

@@ -18,7 +18,7 @@ constexpr int sign_of(Wide value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
 Wide whole(double value) { return static_cast<Wide>(value); }
 
-// The oracles: exact for whole coordinates up to 2^40.
+// The oracles are exact for integer coordinates up to 2^40.
 
 Wide exact_turn(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
   const int x = (axis + 1) % 3;
@@ -51,7 +51,7 @@ TEST(Turn, IsPositiveCounterClockwiseAlongEachAxis) {
 }
 
 TEST(Orientation, AgreesWithWholeNumbersWhereDoublesRound) {
-  // Points near a line or a plane, whose doubles-only determinants are all rounding.
+  // Points near a line or a plane: determinants in double are only rounding errors.
   std::mt19937_64 random(1);
   std::uniform_int_distribution<int> coarse(-1000, 1000);
   std::uniform_int_distribution<int> fine(-1, 1);
@@ -84,12 +84,12 @@ TEST(Orientation, AgreesWithWholeNumbersWhereDoublesRound) {
     const double rounded = -(a - d).dot(normal);
     wrong_in_doubles += (rounded > 0.0 ? 1 : rounded < 0.0 ? -1 : 0) != expected ? 1 : 0;
   }
-  EXPECT_GT(zeros, 100);  // else the exact sums were not put to the test
+  EXPECT_GT(zeros, 100);  // else the exact sums were not tested
   EXPECT_GT(wrong_in_doubles, 100);
 }
 
 TEST(Orientation, CoordinatesOfVeryDifferentSizeAreSummedExactly) {
-  // In doubles 1e30 swallows what decides.
+  // In double, 1e30 absorbs the digits that decide.
   const Vec3 a(1e30, 1, 0), b(1e30, 2, 0), c(1e30, 1, 1);
   EXPECT_EQ(side_of_plane(a, b, c, {1e30, 1e-30, 1e-30}), 0);
   EXPECT_EQ(side_of_plane(a, b, c, {std::nextafter(1e30, 2e30), 7, -3}), 1);

@@ -33,7 +33,7 @@ Real origin_to_segment(const Point& a, const Point& b) {
   return norm(a + std::clamp<Real>(-dot(a, ab) / length2, 0, 1) * ab);
 }
 
-/// To the inside of the triangle; infinite when the origin projects elsewhere.
+/// Returns the distance to the inside of the triangle; infinite if the origin projects elsewhere.
 Real origin_to_face(const Point& a, const Point& b, const Point& c, const Point& normal) {
   const Real n2 = dot(normal, normal);
   const Real of_b = dot(cross(c - a, a), normal) / n2;
@@ -51,7 +51,7 @@ double reference_separation(std::span<const Vec3> points, const Triangle& triang
   }
   const std::size_t count = corners.size();
   Real nearest = std::numeric_limits<Real>::infinity();
-  Real parted = -std::numeric_limits<Real>::infinity();  // by the best plane
+  Real parted = -std::numeric_limits<Real>::infinity();  // by the best separating plane
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       nearest = std::min(nearest, origin_to_segment(corners[i], corners[j]));
@@ -60,7 +60,7 @@ double reference_separation(std::span<const Vec3> points, const Triangle& triang
         const Point b = corners[k] - corners[i];
         const Point n = cross(a, b);
         const Real size = norm(n);
-        // Three on a line, but for rounding, are no face.
+        // Three collinear corners (up to rounding) are no face.
         if (!(size > 1e-17L * (dot(a, a) + dot(b, b)))) continue;
         nearest = std::min(nearest, origin_to_face(corners[i], corners[j], corners[k], n));
         Real low = std::numeric_limits<Real>::infinity();
@@ -73,7 +73,7 @@ double reference_separation(std::span<const Vec3> points, const Triangle& triang
       }
     }
   }
-  // Of a difference without volume there is always a plane that parts the two by nothing or more.
+  // If the difference has no volume, some plane always separates by zero or more.
   return static_cast<double>(parted < 0 && std::isfinite(parted) ? parted : nearest);
 }
 

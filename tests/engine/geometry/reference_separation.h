@@ -7,9 +7,9 @@
 
 namespace keepout::test {
 
-/// Returns the signed distance of the hull of some points and a triangle by brute force in 64-bit
-/// arithmetic: it tries every three corners of their Minkowski difference, as a face that parts the
-/// two and as a triangle with the nearest point. Shares no code with the engine.
+/// Returns the signed distance between the hull of some points and a triangle, by brute force in
+/// long double. Each triple of corners of the Minkowski difference is tried as a separating face,
+/// and as the triangle with the nearest point. Shares no code with the engine.
 double reference_separation(std::span<const Vec3> points, const Triangle& triangle);
 
 }  // namespace keepout::test

@@ -33,8 +33,8 @@ TEST(Region, MeasuresHowFarAPointIsOutOfIt) {
   EXPECT_EQ(Region::tube(at, z, 1.0).direction(), Vec3::UnitZ());
 }
 
-// What the proof of guides rests on: convex, no steeper than 1, and planes along `outward` have the
-// region behind them.
+// The proof of guides requires that the excess is convex with a slope of at most 1. The region must
+// also be behind the planes along `outward`.
 TEST(Region, HasAnExcessThatIsConvexAndNoSteeperThanOne) {
   Random random(1);
   for (int i = 0; i < test::trials(20'000); ++i) {
@@ -47,7 +47,7 @@ TEST(Region, HasAnExcessThatIsConvexAndNoSteeperThanOne) {
       EXPECT_LE(std::abs(region.excess(a) - region.excess(b)), (a - b).norm() + 1e-12);
       const Vec3 out = region.outward(a);
       ASSERT_NEAR(out.norm(), 1.0, 1e-12);
-      // Near the middle the direction is that of a small difference.
+      // Near the middle, rounding dominates the small difference that gives the direction.
       const double rounding = 1e-12 + 1e-13 / std::abs(region.excess(a) + region.radius());
       EXPECT_NEAR(out.dot(a - region.origin()) - region.radius(), region.excess(a), rounding);
       EXPECT_LE(out.dot(b - region.origin()) - region.radius(), region.excess(b) + rounding);

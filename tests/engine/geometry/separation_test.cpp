@@ -22,7 +22,7 @@ Triangle random_triangle(Random& random, double size) {
   return t;
 }
 
-/// Needles, segments and points as well.
+/// Returns a needle, a segment or a point.
 Triangle hostile_triangle(Random& random, double size) {
   Triangle t = random_triangle(random, size);
   const double tiny = std::pow(10.0, random.uniform(-17.0, -3.0));
@@ -57,14 +57,13 @@ double reference(const ConvexTool& tool, const Triangle& triangle) {
   return reference_separation(tool.points(), triangle) - tool.radius();
 }
 
-/// What must hold of any answer: the plane proves the distance, and the points are where they are
-/// said to be.
+/// Checks that the plane proves the distance, and that both points are on their surfaces.
 void expect_consistent(const Separation& s, const ConvexTool& tool, const Triangle& triangle,
                        double tolerance) {
   EXPECT_NEAR(s.normal.norm(), 1.0, 1e-14);
   EXPECT_NEAR(separation_along(s.normal, tool, Vec3::Zero(), triangle), s.distance, tolerance);
   EXPECT_LE(closest_point(triangle, s.on_triangle).distance, tolerance);
-  // The tool's point is on its surface: at the radius from the core, or as deep as can be.
+  // The tool's point, moved inward by the radius, is in the core.
   const Vec3 on_core = s.on_tool() + tool.radius() * s.normal;
   EXPECT_LE(reference_separation(tool.points(), {on_core, on_core, on_core}), tolerance);
 }
@@ -112,7 +111,7 @@ TEST(Separation, IsRightAllTheWayThroughATouch) {
     for (const NamedTool& named : tools_of_each_kind(1.0, random)) {
       const Triangle triangle = random_triangle(random, 2.0);
       const Vec3 off = 1.5 * random.direction();
-      // To where the cores touch, and from there in and out by ever less.
+      // Moves the tool to where the cores touch, and from there in or out by a small random step.
       const ConvexTool core = ConvexTool::hull(named.tool.points());
       const Separation start = separation(core, off, triangle);
       const double step = std::pow(10.0, random.uniform(-18.0, -2.0)) * (i % 2 == 0 ? 1.0 : -1.0);
@@ -128,7 +127,7 @@ TEST(Separation, IsRightAllTheWayThroughATouch) {
 }
 
 TEST(Separation, ParallelEdgesAndFacesAreNoExceptions) {
-  // On a lattice all that can be parallel, or coincide, is.
+  // On a lattice, many edges and faces are parallel or coincide.
   Random random(4);
   const ConvexTool box = ConvexTool::box({Vec3(-1, -1, -1), Vec3(1, 1, 1)});
   const ConvexTool capsule = ConvexTool::capsule({0, 0, -1}, {0, 0, 1}, 0.5);
@@ -207,7 +206,8 @@ TEST(Separation, AHullOfManyPointsIsHandled) {
     const Triangle triangle = random_triangle(random, 2.0);
     const Vec3 position = random.uniform() * random.direction();
     const Separation s = separation(hull, position, triangle);
-    // Not by brute force, whose time grows with the fourth power: by what must hold of the answer.
+    // Brute force takes time to the fourth power of the number of points. This test checks
+    // properties of the answer instead.
     EXPECT_NEAR(separation_along(s.normal, hull, position, triangle), s.distance, 1e-14);
     const Vec3 way = -s.distance * s.normal;
     EXPECT_NEAR(separation(hull, position + way, triangle).distance, 0.0, 1e-13);
@@ -247,7 +247,7 @@ TEST(Separation, NoDistanceIsToldThatNoPlaneProvesHoweverMixedTheLengths) {
     std::vector<Vec3> points(2 + random.below(4));
     for (Vec3& p : points) p = place();
     const ConvexTool tool = ConvexTool::hull(points);
-    if (tool.points().size() == 1) continue;  // of a ball it is the kernel's
+    if (tool.points().size() == 1) continue;  // the exact kernel serves balls
     const Triangle t{place(), place(), place()};
     const Vec3 position = place();
     double size =

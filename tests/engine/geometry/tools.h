@@ -20,7 +20,7 @@ inline Eigen::Matrix3d random_rotation(keepout::Random& random) {
   return Eigen::AngleAxisd(random.uniform(0.0, 6.0), axis).toRotationMatrix();
 }
 
-/// One of each kind, of a size of some `size` around the tip.
+/// Returns a tool of each kind, about `size` large, around the tip.
 inline std::vector<NamedTool> tools_of_each_kind(double size, keepout::Random& random) {
   std::vector<Vec3> points;
   for (int i = 0; i < 10; ++i) points.push_back(0.5 * size * random.direction());

@@ -6,7 +6,7 @@
 
 namespace keepout {
 
-/// Fails unless the index gives what brute force does, no triangle more and none less.
+/// Fails unless the index returns exactly the triangles that brute force returns.
 inline void expect_exact(const Mesh& mesh, const SpatialIndex& index, std::size_t of_each_kind) {
   TriangleBuffer found(mesh.triangle_count());
   for (const Probe& probe : probes(mesh, of_each_kind)) {
@@ -26,7 +26,7 @@ inline void expect_exact(const Mesh& mesh, const SpatialIndex& index, std::size_
   }
 }
 
-/// The first triangles of a shape.
+/// Returns the first triangles of a shape.
 inline std::shared_ptr<const Mesh> beginning_of(std::string_view name, std::size_t triangles) {
   Surface surface = make_shape(name);
   EXPECT_LE(triangles, surface.triangles.size());
@@ -34,7 +34,7 @@ inline std::shared_ptr<const Mesh> beginning_of(std::string_view name, std::size
   return mesh_of(std::move(surface));
 }
 
-/// The same triangles elsewhere, and bent: `vertex` gives each its new place.
+/// Returns the same triangles with each vertex moved by `vertex`.
 template <class Move>
 std::shared_ptr<const Mesh> moved(const Mesh& mesh, const Move& vertex) {
   Surface surface{{}, {mesh.triangles().begin(), mesh.triangles().end()}};
@@ -42,8 +42,9 @@ std::shared_ptr<const Mesh> moved(const Mesh& mesh, const Move& vertex) {
   return mesh_of(std::move(surface));
 }
 
-/// Fails unless each triangle of the mesh is in one lane of one leaf, with its corners in
-/// lexicographic order and its parity, no farther off than `error`; full leaves but for the last.
+/// Fails unless each triangle is in exactly one lane of one leaf, and all leaves but the last are
+/// full. The corners must be in lexicographic order, with its parity, within the error of the
+/// frame.
 inline void expect_leaves_hold(const Mesh& mesh, const TriangleBlocks& blocks) {
   const std::span<const LeafBlock> leaves = blocks.leaves();
   const LeafFrame& frame = blocks.frame();
@@ -86,7 +87,7 @@ inline void expect_leaves_hold(const Mesh& mesh, const TriangleBlocks& blocks) {
   EXPECT_EQ(std::count(times.begin(), times.end(), 1), std::ssize(times));
 }
 
-/// Fails unless each cylinder holds what is in the leaves below it. Appends these.
+/// Fails unless each cylinder contains the triangles of the leaves below it. Appends these leaves.
 inline void expect_cylinders_hold(const WideBvh::Tree& index, std::size_t self,
                                   std::vector<std::size_t>& leaves) {
   const NodeBlock& node = index.nodes()[self];

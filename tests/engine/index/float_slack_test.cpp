@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filters in single precision against the same claims in double precision. Each test is about
-// one slack for rounding, in a case where no other slack covers the rounding.
+// Compares the filters in single precision with the same claims in double. Each test is about one
+// slack for rounding, in a case where no other slack covers the rounding.
 
 #include <Eigen/Geometry>
 #include <set>
@@ -13,7 +13,7 @@
 namespace keepout {
 namespace {
 
-/// Returns sixteen triangles of about that size, which one leaf holds. All coordinates are floats.
+/// Returns sixteen triangles, `size` large, which fit in one leaf. All coordinates are floats.
 std::shared_ptr<const Mesh> one_leaf(double size, Random& random) {
   Surface surface;
   for (VertexId t = 0; t < LeafBlock::lanes; ++t) {
@@ -25,7 +25,7 @@ std::shared_ptr<const Mesh> one_leaf(double size, Random& random) {
   return mesh_of(std::move(surface));
 }
 
-/// Returns by how much more than the margin a plane of that normal separates triangle and tip.
+/// Returns the gap between triangle and tip along this normal, minus the margin.
 double clear_in_double(const Vec3& n, const Triangle& triangle, const Vec3& tip, double margin) {
   double support = n.dot(triangle[0] - tip);
   for (const Vec3& corner : triangle) support = std::max(support, n.dot(corner - tip));
@@ -80,7 +80,7 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
   EXPECT_GT(clear_of_a_motion, test::trials(10'000));
 }
 
-// The motions are far longer than the margin, and end just within it of a box.
+// The motions are far longer than the margin, and end just within the margin of a box.
 TEST(FloatSlack, NoBoxIsPassedOverThatAMotionComesWithinTheMarginOf) {
   Random random(3);
   const auto point = [&] {
@@ -150,8 +150,8 @@ TEST(FloatSlack, ATraversalCacheHasEveryBoxThatItsBallTouches) {
   }
 }
 
-// It is not enough that they hold the triangles: the cylinders below have a slack of their own,
-// which would hide a missing one here.
+// Each cylinder must contain the child cylinders, not only the triangles. The child cylinders have
+// their own slack, which would hide a missing slack here.
 TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
   int held = 0;
   for (const char* name : {"cortex", "gear", "needles", "sphere"}) {
@@ -175,7 +175,7 @@ TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
           const double sine = its_axis.cross(axis).norm();
           const double height = std::abs(axis.dot(way)) + cosine * below.half_height[i];
           ASSERT_LE(height + sine * below.radius[i], above.half_height[lane]) << name << ' ' << i;
-          // An upper bound of the distance of its farthest point from the axis.
+          // An upper bound of the distance from the axis to the farthest point of the child.
           const double away = (way - axis.dot(way) * axis).norm() + sine * below.half_height[i];
           ASSERT_LE(away + below.radius[i], above.radius[lane]) << name << ' ' << i;
           ++held;
@@ -200,7 +200,7 @@ TEST(FloatSlack, AMeshIsNotExactIfOneCoordinateOfItsLastVertexIsNoFloat) {
 
 const Box bounds{Vec3::Constant(-100.0), Vec3::Constant(100.0)};
 
-// Compilers have been seen to take the rounded number for the number itself.
+// Some compilers used the unrounded number in place of the rounded one.
 TEST(BallScreen, SplitsTheCentreIntoTwoFloatsThatMeanIt) {
   Random random(9);
   for (int i = 0; i < 1000; ++i) {

@@ -23,7 +23,7 @@ bool have_equal_blocks(const WideBvh::Tree& one, const WideBvh::Tree& other) {
          one.frame().error == other.frame().error && one.frame().origin == other.frame().origin;
 }
 
-/// A torus of 1152 triangles, so that nodes are below nodes, whose coordinates are no floats.
+/// A torus of 1152 triangles: its tree has several levels, and its coordinates are not floats.
 class IndexCache : public testing::Test {
  protected:
   TemporaryFolder folder;
@@ -73,7 +73,7 @@ TEST_F(IndexCache, AFileWithAnyBitChangedIsNotLoaded) {
   const std::string good = contents_of(file);
   std::mt19937 random(1);
   for (int i = 0; i < 400; ++i) {
-    // Bits all over the header, and some of the rest.
+    // Changes bits all over the header, and some in the rest.
     const std::size_t bit = i < 200 ? random() % 1000 : random() % (8 * good.size());
     std::string bad = good;
     bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << bit % 8));
@@ -101,7 +101,7 @@ TEST_F(IndexCache, WhereNothingCanBeWrittenTheIndexIsBuiltAllTheSame) {
   fs::create_directories(file / "occupied");
   EXPECT_TRUE(have_equal_blocks(load_or_build(mesh, folder.path())->tree(), built.tree()));
   EXPECT_FALSE(save_index(built, folder.path() / "no" / "such.wide_bvh"));
-  // Nothing is left of the attempts.
+  // The failed attempts leave no files.
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
 }
 
@@ -121,7 +121,7 @@ TEST_F(IndexCache, ManyMayReadAndWriteAtOnce) {
   for (const int count : good) EXPECT_EQ(count, 30);
 }
 
-// An order that somebody made up, with all digests right.
+// A made-up order of triangles, with valid digests.
 
 class MadeUpOrder : public IndexCache {
  protected:
@@ -160,7 +160,7 @@ TEST_F(MadeUpOrder, ThatDoesNotNameEachTriangleOnceIsRefused) {
 }
 
 TEST_F(MadeUpOrder, ThatIsAcceptedFindsWhatBruteForceFinds) {
-  // Whatever it is: the tree is worse, and its answers are right.
+  // Any order gives right answers, if perhaps a worse tree.
   std::mt19937 random(2);
   const std::vector<Vec3> points = probing_points(*mesh, 1);
   for (int i = 0; i < 300; ++i) {

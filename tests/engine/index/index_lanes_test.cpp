@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Both trees: exactly the triangles that touch a ball, for little work; and the same triangles and
-// leaves in the same order, the same trees and the same work on every processor: all kinds that
-// this one can stand in for, down to one lane at a time.
+// Tests both trees. A query returns exactly the triangles that touch a ball, for little work.
+// Triangles, leaves, their order, trees and work are the same on every SIMD target of this
+// processor, down to one lane at a time.
 
 #include <cstring>
 #include <optional>
@@ -116,7 +116,7 @@ TYPED_TEST(TreeIndex, HoldsNothingInABallThatIsNoNumber) {
   EXPECT_TRUE(found.empty());
 }
 
-// Limits a little above what was found: a worse tree, or a test less sharp, shows here.
+// The limits are slightly above the measured values, to detect a worse tree or a weaker filter.
 TYPED_TEST(TreeIndex, ExaminesNoMoreThanItDidInFewBytes) {
   constexpr bool is_wide = std::is_same_v<TypeParam, WideBvh>;
   const auto mesh = mesh_of(make_cortex(0.7, 1));
@@ -203,7 +203,7 @@ TYPED_TEST(TreeIndex, EveryProcessorBuildsTheSameTree) {
   });
 }
 
-/// With coordinates that are floats, and that are not.
+/// Tests coordinates that are floats and coordinates that are not.
 TEST(WideBvhLanes, EveryProcessorRefitsToTheSameTree) {
   for (const double stretch : {2.0, 1.1}) {
     Surface surface = as_floats(make_shape("cortex"));

@@ -10,7 +10,7 @@
 namespace keepout {
 namespace {
 
-/// A mesh whose coordinates are not floats, so that leaves have them rounded.
+/// Returns a surface whose coordinates are not floats, so the leaves store them rounded.
 Surface in_odd_numbers(Surface surface) {
   for (Vec3& vertex : surface.vertices) vertex = vertex / 3.0 + Vec3(0.1, -200.0 / 7.0, 1e3 / 3.0);
   return surface;
@@ -67,7 +67,7 @@ TEST(NearestTriangle, IsFoundHoweverFarOffThePointIs) {
       const Vec3 point = mesh->bounds().center() + way;
       ASSERT_EQ(tree.nearest(point, unlimited), brute.nearest(point, unlimited))
           << shape << ", " << times;
-      const Vec3 along(point.x(), 0.0, 0.0);  // of many triangles as far off
+      const Vec3 along(point.x(), 0.0, 0.0);  // many triangles are about equally far away
       ASSERT_EQ(tree.nearest(along, unlimited), brute.nearest(along, unlimited))
           << shape << ", " << times;
     }
@@ -115,7 +115,7 @@ TEST(Refine, KeepsExactlyWhatTouchesTheBallInTheOrderOfIds) {
   for (const std::string_view name : {"star_bumps", "needles", "triangle_soup", "far_cube"}) {
     SCOPED_TRACE(name);
     const Mesh mesh(make_shape(name));
-    // All triangles are candidates, the last first.
+    // All triangles are candidates, in reverse order.
     std::vector<TriangleId> candidates(mesh.triangle_count());
     std::iota(candidates.rbegin(), candidates.rend(), TriangleId{0});
     HitBuffer hits(mesh.triangle_count());

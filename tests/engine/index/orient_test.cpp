@@ -8,7 +8,7 @@
 namespace keepout {
 namespace {
 
-/// The triangles, each begun at its lowest vertex: the same for the same windings.
+/// Returns the triangles, each starting at its lowest vertex: equal for equal windings.
 std::vector<Corners> windings(const Surface& surface) {
   std::vector<Corners> all = surface.triangles;
   for (Corners& c : all) {
@@ -17,34 +17,34 @@ std::vector<Corners> windings(const Surface& surface) {
   return all;
 }
 
-/// Orients a surface, which must come to the windings of another one.
+/// Orients a surface, and expects the windings of `expected`.
 Orientation oriented(Surface surface, const Surface& expected) {
   const Orientation done = orient(surface);
   EXPECT_EQ(windings(surface), windings(expected));
   return done;
 }
 
-/// The surface with some triangles wound the other way.
+/// Returns the surface with the given triangles flipped.
 Surface turned(Surface surface, std::initializer_list<std::size_t> triangles) {
   for (const std::size_t t : triangles) std::swap(surface.triangles[t][0], surface.triangles[t][1]);
   return surface;
 }
 
-/// Five times as large, about the same middle.
+/// Returns the surface five times as large, about the same center.
 Surface around(Surface surface) {
   for (Vec3& v : surface.vertices) v = 5.0 * (v - Vec3::Constant(0.2)) + Vec3::Constant(0.2);
   return surface;
 }
 
-/// A cube about the origin.
+/// Returns a cube centered at the origin.
 Surface cube(double width) {
-  Surface surface = make_cube(100.0);  // of one square a side
+  Surface surface = make_cube(100.0);  // one square per side
   for (Vec3& v : surface.vertices) v *= width / 100.0;
   return surface;
 }
 
-/// A strip of `count` quadrilaterals around the z axis whose end is joined to its beginning after a
-/// half turn.
+/// Returns a strip of `count` quadrilaterals around the z axis. Its end is joined to its beginning
+/// after a half turn.
 Surface moebius_strip(VertexId count) {
   Surface surface;
   for (VertexId i = 0; i < count; ++i) {
@@ -102,7 +102,7 @@ TEST(Orient, APartWithinAnotherKeepsItsWindingRelativeToIt) {
 }
 
 TEST(Orient, BesideIsNotWithin) {
-  // The small part is in the box of the large one, but behind its slanted face.
+  // The small part is in the bounding box of the large part, but outside its slanted face.
   Surface small = tetrahedron();
   for (Vec3& v : small.vertices) v = 0.1 * v + Vec3::Constant(0.8);
   const Orientation done =
@@ -112,7 +112,7 @@ TEST(Orient, BesideIsNotWithin) {
 }
 
 TEST(Orient, APartThatPokesOutOfAnotherFacesOutward) {
-  // The first vertex of the small part is in the large one, and others are behind its slanted face.
+  // The first vertex of the small part is in the large part; others are outside its slanted face.
   Surface large = tetrahedron();
   for (Vec3& v : large.vertices) v *= 100.0;
   const Surface small = moved(cube(8.0), {32.0, 32.0, 32.0});
@@ -123,13 +123,13 @@ TEST(Orient, APartThatPokesOutOfAnotherFacesOutward) {
   EXPECT_EQ(done.crossing_parts, 1u);
   EXPECT_EQ(done.inside_out_parts, 1u);
   EXPECT_EQ(done.nested_parts, 0u);
-  // One that pokes out of the box, too.
+  // This part also pokes out of the bounding box.
   surface = together(large, flipped(moved(small, {-32.0, 0, 0})));
   EXPECT_EQ(orient(surface).crossing_parts, 1u);
 }
 
 TEST(Orient, ManyPartsAreDecidedAsOneByOne) {
-  // Shells of three in a lattice: solid, cavity, island; every second is inside out.
+  // A lattice of nested shells: solid, cavity, island. Every second group is inside out.
   constexpr int wide = 6;
   Surface sound, surface;
   for (int i = 0; i < wide * wide * wide; ++i) {

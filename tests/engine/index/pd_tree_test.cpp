@@ -12,8 +12,8 @@
 namespace keepout {
 namespace {
 
-/// Fails unless the boxes of the subtree hold their triangles, and have directions that are
-/// orthonormal to the rounding of floats.
+/// Fails unless the boxes of the subtree contain their triangles, and their axes are orthonormal up
+/// to float rounding.
 void expect_boxes_hold(const PdTree::Tree& tree, std::size_t self, std::size_t first_leaf) {
   const PdNode& node = tree.nodes()[self];
   Eigen::Matrix3d axes;
@@ -75,8 +75,8 @@ std::vector<TriangleId> sorted_candidates(const SpatialIndex& index, const Ball&
   return {candidates.begin(), candidates.end()};
 }
 
-/// Triangles at both sides of the origin, each 40 times as near as the one before: at the mean,
-/// each split takes one triangle off.
+/// Returns triangles on both sides of the origin, each 40 times closer than the one before. A split
+/// at the mean removes one triangle at a time.
 std::shared_ptr<const Mesh> lopsided(int of_each_side) {
   Surface surface;
   for (int i = 0; i < of_each_side; ++i) {

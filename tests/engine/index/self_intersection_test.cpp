@@ -9,8 +9,8 @@
 namespace keepout {
 namespace {
 
-/// Whether the two triangles of the surface meet, asked in every way there is: either first, wound
-/// and begun in all ways, and moved about.
+/// Returns true if the two triangles of the surface meet. The answer must be the same for either
+/// order, for each winding and first corner, and after a linear map.
 bool meet(const Surface& given) {
   EXPECT_EQ(given.triangles.size(), 2u);
   const bool first_answer = meet_improperly(Mesh(given), 0, 1);
@@ -22,7 +22,7 @@ bool meet(const Surface& given) {
       if ((permutation / 9) % 2 == 1 && t == 0) std::swap(c[0], c[1]);
       if ((permutation / 18) % 2 == 1 && t == 1) std::swap(c[0], c[1]);
     }
-    for (Vec3& v : surface.vertices) {  // exact: whole numbers and halves
+    for (Vec3& v : surface.vertices) {  // exact for integers and halves
       if (permutation / 36 == 1) v = Vec3(v.z(), v.x() + 4 * v.y(), v.y());
     }
     const Mesh mesh(surface);
@@ -32,17 +32,17 @@ bool meet(const Surface& given) {
   return first_answer;
 }
 
-/// The triangle (0, 0), (4, 0), (0, 4) in the plane z = 0, and one of three further points.
+/// Returns the triangle (0, 0), (4, 0), (0, 4) in the plane z = 0, and one of three more points.
 Surface beside_base(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, a, b, c}, {{0, 1, 2}, {3, 4, 5}}};
 }
 
-/// The same, with the second triangle begun at the base's corner at the origin.
+/// Like beside_base, but the second triangle starts at the base's corner at the origin.
 Surface at_base_corner(const Vec3& b, const Vec3& c) {
   return {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, b, c}, {{0, 1, 2}, {0, 3, 4}}};
 }
 
-/// The same, on the base's edge along x.
+/// Like beside_base, but the second triangle shares the base's edge along x.
 Surface on_base_edge(const Vec3& apex) {
   return {{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, apex}, {{0, 1, 2}, {1, 0, 3}}};
 }
@@ -50,7 +50,7 @@ Surface on_base_edge(const Vec3& apex) {
 TEST(MeetImproperly, TrianglesApartDoNot) {
   EXPECT_FALSE(meet(beside_base({0, 0, 1}, {4, 0, 1}, {0, 4, 1})));
   EXPECT_FALSE(meet(beside_base({5, 0, -1}, {5, 0, 1}, {9, 0, 0})));
-  EXPECT_FALSE(meet(beside_base({3, 3, -1}, {3, 3, 1}, {4, 4, 0})));  // the plane is cut beside it
+  EXPECT_FALSE(meet(beside_base({3, 3, -1}, {3, 3, 1}, {4, 4, 0})));  // crosses z = 0 off the base
 }
 
 TEST(MeetImproperly, TrianglesThatCutThroughEachOtherDo) {
@@ -84,7 +84,7 @@ TEST(MeetImproperly, ACommonCornerAloneDoesNotCount) {
 
 TEST(MeetImproperly, BeyondACommonCornerItDoes) {
   EXPECT_TRUE(meet(at_base_corner({1, 1, -1}, {1, 1, 1})));  // cuts through
-  EXPECT_TRUE(meet(at_base_corner({9, 9, -1}, {9, 9, 1})));  // and farther than the base reaches
+  EXPECT_TRUE(meet(at_base_corner({9, 9, -1}, {9, 9, 1})));  // and extends beyond the base
   EXPECT_TRUE(meet(at_base_corner({1, 1, 0}, {1, 1, 3})));   // an edge lies on the base
   EXPECT_TRUE(meet(at_base_corner({2, 0, 0}, {2, -1, 3})));  // or on its edge
   EXPECT_TRUE(meet(at_base_corner({1, 2, 0}, {-3, 1, 0})));  // overlaps in its plane
@@ -127,7 +127,7 @@ TEST(SelfIntersections, OfSimpleSurfacesThereAreNone) {
 TEST(SelfIntersections, OfTwoToriThroughEachOtherAreFoundByAnyIndex) {
   Surface other = moved(torus(12), {3, 0, 0});
   for (Vec3& v : other.vertices) v = Vec3(v.x(), v.z(), v.y());
-  EXPECT_EQ(count(together(torus(12), other)), 0u);  // linked, as in a chain
+  EXPECT_EQ(count(together(torus(12), other)), 0u);  // linked like a chain
   EXPECT_GT(count(together(torus(12), moved(torus(12), {1, 0.25, 0}))), 20u);
 }
 
@@ -151,7 +151,7 @@ TEST(FindSelfIntersections, ReportsEachTriangleThatItHasExamined) {
   EXPECT_EQ(examined, mesh->triangle_count());
 }
 
-/// Where the two triangles of a mesh meet.
+/// Returns the place where the two triangles of a mesh meet.
 Vec3 place_of(const Mesh& mesh) {
   const auto shared = std::make_shared<const Mesh>(mesh);
   return find_self_intersections(*shared, PdTree(shared)).places.places.at(0).at;
@@ -159,7 +159,7 @@ Vec3 place_of(const Mesh& mesh) {
 
 TEST(FindSelfIntersections, PlacesAreOnBothTriangles) {
   const Vec3 base_middle = Vec3(4, 4, 0) / 3;
-  // A duplicate, a smaller one within, and a star of which no corner is on the other triangle.
+  // A duplicate, a smaller triangle inside, and a star with all corners outside the other.
   for (const Surface& flat :
        {Surface{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {1, 2, 0}}},
         beside_base(base_middle, base_middle + Vec3(0.1, -0.1, 0), base_middle + Vec3(0, 0.1, 0)),
@@ -167,7 +167,7 @@ TEST(FindSelfIntersections, PlacesAreOnBothTriangles) {
     const Vec3 at = place_of(Mesh(flat));
     EXPECT_NEAR((at - base_middle).norm(), 0.0, 0.3);
   }
-  // Touching by a corner, by an edge in the plane, and by edges that cross.
+  // Triangles that touch at a corner, along an edge in the plane, and where edges cross.
   EXPECT_EQ(place_of(Mesh(beside_base({1, 1, 0}, {9, 9, 9}, {-9, 1, 9}))), Vec3(1, 1, 0));
   EXPECT_EQ(place_of(Mesh(beside_base({1, 1, 0}, {1, 2, 0}, {9, 9, 9}))), Vec3(1, 1.5, 0));
   EXPECT_EQ(place_of(Mesh(beside_base({1, 0, -1}, {1, 0, 1}, {1, -9, 0}))), Vec3(1, 0, 0));

@@ -9,8 +9,8 @@
 namespace keepout {
 namespace {
 
-/// Fails unless every box of the subtree holds the triangles in it, and a child stands behind its
-/// parent. Appends its leaves.
+/// Fails unless every box of the subtree contains its triangles, and each child comes after its
+/// parent. Appends the leaves of the subtree.
 void expect_boxes_hold(const WideBvh::Tree& index, std::size_t self,
                        std::vector<std::size_t>& leaves) {
   const NodeBlock& node = index.nodes()[self];

@@ -11,13 +11,13 @@
 namespace keepout {
 namespace {
 
-/// Two triangles on the edge from the origin along y; the second apex is `height` above the plane
-/// of the first, whose normal is along z.
+/// Returns two triangles that share the edge from the origin along y. The second apex is `height`
+/// above the plane of the first, whose normal is along z.
 Surface pair_with_apex(double height) {
   return {{{0, 0, 0}, {0, 1, 0}, {-1, 0.5, 0}, {1, 0.5, height}}, {{0, 1, 2}, {1, 0, 3}}};
 }
 
-/// The number of the edge of t that lies between the vertices a and b, whichever way it runs.
+/// Returns the number of the edge of t between the vertices a and b, in either direction.
 int edge_between(const Mesh& mesh, TriangleId t, VertexId a, VertexId b) {
   for (int e = 0; e < 3; ++e) {
     const VertexId from = mesh.corners(t)[e];
@@ -116,7 +116,7 @@ TEST(Adjacency, AllEdgesOfATetrahedronAreRidgesFromOutsideAndValleysFromInside) 
   }
 }
 
-/// A torus with holes, a fin and flipped triangles.
+/// Returns a torus with holes, a fin and flipped triangles.
 Surface mixed() {
   Surface surface = torus(12);
   std::swap(surface.triangles[40][1], surface.triangles[40][2]);
@@ -161,7 +161,7 @@ TEST(Adjacency, AgreesWithAnIndependentRecount) {
         ASSERT_EQ(kind, EdgeKind::inconsistent);
         continue;
       }
-      // The apex of the neighbor is below the plane of t at a ridge, and above it in a valley.
+      // The apex of the neighbor is below the plane of t at a ridge, and above it at a valley.
       const Vec3 apex = mesh.vertex(mesh.corners(other)[(back + 2) % 3]);
       const double height = mesh.normal(t).dot(apex - mesh.triangle(t)[0]);
       ASSERT_EQ(kind, height < -1e-9  ? EdgeKind::convex
@@ -198,7 +198,7 @@ TEST(Adjacency, DoesNotDependOnTheOrderOfTrianglesOrCorners) {
 }
 
 TEST(Bend, IsTheSameFromBothSidesToTheLastBit) {
-  // Around the tolerance, where rounding decides: 1e-12 rad.
+  // Angles around the tolerance of 1e-12 rad, where rounding decides.
   std::mt19937 random(5);
   std::uniform_real_distribution<double> height(-2e-12, 2e-12);
   int flat = 0;

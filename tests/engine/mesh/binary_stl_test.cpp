@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A reader of our own, which welds nothing: no reader is tested with its own idea of the format.
+/// An independent reader without welding: no reader is tested with its own idea of the format.
 Surface unwelded(const fs::path& path) {
   const std::string bytes = contents_of(path);
   Surface surface;
@@ -180,7 +180,7 @@ TEST_F(BinaryStl, WritingOverAFolderIsAnErrorAndLeavesNothingElse) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 
-// Read and welded at once.
+// Reading and welding in one pass.
 
 bool are_equal(const Surface& one, const Surface& other) {
   return one.triangles == other.triangles && one.vertices.size() == other.vertices.size() &&
@@ -189,7 +189,7 @@ bool are_equal(const Surface& one, const Surface& other) {
 }
 
 TEST_F(BinaryStl, ReadAndWeldedAtOnceIsTheSameOnAnyNumberOfThreads) {
-  // Several blocks, whose vertices are shared with near ones, or with any.
+  // Several blocks. They share vertices with near blocks, or, if shuffled, with any block.
   for (const Surface& surface : {torus(160), shuffled(torus(160), 1), single_triangle()}) {
     write_binary_stl(file, surface);
     const Surface expected = weld(unwelded(file), 1);
@@ -231,7 +231,7 @@ TEST_F(BinaryStl, ReadAndWeldedAtOnceHasTheSameErrorsOnAnyNumberOfThreads) {
   const std::string good = contents_of(file);
   folder.write("mesh.stl", good.substr(0, good.size() - 1));
   for (const unsigned threads : {1u, 2u, 8u}) EXPECT_FALSE(read(file, threads).has_value());
-  // Of several that are bad it is the first, in whichever block.
+  // The error names the first of several bad triangles, in any block.
   std::string bad = good;
   for (const std::size_t triangle : {51'000u, 40'003u, 40'001u, 33'000u, 16'383u}) {
     const float value = std::numeric_limits<float>::infinity();

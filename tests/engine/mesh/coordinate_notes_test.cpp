@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RAS and LPS: what files say, and what becomes of it.
+// RAS and LPS: the space that a file states, and conversion on request.
 
 #include "engine/mesh/mesh_files.h"
 #include "trials.h"
@@ -9,7 +9,7 @@ namespace {
 
 using enum AnatomicalSpace;
 
-// As 3D Slicer writes them.
+// Writers in the style of 3D Slicer.
 
 std::string slicer_binary_stl(const Surface& surface, std::string header) {
   header.resize(80, '\0');
@@ -116,7 +116,7 @@ TEST_P(TaggedMesh, OnDemandItIsTurnedByHalfATurnAboutZExactly) {
     EXPECT_EQ(turned.mesh->normal(t), Vec3(-before.x(), -before.y(), before.z()))
         << "outwards still";
   }
-  // Twice is back.
+  // A file that already states RAS is not converted.
   EXPECT_TRUE(std::ranges::equal(load_tagged("SPACE=RAS", {.space = ras}).mesh->vertices(),
                                  as_is.mesh->vertices()));
 }
@@ -130,7 +130,7 @@ TEST_P(TaggedMesh, ADemandOnAFileThatDoesNotSayIsAnErrorThatAsksForTheSpace) {
   EXPECT_EQ(turned.mesh->vertex(0).x(), -load_tagged("made by hand").mesh->vertex(0).x());
   EXPECT_EQ(turned.stated, unstated);
   EXPECT_EQ(load_tagged("made by hand", {.untagged = lps}).space, lps);
-  // A file that says is believed.
+  // A stated space has priority over `untagged`.
   EXPECT_EQ(load_tagged("SPACE=RAS", {.untagged = lps}).space, ras);
 }
 
@@ -175,7 +175,7 @@ TEST_F(LoadMesh, ATagAtTheEndOfAnStlHeaderCountsAndBeyondItDoesNot) {
   EXPECT_EQ(load("b.stl", slicer_binary_stl(surface, at_the_end + tag)).stated, unstated)
       << "part of a word";
   EXPECT_EQ(load("c.stl", slicer_binary_stl(surface, at_the_end + "  SPACE=L")).stated, unstated);
-  // "solid" at the beginning does not make it a text.
+  // A binary file may begin with "solid".
   EXPECT_EQ(load("d.stl", slicer_binary_stl(surface, "solid x SPACE=RAS")).stated, ras);
 }
 
@@ -200,7 +200,7 @@ TEST_F(LoadMesh, TagsInOddPlacesAreFound) {
   EXPECT_EQ(load("end.stl", replaced(text, "endsolid a name with facet in it\n", end)).stated, ras);
   EXPECT_EQ(load("upper.stl", replaced(text, "solid a name", "SOLID SPACE=RAS a name")).stated,
             ras);
-  // Two solids that disagree.
+  // Two solids state different spaces.
   EXPECT_CONTAINS(complaint("two.stl", slicer_text_stl(surface, "one SPACE=LPS") +
                                            slicer_text_stl(surface, "two SPACE=RAS")),
                   "which cannot both be");

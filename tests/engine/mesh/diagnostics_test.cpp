@@ -10,7 +10,7 @@ namespace {
 
 MeshFindings examine(const Surface& surface) { return keepout::examine(Mesh(surface)); }
 
-/// Two tetrahedra that have only the vertex at the origin in common.
+/// Returns two tetrahedra that share only the vertex at the origin.
 Surface pinched() {
   Surface mirrored = tetrahedron();
   for (Vec3& v : mirrored.vertices) v = -v;
@@ -91,7 +91,7 @@ TEST(Diagnostics, CountsEachNonManifoldEdgeOnce) {
 }
 
 TEST(Diagnostics, ClosedWithANonManifoldEdgeIsClosedButNotWatertight) {
-  // Two tetrahedra with one edge in common: four triangles on it.
+  // Two tetrahedra share one edge, which thus has four triangles.
   Surface other = tetrahedron();
   for (Vec3& v : other.vertices) v = Vec3(-v.x(), -v.y(), v.z());
   const MeshFindings findings = examine(weld(together(tetrahedron(), other)));
@@ -137,7 +137,7 @@ TEST(Diagnostics, TellsTrianglesThatNameAVertexTwiceFromCollinearOnes) {
 TEST(Diagnostics, ATriangleThatNamesAVertexTwiceDoesNotOpenOrJoinAnything) {
   Surface surface = together(tetrahedron(), moved(tetrahedron(), {5, 0, 0}));
   surface.triangles.push_back({1, 2, 1});
-  surface.triangles.push_back({3, 4, 4});  // spans both
+  surface.triangles.push_back({3, 4, 4});  // connects both
   const MeshFindings findings = examine(surface);
   EXPECT_EQ(findings.edges, 12u);
   EXPECT_EQ(findings.components, 2u);
@@ -147,7 +147,7 @@ TEST(Diagnostics, ATriangleThatNamesAVertexTwiceDoesNotOpenOrJoinAnything) {
 }
 
 TEST(Diagnostics, CollinearMeansExactlySo) {
-  // No double lies between these; the middle point is a last bit off the line in the second.
+  // The two middle points are neighboring doubles; only the first is exactly on the line.
   const double third = 1.0 / 3.0;
   const Surface on_line{{{0, 0, 0}, {third, third, third}, {1, 1, 1}}, {{0, 1, 2}}};
   Surface off_line = on_line;
@@ -158,8 +158,8 @@ TEST(Diagnostics, CollinearMeansExactlySo) {
 
 TEST(Diagnostics, CountsDuplicatesWhateverTheirWindingAndFirstCorner) {
   Surface surface = tetrahedron();
-  surface.triangles.push_back({2, 1, 0});  // as the first, begun elsewhere
-  surface.triangles.push_back({1, 2, 0});  // and turned over
+  surface.triangles.push_back({2, 1, 0});  // the first triangle, with another first corner
+  surface.triangles.push_back({1, 2, 0});  // and flipped
   surface.triangles.push_back({3, 2, 1});
   EXPECT_EQ(examine(surface).duplicate_triangles, 3u);
 }
@@ -203,7 +203,7 @@ TEST(Diagnostics, FindsTheSameInAnyOrderOfTriangles) {
   }
 }
 
-/// The middles of faults.
+/// Returns the centers of faults.
 std::vector<Vec3> middles(const FaultPlaces& faults) {
   std::vector<Vec3> all;
   for (const FaultPlace& place : faults.places) all.push_back(place.at);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Broken and odd meshes of the real world (fixtures/SOURCES.md; `fixtures/prepare dirty`).
+// Broken and unusual real meshes (fixtures/SOURCES.md; `fixtures/prepare dirty`).
 
 #include <gtest/gtest.h>
 
@@ -59,11 +59,11 @@ TEST_F(DirtyMesh, EachLoadsOrIsAnErrorNamingTheFile) {
   EXPECT_GT(refused, 5u);
 }
 
-/// Figures of which at least the first two were counted by other programs before.
+/// Known counts. Other programs confirmed at least the first two.
 struct Known {
   std::string_view file;
   std::size_t triangles, boundary, non_manifold, inconsistent, degenerate, duplicates;
-  std::optional<std::size_t> self_intersections;  // by CGAL's exact constructions too
+  std::optional<std::size_t> self_intersections;  // confirmed by CGAL's exact constructions
 };
 
 constexpr Known known[] = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is particular to one format, well-formed and not.
+// Properties of single formats, well-formed and malformed.
 #include <Eigen/Geometry>
 
 #include "engine/mesh/mesh_files.h"
@@ -22,7 +22,7 @@ TEST_F(LoadMesh, PolygonsAreCutIntoTrianglesWoundAlike) {
   const LoadedMesh off = load("mesh.off", square_off);
   EXPECT_EQ(off.mesh->triangle_count(), 2u);
   EXPECT_DOUBLE_EQ(area_of(*off.mesh), 1.0);
-  // An L of six corners, which a fan from the first would not cover right.
+  // An L of six corners: a fan from the first corner would not cover it correctly.
   const LoadedMesh obj = load("mesh.obj",
                               "v 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 2 0 0\n"
                               "f -6 -5 -4 -3 -2 -1\n");
@@ -32,7 +32,7 @@ TEST_F(LoadMesh, PolygonsAreCutIntoTrianglesWoundAlike) {
 }
 
 TEST_F(LoadMesh, AConcavePolygonWithADoubledCornerIsFilledOnce) {
-  // An L of area 700 whose corner `doubled` is there twice, begun at the corner `first`.
+  // An L of area 700 that starts at the corner `first` and has the corner `doubled` twice.
   const std::vector<Vec3> corners{{40, 0, 0},  {40, 10, 0}, {10, 10, 0},
                                   {10, 40, 0}, {0, 40, 0},  {0, 0, 0}};
   for (std::size_t doubled = 0; doubled < corners.size(); ++doubled) {
@@ -80,7 +80,7 @@ TEST_F(LoadMesh, FacesOfFewerThanThreeCornersAreLeftOutWithAWarning) {
   EXPECT_CONTAINS(loaded.warnings[0], "2 faces");
 }
 
-// What headers declare.
+// Counts in headers.
 
 TEST_F(LoadMesh, CountsThatTheFileHasNoRoomForAreErrors) {
   for (const std::string_view count :
@@ -110,7 +110,7 @@ TEST_F(LoadMesh, AListLongerThanTheFileIsAnError) {
   const std::size_t list = ply.size() - 15;  // 1 byte of length, 12 of corners, 2 of quality
   ply.replace(list, 1, "\xff\xff\xff\xff");
   EXPECT_CONTAINS(complaint("mesh.ply", ply), "cut short");
-  // A list that nobody asks for, of 32 GB.
+  // An unused list of 32 GB.
   ply = replaced(ply, "uint int vertex_indices\n",
                  "uint int others\nproperty list uchar int vertex_indices\n");
   EXPECT_CONTAINS(complaint("mesh.ply", ply), "cut short");
@@ -162,7 +162,7 @@ TEST_F(LoadMesh, IndicesOfVerticesThatAreNotThereAreErrors) {
   EXPECT_CONTAINS(complaint("mesh.ply", as_binary_ply<float>(surface, true)), "negative");
 }
 
-// Each format by itself.
+// Single formats.
 
 TEST_F(LoadMesh, ObjIndicesMayHaveLeadingZerosAndCountFromTheEnd) {
   const LoadedMesh loaded = load("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 01 002 -1\n");
@@ -275,7 +275,7 @@ TEST_F(LoadMesh, APlyPropertyThatIsDeclaredTwiceIsAnError) {
 
 TEST_F(LoadMesh, APlyHeaderThatDoesNotEndIsReadNoFurtherThanHeadersGo) {
   const fs::path file = folder.write("mesh.ply", "ply\nformat ascii 1.0\ncomment ");
-  fs::resize_file(file, std::uintmax_t{1} << 28);  // a hole, which takes no room on the disk
+  fs::resize_file(file, std::uintmax_t{1} << 28);  // a hole, which uses no disk space
   EXPECT_CONTAINS(complaint(file), "header");
   EXPECT_CONTAINS(complaint(file), "16 MiB");
 }

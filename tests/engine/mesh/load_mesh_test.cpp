@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds for every format.
+// Requirements on every format.
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -45,14 +45,14 @@ TEST_P(LoadMeshFormat, CutShortAnywhereItIsAnErrorOrWarnsOfIt) {
                                   GetParam().name == "TextPly" || GetParam().name == "TextVtk";
   for (std::size_t length = 0; length < whole.size(); ++length) {
     const std::string contents = whole.substr(0, length);
-    // White space is all that a text may lack; nothing is lost with it.
+    // Only white space may be missing from a text without an error.
     const std::string_view lacking = std::string_view(whole).substr(length);
     const bool lacks_nothing = lacking.find_first_not_of(" \n") == std::string_view::npos;
     std::size_t triangles = 0;
     try {
       const LoadedMesh loaded = load_unchecked(GetParam().file, contents);
       triangles = loaded.mesh->triangle_count();
-      // OBJ has no counts: cut within a line it warns, and at the end of one nothing can tell.
+      // OBJ has no counts: cuts within a line cause a warning, cuts between lines are unnoticed.
       if (ends_with_a_number && !contents.ends_with('\n')) {
         ASSERT_FALSE(loaded.warnings.empty()) << length;
       }
@@ -60,7 +60,7 @@ TEST_P(LoadMeshFormat, CutShortAnywhereItIsAnErrorOrWarnsOfIt) {
       ASSERT_GT(std::strlen(error.what()), folder.path().string().size() + 10) << length;
     }
     if (has_counts && triangles > 0) {
-      // The last number of a text, or the name after "endsolid", may be cut within itself.
+      // The cut may be within the last number of a text, or within the name after "endsolid".
       const bool within_last_word = lacking.find_first_of(" \n") == lacking.size() - 1;
       const bool within_name = whole.substr(0, length).find("endsolid") != std::string::npos;
       ASSERT_TRUE(lacks_nothing || within_last_word || within_name) << length;
@@ -106,7 +106,7 @@ TEST_P(LoadMeshFormat, WithBytesChangedItLoadsOrIsAnErrorNamingTheFile) {
   EXPECT_GT(refused, 0);
 }
 
-/// The formats that are text, where layout is free.
+/// Text formats with free layout, without VTK and VTP.
 class LoadMeshText : public LoadMeshFormat {};
 
 INSTANTIATE_TEST_SUITE_P(Formats, LoadMeshText,
@@ -166,7 +166,7 @@ TEST_P(LoadMeshText, NumbersMayBeWrittenInAnyCommonWay) {
     EXPECT_NEAR(loaded.mesh->bounds().low.x(), 0.25, 1e-7) << same;
     EXPECT_EQ(loaded.mesh->vertex_count(), 4u) << same;
   }
-  // Even where the sign is followed by the point.
+  // A decimal point may follow the sign.
   const LoadedMesh loaded = load(GetParam().file, replaced(text, "0.25", "-.25"));
   EXPECT_EQ(loaded.mesh->bounds().low.x(), -0.25);
 }
@@ -189,7 +189,7 @@ TEST_P(LoadMeshText, ANumberTooSmallForItsTypeIsZero) {
 }
 
 TEST_P(LoadMeshText, TextIsReadToTheNearestNumberAsDocumented) {
-  // What load_mesh.h promises: our text PLY declares floats, and the other formats nothing.
+  // As load_mesh.h specifies: the text PLY here declares floats, the other formats declare no type.
   const bool is_ply = GetParam().name == "TextPly";
   for (const double scale : {0.01, 1.0, 100.0}) {
     const Surface surface = enlarged(torus(40), scale);
@@ -227,7 +227,7 @@ TEST_P(LoadMeshText, WhatWasPrintedFromFloatsIsReadAsFloats) {
         for (int i = 0; i < 3; ++i) {
           const Vec3 read = loaded.mesh->triangle(t)[i];
           ASSERT_EQ(read, (read.cast<float>().cast<double>().eval())) << some;
-          if (some < 9) continue;  // these digits tell a float from any other
+          if (some < 9) continue;  // fewer than 9 digits do not identify a float
           ASSERT_EQ(read, surface.vertices[surface.triangles[t][i]]) << some;
         }
       }
@@ -278,7 +278,7 @@ TEST_F(LoadMesh, ABinaryPlyWithACoordinateThatIsNotFiniteIsAnErrorNamingTheVerte
 }
 
 TEST_F(LoadMesh, ABinaryPlyWhoseFirstByteIsALineFeedIsReadInPlace) {
-  // The header ends with the line feed before it.
+  // The byte follows the line feed that ends the header.
   Surface surface = single_triangle();
   surface.vertices[0].x() = double{std::bit_cast<float>(0x3F80000Au)};
   const LoadedMesh loaded = load("mesh.ply", as_binary_ply<float>(surface, false));
@@ -302,7 +302,7 @@ TEST_F(LoadMesh, LargeFilesAreReadToTheirEnd) {
   }
 }
 
-// Files that are not what they seem, or cannot be read.
+// Files that cannot be read, or whose content contradicts their name.
 
 TEST_F(LoadMesh, WhatIsNotAReadableFileIsAnError) {
   EXPECT_CONTAINS(complaint(folder.path() / "absent.stl"), "no such file");

@@ -18,9 +18,9 @@ namespace keepout {
 
 namespace fs = std::filesystem;
 
-// Writers of our own: no reader is tested with its own library's idea of a format.
+// Independent writers, so that no reader is tested with its own library's idea of a format.
 
-/// How the writers write numbers: as short as 9 digits allow, unless told otherwise.
+/// The format of written numbers. By default, they are as short as 9 digits allow.
 inline std::ios_base::fmtflags notation{};
 inline int digits = 9;
 
@@ -61,7 +61,7 @@ inline std::string as_obj(const Surface& surface) {
   for (const Vec3& v : surface.vertices) text += "v " + row(v);
   bool other = false;
   for (const Corners& c : surface.triangles) {
-    // Materials change all the time: no reason to reorder the triangles.
+    // Alternating materials must not reorder the triangles.
     text += (other = !other) ? "usemtl one\n" : "usemtl two\n";
     text += "f " + std::to_string(c[0] + 1) + " " + std::to_string(c[1] + 1) + "//1 " +
             std::to_string(c[2] + 1) + "/2/3\n";
@@ -139,7 +139,7 @@ inline std::string as_text_vtk(const Surface& surface) {
   return text;
 }
 
-/// As VTK 9 writes it.
+/// Writes the file as VTK 9 does.
 template <class Real>
 std::string as_binary_vtk(const Surface& surface) {
   std::string text = vtk_title("BINARY", "5.1") + "POINTS " +
@@ -178,7 +178,6 @@ inline std::string in_base64(std::string_view bytes) {
   return text;
 }
 
-/// How a VTP file is written.
 struct VtpStyle {
   enum class Format { text, base64, appended_base64, appended_raw };
   Format format = Format::text;
@@ -188,7 +187,6 @@ struct VtpStyle {
   std::string space = {};
 };
 
-/// Writes the arrays of a VTP file.
 class VtpWriter {
  public:
   explicit VtpWriter(VtpStyle style) : style_(std::move(style)) {}
@@ -268,7 +266,7 @@ class VtpWriter {
       append_count(counts, bytes.size());
       return plain_or_base64(counts + bytes);
     }
-    // Blocks of 64 bytes, the last of which is shorter.
+    // Blocks have 64 bytes; the last one is shorter.
     constexpr std::size_t size = 64;
     const std::size_t blocks = (bytes.size() + size - 1) / size;
     append_count(counts, blocks);
@@ -300,7 +298,6 @@ struct Format {
   std::function<std::string(const Surface&)> write;
 };
 
-/// What a test prints of one.
 inline void PrintTo(const Format& format, std::ostream* out) { *out << format.name; }
 
 inline const std::vector<Format>& formats() {
@@ -332,7 +329,7 @@ inline const std::vector<Format>& formats() {
   return all;
 }
 
-/// A torus whose coordinates are short numbers, which every format holds exactly.
+/// Returns a torus with short coordinates, which every format stores exactly.
 inline Surface round_torus() {
   Surface surface = torus(8);
   for (Vec3& v : surface.vertices) v = (64.0 * v.array()).round() / 64.0;
@@ -350,7 +347,7 @@ inline std::string replaced(std::string text, std::string_view from, std::string
   return text;
 }
 
-/// A polygon of four corners.
+/// An OFF file with one polygon of four corners.
 inline const char* const square_off = "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
 
 class LoadMesh : public testing::Test {
@@ -358,16 +355,17 @@ class LoadMesh : public testing::Test {
   LoadedMesh load(std::string_view name, std::string_view contents) const {
     return load_mesh(folder.write(name, contents));
   }
-  /// Warnings are of the file then, and not of the small, open surface in it.
+  /// Loads without a mesh check, so that there are no warnings about the small, open surface.
   LoadedMesh load_unchecked(std::string_view name, std::string_view contents) const {
     return load_mesh(folder.write(name, contents), {.check = MeshCheck::none});
   }
 
-  /// What load_mesh says against the file; the test fails if it says nothing or not which file.
+  /// Returns the message of load_mesh after the file name. Fails if there is no error, or if the
+  /// message does not begin with the file name.
   std::string complaint(std::string_view name, std::string_view contents) const {
     return complaint(folder.write(name, contents));
   }
-  /// A change to contents, and what load_mesh must say then.
+  /// A change to the contents, and the text that the message must contain.
   struct Fault {
     std::string_view from, to, says;
   };

@@ -20,7 +20,7 @@ class BinaryPly : public testing::Test {
   TemporaryFolder folder;
 };
 
-/// A polygon in the plane z = 0, alone in a file after a triangle of its first corners.
+/// Returns a file with a polygon in the plane z = 0, after a triangle of its first corners.
 std::string polygon_ply(const std::vector<Vec3>& points) {
   std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex " +
                     std::to_string(points.size()) +
@@ -57,7 +57,7 @@ TEST_F(BinaryPly, APolygonIsCoveredOnceHoweverItIsBent) {
       {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}},
       {{0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}},                    // an arrow
       {{2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}, {0, 0, 0}, {2, 0, 0}},  // an L
-      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {0, 1, 0}},  // on lines
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {0, 1, 0}},  // with collinear corners
       {{0, 0, 0},
        {6, 0, 0},
        {6, 3, 0},
@@ -77,7 +77,7 @@ TEST_F(BinaryPly, APolygonIsCoveredOnceHoweverItIsBent) {
     ASSERT_EQ(surface.triangles.size(), polygons[p].size() - 1);
     double area = 0.0;
     for (std::size_t t = 1; t < surface.triangles.size(); ++t) {
-      // None turned over: with the right sum, none is outside or covered twice.
+      // No triangle is flipped. With the right total area, no area is outside or covered twice.
       EXPECT_GE(doubled_area_of(surface, t), 0.0);
       area += 0.5 * doubled_area_of(surface, t);
     }
@@ -162,7 +162,7 @@ TEST_F(BinaryPly, CutShortAnywhereItIsAnError) {
 TEST_F(BinaryPly, AnErrorNamesTheFaceThatItIsIn) {
   const std::string whole = polygon_ply({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}});
   std::string names_none = whole;
-  names_none[whole.size() - 1] = '\x01';  // of its last corner
+  names_none[whole.size() - 1] = '\x01';  // an invalid last corner
   std::string negative = whole;
   for (std::size_t i = 17; i <= 20; ++i) negative[whole.size() - i] = '\xff';
   for (const std::string& damaged : {names_none, negative, whole.substr(0, whole.size() - 1)}) {

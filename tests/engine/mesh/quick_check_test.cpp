@@ -48,7 +48,7 @@ TEST(QuickCheck, OfASoundMeshThereIsNothingToSay) {
   EXPECT_TRUE(quick_check(Mesh(make_shape("far_cube"))).empty());
 }
 
-/// The cube, so many times as large as its 100 mm.
+/// Returns the cube of 100 mm, scaled by `factor`.
 Mesh cube_times(double factor) { return Mesh(enlarged(make_cube(25.0), factor)); }
 
 TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
@@ -62,7 +62,7 @@ TEST(QuickCheck, ASizeThatNoAnatomyHasIsSaidToBeInAnotherUnit) {
   ASSERT_EQ(micrometres.size(), 1u);
   EXPECT_CONTAINS(micrometres[0], "the mesh is 100000 mm across");
   EXPECT_CONTAINS(micrometres[0], "in um it would be 100 mm across");
-  EXPECT_TRUE(quick_check(cube_times(0.25)).empty());  // an aneurysm
+  EXPECT_TRUE(quick_check(cube_times(0.25)).empty());  // as large as an aneurysm
   const auto scaled = quick_check(cube_times(1000.0), 0, 1000.0);
   ASSERT_EQ(scaled.size(), 1u);
   EXPECT_CONTAINS(scaled[0], "100000 mm across after it was scaled by 1000");

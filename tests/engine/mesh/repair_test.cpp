@@ -12,7 +12,7 @@ TEST(RemoveFaultyTriangles, SegmentsAndDuplicatesGo) {
   surface.triangles.push_back(surface.triangles[0]);
   surface.triangles.push_back(
       {surface.triangles[1][1], surface.triangles[1][0], surface.triangles[1][2]});
-  surface.vertices.emplace_back(9, 9, 9);  // of no triangle
+  surface.vertices.emplace_back(9, 9, 9);  // unused
   const RemovedTriangles removed = remove_faulty_triangles(surface);
   EXPECT_EQ(removed.degenerate, 1u);
   EXPECT_EQ(removed.duplicates, 2u);
@@ -30,7 +30,7 @@ TEST(RemoveFaultyTriangles, ATriangleOnALineStaysOnlyIfNeighborsWouldGape) {
   EXPECT_EQ(removed.degenerate, 1u);
   EXPECT_EQ(lone.triangles.size(), 4u);
 
-  // A square of three triangles, of which one is on its diagonal.
+  // A square of four triangles, of which one lies on the diagonal and has no area.
   Surface joined{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}},
                  {{0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {4, 2, 3}}};
   removed = remove_faulty_triangles(joined);

@@ -40,7 +40,7 @@ Surface rotated(Surface surface, double angle) {
   return surface;
 }
 
-/// Points off the surface, by `offset` in some direction, on faces, edges and vertices.
+/// Returns random points, and points at random distances from faces, edges and vertices.
 std::vector<Vec3> tips_around(const Mesh& mesh, std::size_t count, Random& random) {
   count = test::trials(count);
   std::vector<Vec3> tips = random_points(mesh, count, random);
@@ -75,7 +75,7 @@ TEST_P(SideOfSolid, AgreesWithAnIndependentInsideTest) {
     const double distance = classify.distance(tip);
     ASSERT_NEAR(side->distance, distance, 1e-13 * (tip.norm() + 100.0));
     ASSERT_NEAR(side->outward.norm(), 1.0, 1e-12);
-    if (distance < 1e-11 * (tip.norm() + 100.0)) continue;  // all but on the surface
+    if (distance < 1e-11 * (tip.norm() + 100.0)) continue;  // almost on the surface
     const bool is_inside = classify.inside(tip);
     ASSERT_EQ(!side->is_outside, is_inside != inside_out)
         << "at " << tip.transpose() << ", distance " << distance;
@@ -147,11 +147,11 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(p.param.shape) + (p.param.rotation == 0.0 ? "" : "_rotated");
     });
 
-/// Two faces that meet at an edge, closed by others far away: a wedge of that opening, free
-/// outside. The edge runs along z through the origin. [rad]
+/// Returns a wedge of the given opening, free outside: two faces that meet at an edge, closed by
+/// distant faces. The edge is along z through the origin. [rad]
 Surface wedge(double opening) {
   const double s = std::sin(0.5 * opening), c = std::cos(0.5 * opening);
-  // A prism over the triangle of the edge and the far ends of both faces.
+  // A prism, whose base has corners at the edge and at the far ends of both faces.
   Surface out;
   for (const double z : {-10.0, 10.0}) {
     out.vertices.emplace_back(0, 0, z);
@@ -164,8 +164,8 @@ Surface wedge(double opening) {
 }
 
 TEST(SideOfSurface, RightOverTheRimOfAFaceASharpEdgeDoesNotConfuse) {
-  // There one face's closest point is on its edge and the other's may be beside it, but for
-  // rounding: with a sharp edge the two normals contradict each other.
+  // There, the closest point of one face is on the edge. Because of rounding, that of the other
+  // face may be beside it. At a sharp edge, the two normals contradict each other.
   Random random(5);
   for (int i = 0; i < 4'000; ++i) {
     const double opening = random.uniform(0.05, 2.5);
@@ -173,7 +173,7 @@ TEST(SideOfSurface, RightOverTheRimOfAFaceASharpEdgeDoesNotConfuse) {
     Surface surface = wedge(opening);
     for (Vec3& v : surface.vertices) v = turn * v;
     Classifier classify(surface);
-    // Over the edge, along the normal of one of the two faces, and a trifle to each side.
+    // Over the edge, along the normal of one of the two faces, with a tiny offset to each side.
     const double hand = i % 2 == 0 ? 1.0 : -1.0;
     const Vec3 normal(std::sin(0.5 * opening), hand * std::cos(0.5 * opening), 0.0);
     const Vec3 edge(0.0, 0.0, random.uniform(-8.0, 8.0));
@@ -189,7 +189,7 @@ TEST(SideOfSurface, RightOverTheRimOfAFaceASharpEdgeDoesNotConfuse) {
 }
 
 TEST(SideOfSurface, ASaddleVertexIsNoTrouble) {
-  // A closed cone over a star: seen from its apex, ridges and valleys in turn.
+  // A closed cone over a star: around its apex, ridges and valleys alternate.
   Surface surface;
   constexpr int rim = 12;
   for (int i = 0; i < rim; ++i) {
@@ -210,7 +210,7 @@ TEST(SideOfSurface, ASaddleVertexIsNoTrouble) {
   for (int i = 0; i < 5'000; ++i) {
     const Vec3 tip = std::pow(10.0, random.uniform(-8.0, 0.5)) * random.direction();
     const auto side = classify(tip);
-    if (side->distance == 0.0) continue;  // on the surface to within rounding
+    if (side->distance == 0.0) continue;  // on the surface up to rounding
     const bool is_inside = classify.inside(tip);
     ASSERT_EQ(!side->is_outside, is_inside) << tip.transpose();
     if (is_inside) ++inside;
@@ -259,7 +259,7 @@ TEST(SideOfSurface, MoreTrianglesThanThereIsRoomForHaveNoResult) {
 }
 
 TEST(LeadOut, GoesJustBeyondTheSurface) {
-  Classifier cube(make_shape("cube"));  // whose faces are at +-50
+  Classifier cube(make_shape("cube"));  // its faces are at +-50
   EXPECT_LT((cube.way_out({3, 4, 47}, 0.5, 1e-4) - Vec3(0, 0, 0.5)).norm(), 1e-12);
   EXPECT_LT((cube.way_out({3, 4, 47}, 10.0, 1e-4) - Vec3(0, 0, 3.0001)).norm(), 1e-12);
 }
@@ -267,7 +267,7 @@ TEST(LeadOut, GoesJustBeyondTheSurface) {
 TEST(LeadOut, LeavesTheSurfaceItselfToTheFreeSide) {
   for (const char* shape : {"cube", "gear", "cortex", "star_bumps"}) {
     Classifier classify(make_shape(shape));
-    for (VertexId v = 0; v < classify.mesh().vertex_count(); v += 37) {  // saddles among them
+    for (VertexId v = 0; v < classify.mesh().vertex_count(); v += 37) {  // including saddles
       const Vec3 tip = classify.mesh().vertex(v);
       const Vec3 way = classify.way_out(tip, 0.5, 1e-4);
       ASSERT_GT(way.norm(), 0.0) << shape << " vertex " << v;
@@ -278,7 +278,7 @@ TEST(LeadOut, LeavesTheSurfaceItselfToTheFreeSide) {
 }
 
 TEST(LeadOut, DoesNotLeadIntoANeighborThatStandsCloseBy) {
-  // Two boxes, a hundredth apart; a tip two hundredths deep in the one.
+  // Two boxes are 0.01 apart. The tip is 0.02 deep in the first.
   const Surface one = moved(enlarged(make_cube(1), 1.0 / 50.0), {-1, 0, 0});  // x from -2 to 0
   Classifier classify(together(one, moved(one, {2.01, 0, 0})));
   Vec3 tip(-0.02, 0.1, 0.2);
@@ -291,8 +291,8 @@ TEST(LeadOut, DoesNotLeadIntoANeighborThatStandsCloseBy) {
 }
 
 TEST(SideOfSurface, ASliverAtASharpRidgeDoesNotConfuse) {
-  // A wedge whose ridge has a vertex more on the one side than on the other; a triangle without a
-  // width closes the seam.
+  // The ridge of the wedge has one more vertex on one side. A triangle without width closes the
+  // seam.
   for (const double half_angle : {0.1, 0.3, 0.8, 1.2}) {
     const double w = std::sin(half_angle), h = std::cos(half_angle);
     Surface wedge{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0.3, 0, 0), Vec3(0, -w, -h), Vec3(1, -w, -h),
@@ -300,9 +300,9 @@ TEST(SideOfSurface, ASliverAtASharpRidgeDoesNotConfuse) {
                   {{0, 2, 1},  // the sliver
                    {0, 3, 2},
                    {2, 3, 4},
-                   {2, 4, 1},  // one side, with the vertex more
+                   {2, 4, 1},  // one side, with the extra vertex
                    {0, 1, 5},
-                   {1, 6, 5},  // the other
+                   {1, 6, 5},  // the other side
                    {0, 5, 3},
                    {1, 4, 6},  // the ends
                    {3, 5, 6},
@@ -323,8 +323,8 @@ TEST(SideOfSurface, ASliverAtASharpRidgeDoesNotConfuse) {
 }
 
 TEST(SideOfSurface, OverAVertexBetweenLongAndShortTrianglesIsTheSideItIsOn) {
-  // The corner of a pinion: two needles and a flat face, of which rounding makes one edge nearer
-  // than the vertex. Tips in all directions that the vertex is nearest in.
+  // At a corner of the gear, two needles meet a flat face. Rounding makes an edge appear nearer
+  // than the vertex. The tips are in random directions from the vertices.
   Classifier gear(make_shape("gear"));
   Random random(6);
   std::size_t free = 0, forbidden = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Units, scales and winding that the caller asks for.
+// Units, scales and winding on request of the caller.
 #include <limits>
 
 #include "engine/mesh/mesh_files.h"

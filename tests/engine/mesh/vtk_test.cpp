@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Legacy VTK and VTP: what they may hold, and what is wrong with them.
+// Legacy VTK and VTP: valid content, and errors.
 #include <sys/resource.h>
 
 #include "engine/mesh/mesh_files.h"
@@ -64,7 +64,7 @@ TEST_F(LoadMesh, AVtkFieldMayNameTheSpace) {
 }
 
 TEST_F(LoadMesh, VtkFieldsMayHoldAnyTypeOfVtk) {
-  // As VTK 9.1 writes them.
+  // The text is as VTK 9.1 writes it.
   const std::string text =
       "FIELD FieldData 6\nbits 1 11 bit\n0 1 0 1 0 1 0 1\n0 1 0 \nsmall 1 2 signed_char\n-3 7 \n"
       "any 1 3 variant\n6 3\n13 a%20b%0Ac\n0 \nMETADATA\nCOMPONENT_NAMES\n\n\n"
@@ -147,8 +147,8 @@ TEST_F(LoadMesh, BinaryVtkWithACoordinateOrAnIdThatIsNoneIsAnError) {
 
 // VTP.
 
-/// Which space a file states that VTK 9.1 wrote (tests/python/write_vtk_files.py): those with a
-/// title as 3D Slicer writes it state LPS.
+/// Returns the space that a file by VTK 9.1 states (tests/python/write_vtk_files.py). Files with a
+/// title in the style of 3D Slicer state LPS.
 AnatomicalSpace space_of(const std::string& name) {
   const bool is_titled = name.ends_with(".vtk") && !name.starts_with("field");
   return is_titled || name == "slicer.vtp" ? AnatomicalSpace::lps : AnatomicalSpace::ras;
@@ -172,7 +172,7 @@ TEST_F(LoadMesh, FilesThatVtkWroteAreTheSameSphere) {
     EXPECT_EQ(loaded.warnings.size(), 1u);
     ASSERT_EQ(loaded.mesh->triangle_count(), 20u);
     EXPECT_EQ(loaded.mesh->vertex_count(), 12u);
-    // Strips are in another order. Texts have six digits.
+    // Strips change the order. Texts have six digits.
     double farthest = 0.0;
     for (const Vec3& vertex : loaded.mesh->vertices()) {
       double nearest = 1e9;
@@ -208,7 +208,7 @@ TEST_F(LoadMesh, AVtpFieldNamesTheSpace) {
 TEST_F(LoadMesh, AVtpFieldNamesTheSpaceInAnyCaseAndMayContradictItself) {
   const std::string vtp = as_vtp(tetrahedron(), {.space = "LPS"});
   EXPECT_EQ(load("mesh.vtp", replaced(vtp, "\"SPACE\"", "\"Space\"")).stated, AnatomicalSpace::lps);
-  // A number of that name is no space.
+  // A number with that name is not a space.
   EXPECT_EQ(load("mesh.vtp", replaced(vtp, "type=\"String\"", "type=\"Int8\"")).stated,
             AnatomicalSpace::unstated);
   const std::string contradiction = "states that its space is LPS and RAS";
@@ -239,7 +239,7 @@ TEST_F(LoadMesh, VtpPiecesAreJoined) {
   EXPECT_EQ(loaded.mesh->triangle(1)[0], loaded.mesh->triangle(0)[2]);
 }
 
-/// A VTP file of Float64 with a piece for each of the coordinates of a triangle.
+/// Returns a VTP file of type Float64, with a piece for each triangle.
 std::string vtp_of_triangles(const std::vector<std::string>& triangles) {
   std::string text = "<VTKFile type=\"PolyData\"><PolyData>\n";
   for (const std::string& coordinates : triangles) {
@@ -254,7 +254,7 @@ std::string vtp_of_triangles(const std::vector<std::string>& triangles) {
 
 TEST_F(LoadMesh, VtpPiecesAreRoundedTogether) {
   const std::string seam = "0.1 0.2 0.3 40.1 0.2 0.3 ";
-  // The numerals of the first piece may have been printed from floats.
+  // Alone, the numerals of the first piece could come from floats.
   const LoadedMesh doubles = load_unchecked(
       "mesh.vtp", vtp_of_triangles({seam + "0.1 40.2 0.3", seam + "0.1 40.2 0.300000000001"}));
   EXPECT_EQ(doubles.mesh->vertex_count(), 4u);
@@ -359,7 +359,7 @@ TEST_F(LoadMesh, AVtpPieceMayBeEmpty) {
 }
 
 TEST_F(LoadMesh, AVtpArrayIsNotUnpackedIfItHoldsMoreThanItsPieceDeclares) {
-  // A thousand vertices that are packed well, of which the file declares three.
+  // A thousand vertices, which compress well. The file declares three.
   Surface surface = single_triangle();
   surface.vertices.resize(1000, Vec3::Zero());
   for (const bool is_compressed : {false, true}) {
@@ -375,7 +375,7 @@ TEST_F(LoadMesh, AVtpArrayIsNotUnpackedIfItHoldsMoreThanItsPieceDeclares) {
                   "NumberOfPoints is 1000000000000000, more than the file has room for");
 }
 
-/// Most memory that this process ever had. [bytes]
+/// Returns the peak memory of this process. [bytes]
 std::size_t most_memory() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -387,7 +387,7 @@ TEST_F(LoadMesh, AFalseSizeOfAVtpBlockTakesNoMemory) {
   std::string vtp =
       replaced(as_vtp(tetrahedron(), {.format = Mode::appended_raw, .is_compressed = true}),
                "NumberOfPoints=\"4", "NumberOfPoints=\"" + std::to_string(claimed));
-  // The points are one block of a few bytes, which claims to be of 2 MB and to unpack to 1 GB.
+  // The points are one block of a few bytes, which claims a size of 2 MB and 1 GB unpacked.
   const std::string offset = vtp.substr(vtp.find("offset=\"", vtp.find("\"Points\"")) + 8);
   const std::size_t counts = vtp.find("  _") + 3 + std::stoull(offset);
   std::string size, packed;
@@ -401,7 +401,7 @@ TEST_F(LoadMesh, AFalseSizeOfAVtpBlockTakesNoMemory) {
 }
 
 TEST_F(LoadMesh, VtpArraysThatOverlapAreAnError) {
-  // Otherwise a small file of many pieces would take any memory.
+  // Otherwise, a small file with many pieces could exhaust the memory.
   const std::string raw = as_vtp(torus(20), {.format = Mode::appended_raw});
   const std::string piece = piece_of(raw);
   EXPECT_CONTAINS(complaint("mesh.vtp", replaced(raw, piece, piece + piece + piece + piece)),

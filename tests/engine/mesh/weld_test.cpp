@@ -85,7 +85,7 @@ TEST(Weld, ChangesNothingTheSecondTime) {
 }
 
 TEST(Weld, AgreesWithASortedMapOnPointsThatOftenCoincide) {
-  // Small whole numbers, whose bits are nearly all alike, are hard on a hash.
+  // Small integers have almost equal bits, which is hard for a hash.
   std::mt19937 random(4);
   Surface given;
   for (VertexId i = 0; i < 60'000; ++i) {

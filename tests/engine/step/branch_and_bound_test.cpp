@@ -74,7 +74,7 @@ TEST(Branches, TheNearestOpenOneComesFirstAndOnce) {
   branches.push(2.0, Vec3::UnitX(), planes);
   branches.push(1.0, Vec3::UnitY(), planes);
   branches.push(1.0, Vec3::UnitZ(), {});
-  branches.push(0.5, Vec3::Zero(), planes);  // for which there is no room
+  branches.push(0.5, Vec3::Zero(), planes);  // exceeds the capacity
   const Branch* first = branches.pop_nearest();
   ASSERT_NE(first, nullptr);
   EXPECT_EQ(first->motion, Vec3::UnitY()) << "of equals the first";

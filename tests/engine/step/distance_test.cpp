@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Step::distance, held to brute force: of every rule, on every index of the engine, whether the
-// rule searches or not, and whatever the processor.
+// Compares Step::distance with brute force: for every rule, index and SIMD target, and for both
+// settings of Distances.
 
 #include "brute_force.h"
 #include "keepout/activation/registry.h"
@@ -19,7 +19,7 @@ constexpr double margin = 0.4;
 constexpr double tool_radius = 0.6;
 constexpr double kept = tool_radius + margin;
 
-/// The same rule on indices that offer different sources of triangles.
+/// Returns the same rule on indices that offer different sources of triangles.
 std::vector<MotionConstraint> forms_of(std::string_view rule,
                                        const std::shared_ptr<const Mesh>& mesh,
                                        Distances distances) {
@@ -36,7 +36,7 @@ std::vector<MotionConstraint> forms_of(std::string_view rule,
   return forms;
 }
 
-/// Tips of every kind, near and far, and increments towards anywhere.
+/// Returns motions in random directions, from tips near and far, on the surface and inside.
 std::vector<Motion> motions_about(const Mesh& mesh) {
   Random random(11);
   std::vector<Motion> motions;
@@ -165,7 +165,7 @@ TEST(StepDistances, AreNotToldForInputThatIsInvalid) {
   auto forms = forms_of("certified", mesh, Distances::always);
   EXPECT_FALSE(forms[0].step({.tip = {0, 0, std::nan("")}, .desired = {0, 0, 0}}).distance);
   EXPECT_FALSE(forms[0].step({.tip = {0, 0, 1e31}, .desired = {0, 0, 0}}).distance);
-  // A motion that is too long is refused, and yet the tip is somewhere.
+  // A motion that is too long is rejected, but its tip has a distance.
   EXPECT_EQ(forms[0].step({.tip = {0, 0, 60}, .desired = {0, 0, -50}}).distance, 10.0);
 }
 

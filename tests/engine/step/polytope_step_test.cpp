@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The free polytope as MotionConstraint hands it out.
+// The free polytope that MotionConstraint returns.
 
 #include "keepout/factory/guide_text.h"
 #include "keepout/factory/make_motion_constraint.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled with one of these names defined: each is to be refused, with a word on what to do.
+// Compiled once with each of these names defined. Each must fail, with a message on what to do.
 #include "keepout/step/motion.h"
 
 Eigen::Matrix<double, 3, 7> new_jacobian();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tips that start on the forbidden side, as MotionConstraint treats them.
+// Tips that start on the forbidden side of a MotionConstraint.
 #include "keepout/step/side_watch.h"
 
 #include "keepout/factory/make_motion_constraint.h"
@@ -43,7 +43,7 @@ TEST(SideWatch, ATipThatTheCallerMovesInsideIsFound) {
 }
 
 TEST(SideWatch, AfterForgettingATipIsPlacedAnewHoweverNear) {
-  // A cube in a cube: between them the side depends on which is nearer, unless a step has led
+  // A cube in a cube. Between them, the side depends on the nearer surface, unless a step has led
   // there.
   Surface nested = make_shape("cube");
   const Surface cube = nested;
@@ -81,7 +81,7 @@ TEST(SideWatch, WithJointsOrRowsOrWithoutRecoveryThereIsNoWayOut) {
 }
 
 TEST(SideWatch, OnTheSurfaceALargeMeshDoesNotTrapTheTip) {
-  // Where the tolerance is larger than a ten-thousandth of the recovery.
+  // The tolerance is larger than a ten-thousandth of the recovery.
   auto constraint = make_motion_constraint(mesh_of(enlarged(make_shape("cube"), 100.0)), {});
   Vec3 tip(3, 4, 5000);
   Status last = Status::unsolved;
@@ -94,8 +94,8 @@ TEST(SideWatch, OnTheSurfaceALargeMeshDoesNotTrapTheTip) {
   EXPECT_GT(tip.z(), 5000.2);
 }
 
-/// Tips a hair off the surface on the free side, as a campaign met them: too near for a margin, far
-/// enough for a side. What leads them off is the certified recovery, and it comes no nearer.
+/// Tips of a campaign that are very close to the surface on the free side: too close for the
+/// margin, but far enough for a side. The certified recovery must move them away, and never closer.
 TEST(SideWatch, ATipAHairOffTheSurfaceComesNoNearer) {
   const auto mesh = mesh_of("cortex");
   oracle::SafetyOracle oracle(mesh);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No part is taken at its word: whatever a solver, a rule or a caller gets wrong, nothing moves.
+// No component is trusted: if a solver, a rule or the caller is wrong, the tip does not move.
 
 #include <array>
 
@@ -30,7 +30,7 @@ TEST(StepSafety, ASolverThatClaimsOptimalityForAMotionIntoTheMeshIsNotBelieved) 
   EXPECT_EQ(step.status, Status::unsolved);
   EXPECT_EQ(step.motion, Vec3::Zero());
   EXPECT_TRUE(step.increment.empty());
-  // What is no lie goes through.
+  // A valid answer is accepted.
   EXPECT_EQ(constraint.step({.tip = above_the_cube, .desired = {0, 0, 1}}).status, Status::free);
 }
 
@@ -68,7 +68,7 @@ TEST(StepSafety, ARuleThatObjectsForEverEndsInAStatus) {
    public:
     Opening open(const RuleInput&, HalfSpaceBuffer&) noexcept override { return {}; }
     Judgement judge(const RuleInput&, const Vec3&, HalfSpaceBuffer& planes) noexcept override {
-      planes.push({Vec3::UnitX(), -1.0, 0});  // which no trial here violates
+      planes.push({Vec3::UnitX(), -1.0, 0});  // no trial here violates this plane
       return {Judgement::Verdict::objected, 0.0};
     }
   };
@@ -84,7 +84,7 @@ TEST(StepSafety, AlmostSingularJacobiansNeverTakeTheTipIn) {
   Random random(1);
   std::size_t moved = 0, refused = 0;
   for (int i = 0; i < 20'000; ++i) {
-    // The second joint does nearly what the first does.
+    // The second joint moves the tip almost as the first does.
     const double difference = std::pow(10.0, random.uniform(-14.0, 0.0));
     TipJacobian::Matrix jacobian(3, 3);
     jacobian.col(0) = random.direction();
@@ -99,7 +99,7 @@ TEST(StepSafety, AlmostSingularJacobiansNeverTakeTheTipIn) {
       ++refused;
       continue;
     }
-    // And the joints do what is said of them, in arithmetic of more digits.
+    // The increment gives the reported motion, checked in long double.
     for (int row = 0; row < 3; ++row) {
       long double sum = 0.0L;
       for (int c = 0; c < 3; ++c) {
@@ -164,7 +164,7 @@ TEST(StepSafety, AFailedSolveIsTimedAsWell) {
 
 // The step checks the answers of a rule that contradicts itself.
 
-/// Rejects every motion, and yet reports that the whole of it is free.
+/// Rejects every motion, but reports that all of it is free.
 class Boaster final : public ActivationRule {
  public:
   Opening open(const RuleInput&, HalfSpaceBuffer&) noexcept override { return {}; }

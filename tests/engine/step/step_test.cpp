@@ -60,7 +60,7 @@ TEST(Step, ATipWithinTheMarginIsPushedOut) {
 }
 
 TEST(Step, AMarginThatNoMotionCanKeepMeansNoMotion) {
-  // Between two plates with a gap of 1, half a millimeter too narrow for the margin.
+  // The gap between the plates is 1, half a millimeter too narrow for the margin on both sides.
   auto constraint = guard<PaperRule>(mesh_of("thin_plates"), {.radius = 2.0, .margin = 0.75});
   const Box& bounds = constraint.mesh().bounds();
   const Vec3 in_the_gap(0, 0, bounds.low.z() + 1.5);
@@ -84,7 +84,7 @@ TEST(Step, BadInputIsAStatusAndNoMotion) {
       EXPECT_EQ(constraint.step(motion).motion, Vec3::Zero());
     }
   }
-  // And the next cycle is none the worse.
+  // The next cycle is not affected.
   EXPECT_TRUE(constraint.step({.tip = {0, 0, 51}, .desired = {0, 0, -1}}).ok());
 }
 
@@ -108,7 +108,7 @@ TEST(Step, TooManyTrianglesOrPlanesIsAStatusAndNoMotion) {
 TEST(Step, JointsMoveTheTipAsTheJacobianSays) {
   auto constraint =
       guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0, .damping = 1e-9});
-  // Four joints: one of them moves the tip straight down, two slant, one does nothing.
+  // Four joints: two move the tip along x and y, one moves it down at a slant, one does nothing.
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, 4);
   jacobian << 1, 0, 0.5, 0,  //
       0, 2, 0.5, 0,          //
@@ -157,7 +157,7 @@ TEST(Step, DoesNotDependOnTheIndex) {
     ASSERT_EQ(a.status, b.status);
     ASSERT_EQ(a.motion, b.motion);
     ASSERT_EQ(a.triangles, b.triangles);
-    // On the tree idle planes are left out.
+    // On the tree, the rule omits idle planes.
     ASSERT_LE(a.planes.size(), b.planes.size());
     ASSERT_EQ(a.active.size(), b.active.size());
     for (std::size_t i = 0; i < a.active.size(); ++i) {
@@ -168,8 +168,8 @@ TEST(Step, DoesNotDependOnTheIndex) {
   }
 }
 
-/// The planes of AllFaces, one at a time: each trial motion is answered with the face that it goes
-/// against the most. Must come to what the eager rule comes to.
+/// The planes of AllFaces, one at a time: each trial motion is rejected with the face that it
+/// violates most. Must give the same motion as the eager rule.
 class LazyFaces final : public ActivationRule {
  public:
   LazyFaces() : planes_(100'000) {}

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kept_off = 0.2;
 
-/// A ball of radius 1 beside a shape.
+/// A spherical tool of radius 1 near a shape.
 struct Loop {
   explicit Loop(const char* shape)
       : mesh(mesh_of(shape)),
@@ -56,7 +56,7 @@ TEST(TipGuides, KeepCorridorLineAndMeshAtOnce) {
   EXPECT_GT(way, test::trials(500.0));
 }
 
-// In free space the best step ends in the point of the region that is nearest to the aim.
+// In free space, the best step ends in the point of the region that is nearest to the target.
 TEST(TipGuides, MakeTheNearestStepThatARoundRegionAllows) {
   Loop loop("cube");
   const Vec3 axis = Vec3(1, 2, 0.5).normalized();
@@ -129,7 +129,7 @@ TEST(TipGuides, LeadBackWhatIsOutAndSayWhatGivesWay) {
   EXPECT_NEAR(step.guides[0].excess, 1.0, 1e-12);
 }
 
-// Regions that contradict each other stop leading back; along them the tip moves on.
+// Regions that contradict each other stop pulling the tip back. The tip still moves along them.
 TEST(TipGuides, LeaveNoTipStandingThatMayMove) {
   Loop loop("cube");
   const Vec3 tip(0, 0, 150);
@@ -162,7 +162,7 @@ TEST(TipGuides, LeaveNoTipStandingThatMayMove) {
   EXPECT_EQ(stuck, 0);
 }
 
-// Rounding used to put the tip beyond where it was: 1,943 of 2,000 such steps were unsolved.
+// Rounding used to move the tip beyond its previous place: 1,943 of 2,000 such steps were unsolved.
 TEST(TipGuides, ThatContradictEachOtherLeaveAMotionAlongThem) {
   Loop loop("cube");
   const Vec3 tip(3.1, -2.7, 150.3);
@@ -182,7 +182,7 @@ TEST(TipGuides, ThatContradictEachOtherLeaveAMotionAlongThem) {
   }
 }
 
-// A motion that leads out of the mesh is not proved, so it has no priority over guides.
+// A motion out of the mesh is not proved, so it has no priority over guides.
 TEST(TipGuides, MayForbidTheWayOutOfTheMesh) {
   const auto mesh = mesh_of("cube");
   auto guard = make_motion_constraint(mesh, {.options = {.radius = 5.0, .margin = kept_off}});
@@ -208,7 +208,7 @@ TEST(TipGuides, HoldWhateverASolverAnswers) {
     const Guide ball = Guide::point("ball", Region::ball(tip + 0.5 * random.direction(), 1.0));
     guard.set_guides({ball});
     const Vec3 desired = random.uniform(0.0, 4.0) * random.direction();
-    // With a Jacobian no projection corrects what the solver returns.
+    // With a Jacobian, no projection corrects the result of the solver.
     const Mat3 jacobian = random.uniform(0.5, 2.0) * Mat3::Identity();
     Motion motion{.tip = tip, .desired = desired};
     if (i % 2 == 1) motion.jacobian = jacobian;
@@ -263,8 +263,8 @@ TEST(TipGuides, AreRefusedIfTheyAreTooManyOrOfAnInstrument) {
 
 // Guidance constraints together with the caller's own rows, some of which require motion.
 
-// With so narrow a band, the planes of the rounds do not keep the tip in its region. A part of the
-// motion would, but it would not satisfy a row that requires motion.
+// The band is so narrow that the planes of the rounds do not keep the tip in its region. A part of
+// the motion would stay inside, but would violate a row that requires motion.
 TEST(GuidesAndRows, AStepThatIsOkSatisfiesTheRows) {
   auto guard = guard_of(mesh_of("cube"), {.radius = 5.0, .margin = 0.2});
   Random random(8);
@@ -288,8 +288,8 @@ TEST(GuidesAndRows, AStepThatIsOkSatisfiesTheRows) {
   EXPECT_GT(ok, test::trials(50));
 }
 
-// The solver ignores all rows. Its motion satisfies the caller's row but leaves the guide; the part
-// that stays in the guide breaks the row.
+// The solver ignores all rows. Its motion satisfies the caller's row but leaves the region of the
+// guide. The part inside the region violates the row.
 TEST(GuidesAndRows, NoPartOfATrialIsExecutedThatBreaksARow) {
   auto guard = guard_of(mesh_of("cube"), {.radius = 5.0, .margin = 0.2}, liar());
   const Vec3 tip(0, 0, 150);
@@ -299,7 +299,7 @@ TEST(GuidesAndRows, NoPartOfATrialIsExecutedThatBreaksARow) {
   for (int i = 0; i < test::trials(100); ++i) {
     const Vec3 desired = random.uniform(2.0, 4.0) * random.direction();
     const double bound = 0.9 * desired.squaredNorm();
-    // With a Jacobian no projection corrects the solver's answer.
+    // With a Jacobian, no projection corrects the result of the solver.
     Motion motion{.tip = tip, .desired = desired, .jacobian = identity};
     ASSERT_EQ(guard.step(motion).status, Status::truncated) << "without a row a part is executed";
     motion.rows = ExtraRows(desired.data(), &bound, 1);

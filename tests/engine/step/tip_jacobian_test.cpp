@@ -14,7 +14,7 @@ MotionConstraint guard_with(double damping) {
   return guard_of(mesh_of("cube"), {.radius = 5.0, .margin = 0.5, .damping = damping});
 }
 
-/// Of an arm of seven joints; no two of its numbers are alike.
+/// Returns the Jacobian of an arm of seven joints. All its numbers differ.
 Packed seven_joints() {
   Packed jacobian;
   for (Eigen::Index i = 0; i < jacobian.size(); ++i)
@@ -26,7 +26,7 @@ class TipJacobianTypes : public ::testing::Test {
  protected:
   static Motion pressing() { return {.tip = {3, 4, 51}, .desired = {0.5, -0.2, -1.0}}; }
 
-  /// Whatever the type, the step is that of the same numbers column by column.
+  /// Checks that a Jacobian of any type gives the same step as the same numbers column by column.
   template <class Jacobian>
   void expect_same(Jacobian&& jacobian) {
     const Motion motion{.tip = pressing().tip, .desired = pressing().desired, .jacobian = jacobian};
@@ -136,9 +136,9 @@ TEST(TipJacobian, OfMoreThanThreeJointsTellsThatItNeedsDamping) {
   EXPECT_TRUE(damped.step(motion).ok());
 }
 
-constexpr double rounding = 1e-12;  // that is to be kept to [length]
+constexpr double rounding = 1e-12;  // largest allowed error [length]
 
-/// What the tip's motion is off by, where it is told; nothing where it is not.
+/// Returns the error of the tip's motion; empty if tip_motion returns no motion.
 std::optional<double> rounding_error(const std::vector<Vec3>& columns,
                                      const std::vector<double>& u) {
   const auto n = static_cast<Eigen::Index>(columns.size());
@@ -158,7 +158,7 @@ std::optional<double> rounding_error(const std::vector<Vec3>& columns,
   return static_cast<double>((motion->cast<long double>() - exact).norm());
 }
 
-/// Each addend is lost in the digits of the sum: all errors go one way.
+/// Each addend is lost in the digits of the sum, and all errors have the same sign.
 TEST(TipMotion, OfManyJointsIsRoundedByNoMoreThanIsAllowed) {
   std::size_t told = 0;
   for (const int joints : {4, 7, 15, 38, 200}) {

@@ -14,7 +14,7 @@
 
 namespace keepout {
 
-/// A spatial index, to be made by its name.
+/// An available type of spatial index, and the function that makes one.
 struct IndexBackend {
   std::string_view name;         // for make_index
   std::string_view description;  // one line, for lists
@@ -26,8 +26,8 @@ struct IndexBackend {
   /// Use of heap memory during a query. Steps on an index that allocates are not suitable for real
   /// time.
   Allocation allocation = Allocation::never;
-  /// A sentence on how its work differs from that of other indices, for comparisons of times; empty
-  /// if it does not differ.
+  /// One sentence for tables that compare times: how the work of this index differs from that of
+  /// others. Empty if it does not differ.
   std::string_view remark = {};
 };
 
@@ -37,12 +37,13 @@ Registry<IndexBackend> index_backends();
 /// Returns the names of the available indices. Loads no module.
 std::vector<std::string> index_names();
 
-/// Returns the index of that name on a mesh. Loads at most the module with the index. Throws Error
+/// Returns the index of that name on a mesh. Loads no module except that of the index. Throws Error
 /// for an unknown name, and if the index cannot hold the mesh.
 std::unique_ptr<SpatialIndex> make_index(std::string_view name, std::shared_ptr<const Mesh> mesh);
 
 }  // namespace keepout
 
-/// The table of the indices of a module.
+/// The table of the indices of a module. Each module with indices defines it, and index_backends()
+/// and make_index() read it.
 extern "C" [[gnu::visibility("default")]] const std::span<const keepout::IndexBackend>
     keepout_indices;

@@ -12,7 +12,7 @@
 
 namespace keepout {
 
-/// A narrow phase, to be made by its name.
+/// A narrow phase (NarrowPhase) that make_narrow_phase() makes by its name.
 struct NarrowPhaseBackend {
   std::string_view name;         // for make_narrow_phase
   std::string_view description;  // one line, for lists
@@ -22,15 +22,16 @@ struct NarrowPhaseBackend {
   std::string (*library)();  // name and version of the underlying library; null for keepout's own
 };
 
-/// Returns all narrow phases, the exact kernel first. Those of libraries are for comparison: see
-/// docs/convex_tools.md. Loads all modules with narrow phases (see keepout/module.h).
+/// Returns all narrow phases, the exact kernel first. The narrow phases of other libraries are for
+/// comparison: see docs/convex_tools.md. Loads all modules with narrow phases (see
+/// keepout/module.h).
 Registry<NarrowPhaseBackend> narrow_phase_backends();
 
 /// Returns the names of the available narrow phases. Loads no module.
 std::vector<std::string> narrow_phase_names();
 
-/// Returns the narrow phase of that name for a tool. Loads at most the module with it. Throws Error
-/// for an unknown name.
+/// Returns the narrow phase of that name for a tool. Loads no module except that of the narrow
+/// phase. Throws Error for an unknown name.
 std::unique_ptr<NarrowPhase> make_narrow_phase(std::string_view name, const ConvexTool& tool);
 
 }  // namespace keepout

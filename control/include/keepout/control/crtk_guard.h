@@ -16,9 +16,9 @@ struct CrtkOptions {
   /// same energy.
   double motion_scale = 1.0;                // > 0
   Mat3 hand_from_robot = Mat3::Identity();  // rotates a force into the frame of the hand's device
-  double longest_silence = 0.02;            // for which the last goal is used [s], >= 0
-  double farthest_lag = 5.0;                // of the robot behind its setpoint [length], > 0
-  double farthest_start = 1000.0;  // distance from the mesh's bounds on engaging [length], > 0
+  double longest_silence = 0.02;            // the last goal is used for this time [s], >= 0
+  double farthest_lag = 5.0;                // largest distance from setpoint to robot [length], > 0
+  double farthest_start = 1000.0;           // from the mesh's bounds at engage() [length], > 0
 };
 
 /// A force and a torque. [N], [N length]
@@ -27,9 +27,9 @@ struct Wrench {
   Vec3 torque = Vec3::Zero();  // [N length]
 };
 
-/// A motion constraint with the interface of CRTK, the convention of the da Vinci Research Kit. It
-/// goes between the teleoperation, which computes a goal for the robot, and the robot (see
-/// docs/controllers.md). Poses are in the robot's frame and unit.
+/// A motion constraint with the interface of CRTK (Collaborative Robotics Toolkit), the convention
+/// of the da Vinci Research Kit. The teleoperation sends its goals to this object, which sends
+/// setpoints to the robot (see docs/controllers.md). Poses are in the robot's frame and unit.
 ///
 ///     guard.engage(robot.setpoint_cp());               // at the start, and after clutching
 ///     each cycle:
@@ -39,8 +39,8 @@ struct Wrench {
 ///       hand.servo_cf(guard.servo_cf());
 ///
 /// Only the tip is constrained: a point, or a ball of the motion constraint's tool radius. The
-/// orientation is passed on unchanged, so the shaft may rotate freely: the ball must contain all
-/// that rotates.
+/// orientation is passed on unchanged, so the shaft may rotate freely. The ball must contain all
+/// parts that rotate.
 ///
 /// Not thread-safe. After construction no function allocates, locks or throws.
 class CrtkGuard {
@@ -48,15 +48,15 @@ class CrtkGuard {
   /// Makes the guard. Throws Error for an option out of range.
   CrtkGuard(MotionConstraint guard, const Registration& registration, const CrtkOptions& options);
 
-  /// Engages at the robot's setpoint, so that the robot does not jump. Returns guarded, or, without
-  /// engaging, invalid_pose or far_from_mesh.
+  /// Engages at the robot's setpoint, so that the robot does not jump. Returns guarded. On failure
+  /// it does not engage, and returns invalid_pose or far_from_mesh.
   CycleStatus engage(const Pose& setpoint) noexcept;
 
-  /// Releases, for example when the clutch is pressed: no setpoint, no force.
+  /// Releases, for example when the clutch is pressed. There is then no setpoint and no force.
   void release() noexcept;
 
-  /// Releases, and replaces the registration, for example after the camera has moved. Rebuilds
-  /// nothing.
+  /// Releases, and replaces the registration, for example after the camera has moved. The index is
+  /// not rebuilt.
   void set_registration(const Registration& registration) noexcept;
 
   /// Sets the measured pose of the robot. The next cycle compares it with the setpoint.
@@ -75,9 +75,9 @@ class CrtkGuard {
   /// Returns the wrench to send to the hand's device, in its frame; the torque is zero.
   const Wrench& servo_cf() const noexcept { return wrench_; }
 
-  /// Returns the last cycle, in the frame of the mesh.
+  /// Returns the result of the last cycle, in the frame of the mesh.
   const HapticCycle& cycle() const noexcept { return cycle_; }
-  /// Returns one line on the last cycle and what to do about it; a literal.
+  /// Returns one line on the last cycle and what to do about it; a string literal.
   std::string_view reason() const noexcept { return cycle_.reason(); }
 
   /// Returns the energies since the guard was engaged.

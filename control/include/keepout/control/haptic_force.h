@@ -17,7 +17,7 @@ namespace keepout {
 struct SpringDamper {
   double stiffness = 1.0;      // [N / length], > 0
   double damping = 0.0;        // [N s / length], >= 0
-  double largest_force = 4.0;  // at which the force saturates [N], > 0
+  double largest_force = 4.0;  // the force saturates at this value [N], > 0
   double largest_rise = std::numeric_limits<double>::infinity();  // of the force [N / s], > 0
 
   /// Returns the force of the spring at a stretch: stiffness times stretch, up to the largest
@@ -37,13 +37,13 @@ void check(const SpringDamper& spring);
 
 /// The time-domain passivity observer and controller of Hannaford and Ryu, "Time-domain passivity
 /// control of haptic interfaces", IEEE Trans. Robotics and Automation 18(1), 2002, in its series
-/// form: the hand's velocity goes in, a force comes out.
+/// form: the input is the hand's velocity, the output is a force.
 ///
 /// The observer sums the energy that the hand puts into a contact minus the energy that it
-/// receives. Below 0, the device has been active, and the controller brakes the hand until the
-/// deficit is dissipated. It brakes only in contact, so that motion in free space is not damped. At
-/// the end of a contact, a deficit carries over to the next contact. A surplus is dropped, as it
-/// would hide later activity.
+/// receives. If the sum is below 0 (a deficit), the device has generated energy. The controller
+/// then brakes the hand until the deficit is dissipated. It brakes only in contact, so that motion
+/// in free space is not damped. At the end of a contact, a deficit carries over to the next
+/// contact. A surplus is dropped, because it would hide energy that the device generates later.
 class PassivityObserver {
  public:
   /// `largest_brake`: the largest damping of the controller [N s / length], >= 0; 0: only observes.
@@ -80,24 +80,25 @@ struct HeldForce {
   Vec3 total() const noexcept { return spring + brake; }
 };
 
-/// The energies of a haptic device since it was engaged. [N length]: mJ if the mesh is in mm. To
-/// rounding:
+/// The energies of a haptic device since it was engaged. [N length], which is mJ if the mesh is in
+/// mm. Except for rounding:
 ///
 ///     to_hand + stored + dissipated = from_proxy
 struct EnergyReport {
   double to_hand = 0.0;  // work on the hand; below 0 if the hand has put energy in
   double stored = 0.0;   // in the spring now
-  /// By damper, saturation and brake, minus the energy that sampling generates: a spring whose
-  /// force is late by a cycle returns more than it received.
+  /// Dissipated by damper, saturation and brake, minus the energy that sampling generates. (The
+  /// force of a sampled spring is late by a cycle, so the spring returns more energy than it
+  /// received.)
   double dissipated = 0.0;
   double from_proxy = 0.0;  // work of the proxy on the spring
-  /// The largest deficit by the PassivityObserver: energy that contacts gave to the hand beyond
-  /// what it had put in. 0 if the device was always passive.
+  /// The largest deficit that the PassivityObserver found: the energy that contacts gave to the
+  /// hand, minus the energy that the hand had put in. 0 if the device was always passive.
   double active = 0.0;
-  double braked = 0.0;           // by the passivity controller
+  double braked = 0.0;           // dissipated by the passivity controller
   double largest_force = 0.0;    // [N]
   std::size_t cycles = 0;        // all cycles
-  std::size_t blind_cycles = 0;  // without a measured hand: their work is not included
+  std::size_t blind_cycles = 0;  // without a measured hand; their work is not included
 
   /// Adds the last cycle: the held forces and the displacements of hand and proxy. The work on the
   /// hand is exact, as a force is constant in a cycle. `now_stored`: the energy of the spring now.

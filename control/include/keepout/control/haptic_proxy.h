@@ -20,7 +20,7 @@ enum class CycleStatus : std::uint8_t {
   too_far,        // the goal is too far from the proxy: wrong unit, or a jump
   stale,          // no goal arrived for too long
   lagging,        // the robot is too far from its setpoint
-  far_from_mesh,  // on engaging: too far from the mesh; unit or registration must be wrong
+  far_from_mesh,  // at engage(): too far from the mesh; check unit and registration
   stopped         // the step failed: see HapticCycle::step
 };
 
@@ -38,7 +38,7 @@ struct HapticOptions {
   double period = 0.001;     // of a cycle [s], 1e-6 to 1
   SpringDamper spring = {};  // between proxy and hand
   double top_speed = 200.0;  // of the proxy, which the robot follows [length / s], > 0
-  double farthest = 50.0;    // of the hand from the proxy; farther goals are rejected [length], > 0
+  double farthest = 50.0;    // from proxy to hand; farther goals are rejected [length], > 0
   /// The time in which the force fades out when cycles fail, and returns afterwards [s], >= period
   double fade = 0.05;
   double largest_brake = 0.0;      // of the passivity controller [N s / length]; 0: only observes
@@ -55,8 +55,8 @@ struct HapticCycle {
 
   /// Returns true if the proxy has moved by the step.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it; for a stopped cycle, that of the
-  /// step.
+  /// Returns one line on what happened and what to do about it; for a stopped cycle, the reason of
+  /// the step.
   std::string_view reason() const noexcept {
     return status == CycleStatus::stopped ? keepout::reason(step, Subject::tip)
                                           : keepout::reason(status);
@@ -70,14 +70,15 @@ struct HapticCycle {
 ///
 /// If a cycle fails, the proxy does not move, and the force fades out over `fade` seconds. The
 /// force must not vanish at once, because the hand leans against it. It must not stay either,
-/// because a motor must not push after a fault. While the hand is measured, the fading force is
-/// that of the spring to the proxy, where the tool is. While the hand is not measured, it is the
-/// last force. From the next successful cycle on, the force returns over the same time.
+/// because a motor must not push after a fault. While the hand is measured, the spring still
+/// connects it to the proxy, and the force of the spring fades. While the hand is not measured, the
+/// last force fades. From the next successful cycle on, the force returns over the same time.
 class HapticProxy {
  public:
-  /// Makes a proxy. The longest motion of a cycle is top_speed * period, limited to the radius of
-  /// the motion sphere; it also limits the guard's recovery. Throws Error for an option out of
-  /// range, and for guides that MotionConstraint::set_guides rejects.
+  /// Makes a proxy. The longest motion of a cycle is top_speed * period, or the radius of the
+  /// motion sphere if that is smaller. The recovery of the guard is limited to the same length.
+  /// Throws Error for an option out of range, and for guides that MotionConstraint::set_guides
+  /// rejects.
   HapticProxy(MotionConstraint guard, const HapticOptions& options);
 
   /// Sets proxy and hand to a tip: at the start, and after the hand has moved without the proxy
@@ -130,7 +131,7 @@ class HapticProxy {
   HeldForce held_;  // the forces since the last cycle
   Vec3 proxy_ = Vec3::Zero();
   Vec3 hand_ = Vec3::Zero();                  // the last measured position
-  Vec3 hand_way_ = Vec3::Zero();              // in the last cycle; zero if not measured twice
+  Vec3 hand_way_ = Vec3::Zero();              // displacement in the last cycle; zero if not known
   double stretch_ = 0.0;                      // between proxy and hand in the last cycle [length]
   double rate_ = 0.0;                         // of the stretch [length / s]
   double share_ = 1.0;                        // the fraction of the force that has not faded

@@ -10,8 +10,7 @@
 
 namespace keepout {
 
-/// A quaternion as in messages. Its parts have names, because their order differs between
-/// libraries.
+/// A quaternion as in messages. Its parts have names, because libraries order them differently.
 struct Quaternion {
   double x = 0.0;  // along x
   double y = 0.0;  // along y
@@ -59,9 +58,9 @@ class Registration {
  public:
   /// Returns the registration of the 4 x 4 matrix that transforms points of the robot's frame into
   /// the mesh's frame. The rotation is replaced by the nearest exact one. Throws Error unless the
-  /// matrix is a rotation (to within rotation_tolerance) and a translation. The message states if
-  /// it has a reflection, a scale or a shear. Also throws Error for a translation of more than 10 m
-  /// and for an unstated unit.
+  /// matrix is a rotation (to within rotation_tolerance) with a translation. The message states if
+  /// the matrix has a reflection, a scale or a shear. Also throws Error for a translation of more
+  /// than 10 m and for an unstated unit.
   static Registration mesh_from_robot(const Eigen::Matrix4d& matrix,
                                       const RegistrationUnits& units);
 
@@ -69,25 +68,25 @@ class Registration {
   static Registration robot_from_mesh(const Eigen::Matrix4d& matrix,
                                       const RegistrationUnits& units);
 
-  /// Returns a point of the robot's frame in the frame and the unit of the mesh.
+  /// Transforms a point from the robot's frame and unit to those of the mesh.
   Vec3 point_to_mesh(const Vec3& point) const noexcept {
     return rotation_ * (scale_ * point) + translation_;
   }
-  /// Returns a point of the mesh's frame in the robot's frame and unit.
+  /// Transforms a point from the mesh's frame and unit to those of the robot.
   Vec3 point_to_robot(const Vec3& point) const noexcept {
     return (rotation_.transpose() * (point - translation_)) / scale_;
   }
 
-  /// Returns a displacement or a velocity in the frame and the unit of the mesh.
+  /// Transforms a displacement or a velocity to the frame and the unit of the mesh.
   Vec3 vector_to_mesh(const Vec3& vector) const noexcept { return rotation_ * (scale_ * vector); }
-  /// Returns a displacement or a velocity in the robot's frame and unit.
+  /// Transforms a displacement or a velocity to the robot's frame and unit.
   Vec3 vector_to_robot(const Vec3& vector) const noexcept {
     return (rotation_.transpose() * vector) / scale_;
   }
 
-  /// Returns a force in the frame of the mesh. [N]
+  /// Rotates a force into the frame of the mesh. [N]
   Vec3 force_to_mesh(const Vec3& force) const noexcept { return rotation_ * force; }
-  /// Returns a force in the robot's frame. [N]
+  /// Rotates a force into the robot's frame. [N]
   Vec3 force_to_robot(const Vec3& force) const noexcept { return rotation_.transpose() * force; }
 
   /// Returns the robot's unit divided by the mesh's unit: 1000 for meters and millimeters.

@@ -29,30 +29,30 @@ struct RigidFit {
   Eigen::Matrix4d matrix() const noexcept;
 
   /// Returns the fiducial localization error (FLE) estimated from the residuals: the root mean
-  /// square error of a pair of mean weight, of both points together.
-  /// FLE^2 = FRE^2 N / (N - 2), to first order (Fitzpatrick, West, Maurer 1998). [length]
+  /// square error of a pair of mean weight, with the errors of both points. To first order, FLE^2 =
+  /// FRE^2 N / (N - 2) (Fitzpatrick, West, Maurer 1998). [length]
   double estimated_fle() const noexcept;
 
-  /// Returns why a fiducial localization error contradicts the residuals; empty if it does not.
-  /// It contradicts them if less than one in a thousand registrations with that error, equal in
-  /// all directions, has so large an FRE. N FRE^2 / (FLE^2 / 3) is chi-squared with 3 N - 6 degrees
-  /// of freedom. `fle`: root mean square, above 0, like estimated_fle() [length]. Throws Error for
-  /// another number.
+  /// Returns why a fiducial localization error contradicts the residuals; empty if it does not. A
+  /// contradiction means that fewer than one in a thousand registrations with that error have so
+  /// large an FRE. The error is assumed equal in all directions. N FRE^2 / (FLE^2 / 3) is
+  /// chi-squared with 3 N - 6 degrees of freedom. `fle`: root mean square, above 0, like
+  /// estimated_fle() [length]. Throws Error for a number that is not above 0 or not finite.
   std::string doubt_of(double fle) const;
 };
 
 /// Returns the rigid transform, without a scale, from points s measured in the robot's frame to the
-/// same points m in the mesh's frame. It minimizes sum w |R s + t - m|^2 (Horn 1987), by singular
-/// values and without reflections (Umeyama 1991).
+/// same points m in the mesh's frame. It minimizes sum w |R s + t - m|^2 (Horn 1987). The method
+/// uses singular values and excludes reflections (Umeyama 1991).
 ///
-/// Both are in the mesh's unit: multiply points in meters by 1000 for a mesh in millimeters.
+/// Both lists are in the mesh's unit: multiply points in meters by 1000 for a mesh in millimeters.
 /// `weights`: one for each pair, or empty for equal weights; only their ratios matter. They should
 /// be proportional to 1 / (localization error)^2 of the pair, as target_error assumes.
 ///
 /// Throws Error for fewer than 3 pairs, different counts, numbers that are not finite or above
 /// longest_length, and weights not above 0. Also throws Error for points that coincide or are on a
-/// line (narrower than a thousandth of its length), and for permuted pairs without a best rotation.
-/// Large residuals are not an error: see RigidFit::doubt.
+/// line (narrower than a thousandth of its length). Also throws Error if no rotation is best, as
+/// can happen with pairs in the wrong order. Large residuals are not an error: see RigidFit::doubt.
 RigidFit fit_rigid(std::span<const Vec3> measured, std::span<const Vec3> model,
                    std::span<const double> weights = {});
 

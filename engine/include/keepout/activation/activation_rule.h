@@ -13,12 +13,12 @@
 
 namespace keepout {
 
-/// Planes, with a declared capacity.
+/// A list of planes with a fixed capacity.
 using HalfSpaceBuffer = Buffer<HalfSpace>;
 
 /// The region of the tip's increments in which the solved motions of a cycle may end.
 enum class EndRegion : std::uint8_t {
-  target_ball,  // the ball whose diameter is the target: all projections of the target (Thales)
+  target_ball,  // the ball whose diameter is the target: contains its projections (Thales)
   /// The ball around the tip of radius RuleInput::longest, for motions that need not be
   /// projections. Used with joints, rows, a retreat, guides that pull points back, other rules, or
   /// Query::sphere.
@@ -29,15 +29,15 @@ enum class EndRegion : std::uint8_t {
 struct RuleInput {
   Vec3 tip;          // [length]
   Vec3 target;       // the desired increment, a part of it, or the retreat [length]
-  Vec3 accepted;     // motion that planes must still allow; zero before there is one [length]
+  Vec3 accepted;     // accepted motion, which planes must still allow; else zero [length]
   double radius;     // of the motion sphere [length]
   double longest;    // bound of all motions: longest_motion() or twice the retreat [length]
-  double clearance;  // required from the mesh: tool radius and margin [length], >= 0
+  double clearance;  // required clearance: tool radius + margin [length], >= 0
   double recovery;   // the longest retreat of a tip that is too close, in a cycle [length]
-  double rounding;   // bound of the tip's error after earlier steps [length]
-  EndRegion searched_region;  // contains the ends of all motions that may be solved
-  /// True if there are no joints, rows, damping or guides that pull points back, and the solver
-  /// ignores idle planes: the rule may leave such planes out.
+  double rounding;   // bound of the error of the tip's position [length]
+  EndRegion searched_region;  // contains the ends of all motions that a solver may find
+  /// True if the rule may leave out idle planes (Solver::ignores_idle_planes): the solver ignores
+  /// them, and there are no joints, rows, damping or guides that pull points back.
   bool is_projected = false;
 };
 
@@ -63,27 +63,26 @@ struct Judgement {
     blocked    // the trial is not accepted, and no plane can help
   };
   Verdict verdict = Verdict::accepted;  // on the trial as a whole
-  double free_fraction = 1.0;           // of the trial that is free, unless it is accepted
+  double free_fraction = 1.0;           // the part of a rejected trial that is free
 };
 
-/// Chooses the planes that limit a motion.
+/// Chooses the planes (HalfSpace) that limit a motion.
 ///
 /// An eager rule adds all of its planes in `open`. A lazy rule is a separation oracle, as in a
 /// cutting-plane method. Its `judge` receives each trial motion, and either accepts the trial or
-/// adds a plane that the trial violates. The same loop of a cycle serves both
-/// (Cycle::solve_and_judge). State that a rule stores between cycles never changes a result, unless
-/// the work budget ends.
+/// adds a plane that the trial violates. The same loop runs both kinds (Cycle::solve_and_judge).
+/// State that a rule stores between cycles never changes a result, unless the work budget ends.
 class ActivationRule {
  public:
   virtual ~ActivationRule() = default;
 
-  /// Sets the neighborhood in which to gather triangles, before any other call, and again when its
-  /// mesh has changed. The neighborhood must outlive the rule. Allocates; all other functions do
-  /// not.
+  /// Sets the neighborhood in which the rule gathers triangles. Must be called before any other
+  /// function, and again when the mesh has changed. The neighborhood must outlive the rule.
+  /// Allocates; all other functions do not.
   virtual void prepare(Neighborhood& neighborhood) { neighborhood_ = &neighborhood; }
 
-  /// Returns true if the rule guards a whole tool, not only the tip. The tip's side, and the free
-  /// space around the tip, then do not hold for the tool.
+  /// Returns true if the rule guards a whole tool, not only the tip. The side of the tip, and the
+  /// free space around the tip, then say nothing about the tool.
   virtual bool guards_a_tool() const noexcept { return false; }
 
   /// Returns true if the rule queries the index for all triangles in the region; false if it uses
@@ -94,7 +93,7 @@ class ActivationRule {
   /// All motions are then projections of the target.
   virtual EndRegion end_region() const noexcept { return EndRegion::motion_sphere; }
 
-  /// Returns the ball that touches all triangles that matter: by default the ball of
+  /// Returns a ball that touches all triangles that matter. By default it is the ball of
   /// searched_ends(), grown by the required clearance. Precondition: prepare.
   virtual Ball region(const RuleInput& input) const noexcept;
 
@@ -106,9 +105,10 @@ class ActivationRule {
   /// trial. May already judge the target, which is the first trial. Precondition: gather.
   virtual Opening open(const RuleInput& input, HalfSpaceBuffer& planes) noexcept = 0;
 
-  /// Judges a trial motion: by default it is accepted if it satisfies the planes, which no solver
-  /// is trusted to ensure. A lazy rule appends a plane that the trial violates, if there is one.
-  /// Precondition: the trial ends in the searched region; triangles beyond were not searched.
+  /// Judges a trial motion. By default, accepts a trial that satisfies the planes, because the
+  /// solver is not trusted to ensure this. A lazy rule appends a plane that the trial violates, if
+  /// there is one. Precondition: the trial ends in the searched region, as triangles beyond were
+  /// not searched.
   virtual Judgement judge(const RuleInput& input, const Vec3& trial,
                           HalfSpaceBuffer& planes) noexcept;
 
@@ -116,20 +116,21 @@ class ActivationRule {
   /// any plane changed.
   virtual bool relax(HalfSpaceBuffer& /*planes*/) noexcept { return false; }
 
-  /// Fills `next` with `planes`, linearized again at input.accepted, a motion that the rule has
-  /// accepted: they allow it too, and may allow a better one. Returns true if any plane changed.
+  /// Linearizes `planes` again at input.accepted, a motion that the rule has accepted, and fills
+  /// `next` with them. They allow this motion too, and may allow a better one. Returns true if any
+  /// plane changed.
   virtual bool relinearize(const RuleInput& /*input*/, std::span<const HalfSpace> /*planes*/,
                            HalfSpaceBuffer& /*next*/) noexcept {
     return false;
   }
 
-  /// Adds planes that each have one triangle behind them and allow zero motion: alternatives to the
-  /// plane that `judge` has added for the triangle.
+  /// Adds alternatives to the plane that `judge` has added for a triangle. Each alternative has
+  /// this triangle behind it, and allows zero motion.
   virtual void add_alternatives(TriangleId /*triangle*/,
                                 HalfSpaceBuffer& /*planes*/) const noexcept {}
 
-  /// Returns the number of triangles that the last result depends on. It is the number of hits, or
-  /// of examined triangles. A triangle counts again if the rule had to forget it.
+  /// Returns the number of triangles that the last result depends on. These are hits, or examined
+  /// triangles. A triangle that the rule forgot and examined again counts twice.
   virtual std::size_t triangles() const noexcept { return hits().size(); }
 
  protected:

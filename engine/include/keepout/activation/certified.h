@@ -26,8 +26,8 @@ struct CertifiedTerms;
 /// docs/certified-step-algorithm.md.
 ///
 /// The index finds the triangles by a traversal along each trial motion. The rule judges each
-/// triangle in double precision. The answers are therefore bitwise identical on every index,
-/// whichever triangles the index skips as surely clear.
+/// triangle in double precision. The answers are therefore bitwise identical on every index, even
+/// if an index skips triangles that are surely clear.
 ///
 /// Guarantee for every motion dx that judge() accepts (assumptions: docs/certified-step.md):
 /// dist(x + s dx, mesh) >= min(clearance, dist(x, mesh)) - 3 tolerance for all s in [0, 1].
@@ -50,9 +50,9 @@ class CertifiedRule final : public ActivationRule {
   void add_alternatives(TriangleId triangle, HalfSpaceBuffer& planes) const noexcept override;
   std::size_t triangles() const noexcept override { return prepared_.size(); }
 
-  /// Returns tau, the tolerance of distances at a tip: 2e-10 of longest edge, radius and clearance,
-  /// plus 4e-16 of the 1-norm of the tip. It depends on the whole mesh and not on the triangles
-  /// found, so it is the same on every index. Precondition: prepare. [length]
+  /// Returns tau, the tolerance of distances at a tip: 2e-10 (longest edge + radius + clearance) +
+  /// 4e-16 (1-norm of the tip). It depends on the whole mesh and not on the triangles found, so it
+  /// is the same on every index. Precondition: prepare. [length]
   double tolerance(const RuleInput& input) const noexcept;
 
  private:
@@ -60,9 +60,9 @@ class CertifiedRule final : public ActivationRule {
   struct Passage {
     /// The first contact that forbids the trial.
     Contact contact{MotionTraversal::never, {Vec3::Zero(), 0.0, no_triangle}};
-    /// The index of its triangle in prepared_; no_note: no contact.
+    /// The index in prepared_ of the triangle of the contact; no_note without a contact.
     std::uint32_t prepared = MotionTraversal::no_note;
-    bool is_too_close = false;  // a triangle is too close to the tip: contacts mean nothing
+    bool is_too_close = false;  // a triangle is too close to the tip: contacts are meaningless
     bool nothing_near = false;  // neither this trial nor a similar one comes near a triangle
 
     bool has_contact() const noexcept { return prepared != MotionTraversal::no_note; }
@@ -90,7 +90,7 @@ class CertifiedRule final : public ActivationRule {
   /// triangle twice if the traversal forgot its note.
   Buffer<PreparedTriangle> prepared_;
   static constexpr std::size_t most_walls = 12;
-  /// Near a tip that is too close: one for each direction, until their planes are added.
+  /// Triangles near a tip that is too close, one for each direction, until their planes are added.
   Buffer<PreparedTriangle> walls_{most_walls};
 };
 

@@ -12,26 +12,26 @@
 
 namespace keepout {
 
-/// Keeps a convex tool out of a mesh. The tool moves with the tip, its origin, and does not turn.
-/// The rule accepts a motion only if planes prove that the whole tool stays clear. The rule does
-/// not use the winding: the tool stays on its side of each surface.
+/// Keeps a convex tool out of a mesh. The tool's origin is the tip. The tool moves with the tip and
+/// does not turn. The rule accepts a motion only if planes prove that the whole tool stays clear.
+/// The rule does not use the winding: the tool stays on its side of each surface.
 ///
 /// Proof for a straight motion d: let n . p - n . v >= s for all points p of the tool and v of the
 /// triangle. At a fraction t of d their distance is at least s + t n . d. That is linear in t, so
-/// its least value is at an end: s, or s + n . d. The proof holds for any n, and the rule computes
-/// s from the tool and the triangle. A narrow phase therefore only proposes normals. The rule calls
-/// the exact kernel if a proposal proves too little, and at contacts.
+/// its least value is at an end: s, or s + n . d. The proof holds for any n, and the rule itself
+/// computes s from the tool and the triangle. So the narrow phase only proposes normals. The rule
+/// calls the exact kernel if a proposal proves too little, and at contacts.
 ///
 /// The rule starts without planes. If a trial comes too close, it adds the plane of the first
 /// contact. The triangle, grown by tool and margin, lies behind that plane. Planes at the tool's
-/// start, one for each triangle, would also be sound. But a tool that slides over a flat mesh would
-/// then stop at inner edges.
+/// start, one for each triangle, would also be safe. But they would stop a tool that slides over a
+/// flat mesh at each inner edge.
 ///
 /// Guarantee: dist(tool + t d, mesh) >= min(margin, dist(tool, mesh)) - 3 tolerance, t in [0, 1]. A
 /// tool that is too close retreats. A tool that touches the surface does not move.
 class ConvexToolRule final : public ActivationRule {
  public:
-  /// Makes the rule of a tool. `narrow_phase`: for this tool; null for the exact one.
+  /// Makes the rule of a tool. `narrow_phase`: for this tool; null for the exact kernel.
   explicit ConvexToolRule(ConvexTool tool, std::unique_ptr<NarrowPhase> narrow_phase = nullptr);
 
   void prepare(Neighborhood& neighborhood) override;

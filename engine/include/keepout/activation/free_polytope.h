@@ -21,11 +21,12 @@ struct TriangleFromTip;
 /// The number of planes that allow only zero motion.
 inline constexpr std::size_t planes_to_hold_still = 6;
 
-/// Replaces `planes` by planes_to_hold_still planes, one for each direction of each axis.
+/// Replaces `planes` by planes that allow only zero motion, one for each direction of each axis.
 void hold_still(HalfSpaceBuffer& planes) noexcept;
 
 /// Computes the free space around the tip as one convex polytope, which does not depend on the
-/// direction of the motion. For callers with their own QP, MPC or sampler.
+/// direction of the motion. For callers with their own quadratic program (QP), model predictive
+/// control (MPC) or sampler.
 ///
 /// Every increment d with |d| <= radius that satisfies all planes maintains
 /// distance(tip + d, mesh) >= min(clearance, distance(tip, mesh)) - rounding.
@@ -36,11 +37,11 @@ void hold_still(HalfSpaceBuffer& planes) noexcept;
 ///
 /// Visits the triangles in order of distance. It adds a plane unless the part of the triangle
 /// within the ball is already behind an earlier plane. There are two candidates: the face plane,
-/// and the plane perpendicular to the segment to the closest point. It takes the plane that leaves
-/// more of the remaining space, counted on fixed probe points in the ball.
+/// and the plane perpendicular to the segment to the closest point. It adds the one that leaves
+/// more of the remaining space. This space is measured by fixed probe points in the ball.
 ///
-/// Planes are put nearer to the tip than necessary: by a hundredth of the radius, or by a quarter
-/// of the distance available if that is less. Nearly coplanar neighbors are then behind the same
+/// Planes are nearer to the tip than necessary: by a hundredth of the radius, or by a quarter of
+/// the available distance if that is less. Nearly coplanar neighbors are then behind the same
 /// plane. This costs a hundredth of the volume and saves a quarter of the planes.
 ///
 /// Not thread-safe: make one for each thread. The mesh may be shared.
@@ -53,10 +54,10 @@ class FreePolytope {
   /// free. If the planes allow only zero motion, returns the cause: touching, invalid_input,
   /// over_capacity or out_of_budget.
   ///
-  /// `radius`, `clearance` [length], >= 0. `hits`: all triangles within the ball of radius +
-  /// clearance around the tip, in any order; closest points relative to the tip (refine). `planes`
-  /// needs a capacity of at least planes_to_hold_still; with less, it overflows on failure. Spends
-  /// work units of `budget`.
+  /// `radius`, `clearance` [length], >= 0. `hits`: all triangles that touch the ball of radius
+  /// `radius` + `clearance` around the tip, in any order. Their closest points are relative to the
+  /// tip (refine). `planes` needs a capacity of at least planes_to_hold_still; with less, it
+  /// overflows on failure. Spends work units of `budget`.
   ///
   /// The normals, the offsets and their order do not depend on how the triangles are numbered and
   /// wound, or which corner is first. They are bitwise identical, except for the sign of a zero.

@@ -16,11 +16,13 @@ class PaperBlocks;
 /// which planes are active. For comparison only: the algorithm is not always safe, and not always
 /// tight (docs/activation.md).
 ///
-/// Decisions where Li et al. are silent or contradict themselves:
+/// Notation of Li et al.: x is the tip, N_i the normal and CP_i the closest point of triangle T_i,
+/// and CP_a the closest point of an adjacent triangle. Decisions where Li et al. are silent or
+/// contradict themselves:
 /// 1. Convexity refers to the anatomy: a convex edge is a ridge. Coplanar edges count as convex.
 /// 2. CP_i == CP_a is an exact comparison: the kernel computes bitwise identical points for both
 ///    triangles of an edge.
-/// 3. At a vertex, both edges of T_i that meet there count. Condition 2 comes first; Condition 3
+/// 3. At a vertex, both edges of T_i that meet there count. Condition 2 has priority; Condition 3
 ///    applies if either edge is concave.
 /// 4. All triangles with that closest point share the plane of Condition 2. A triangle does not add
 ///    it if a qualifying neighbor has a lower id.

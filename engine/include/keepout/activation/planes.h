@@ -7,8 +7,8 @@
 
 namespace keepout {
 
-/// The most planes that a rule adds in one search of a cycle. A search usually needs few, and about
-/// a hundred under the tip of a cone of 400 faces. The limit ends an endless loop.
+/// The most planes that a rule adds in one search of a cycle. A search usually needs few planes,
+/// but about a hundred at the apex of a cone of 400 faces. The limit prevents an endless loop.
 inline constexpr std::size_t most_cutting_planes = 192;
 
 /// Returns the plane {n, p} of Li et al. (2020), eq. 2, with a clearance: it allows all motions
@@ -28,8 +28,9 @@ inline Vec3 away_from(const Hit& hit) noexcept {
 /// Without a tolerance the rule would miss the face in every other cycle.
 bool on_positive_side(const RuleInput& input, const Hit& hit, const Vec3& normal) noexcept;
 
-/// Returns true if the tip is on the surface, to within the rounding of positions. There x - CP has
-/// no direction. (The certified rule has a larger threshold: touching_within.)
+/// Returns true if the tip is on the surface, to within the rounding of positions. The direction
+/// from the closest point to the tip is then undefined. (The certified rule has a larger threshold:
+/// touching_within.)
 bool touches(const RuleInput& input, const Hit& hit) noexcept;
 
 /// Returns the retreat of a tip that is too close: the target without its part towards the surface,

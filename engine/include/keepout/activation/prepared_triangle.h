@@ -18,7 +18,7 @@ inline double support(const Triangle& corners, const Vec3& n) noexcept {
 ///
 /// Proofs rest on Lemma 2 of docs/certified-step.md. The distance from the point t z of a motion z
 /// to a triangle is convex in t. Each unit vector n bounds it from below by n . (t z) - support(n).
-/// The two are equal at the t where n points from the closest point of the triangle to t z.
+/// The bound is exact at the t where n points from the closest point of the triangle to t z.
 class PreparedTriangle {
  public:
   /// The prepared triangle's closest point to a point, as a proof of the distance.
@@ -41,15 +41,16 @@ class PreparedTriangle {
   /// Returns the corners, in lexicographic order, relative to the tip. [length]
   const Triangle& corners() const noexcept { return corners_; }
 
-  /// Returns the closest point to a point. Its normal proves the largest distance of all normals
-  /// that agree within rounding. The point is that of closest_point(), whose offset might not prove
-  /// the distance (A9 of docs/certified-step.md).
+  /// Returns the closest point to a point: the one that closest_point() returns, but with a proof
+  /// of the distance. (The offset of closest_point() might not prove the distance: A9 of
+  /// docs/certified-step.md.) The returned normal proves the largest distance of all normals that
+  /// agree within rounding.
   Nearest nearest_to(const Vec3& point) const noexcept;
 
   /// Like nearest_to(point), but faster if the closest point lies on the `likely` feature.
   Nearest nearest_to(const Vec3& point, Feature likely) const noexcept;
 
-  /// Returns nearest_to() the tip.
+  /// Returns nearest_to(point) for the tip.
   const Nearest& at_tip() const noexcept { return at_tip_; }
   /// Returns the distance of the tip. [length]
   double distance() const noexcept { return at_tip_.distance; }
@@ -62,10 +63,10 @@ class PreparedTriangle {
   /// Returns max n . p over the points p of the prepared triangle. [length]
   double support(const Vec3& n) const noexcept { return keepout::support(corners_, n); }
 
-  /// Returns true unless the prepared triangle is a needle, which is treated as its edges.
+  /// Returns true unless the prepared triangle is a needle. A needle is treated as its three edges.
   bool has_face() const noexcept { return determinant_ > 0.0; }
 
-  /// Returns the closest point of the plane of the face to a point; it may be outside the face.
+  /// Returns the point of the face's plane that is closest to a point. It may be outside the face.
   /// Precondition: has_face().
   Nearest on_face_plane(const Vec3& point) const noexcept;
 
@@ -77,14 +78,14 @@ class PreparedTriangle {
   /// point; zero if the triangle has no area.
   Vec3 normal_against(const Vec3& direction) const noexcept;
 
-  /// Returns the unit normal of the plane through the tip with the prepared triangle on its far
-  /// side. The triangle is at least `level` from the plane, and the edge (0, 1, 2) exactly `level`:
-  /// the alternative around that edge. Returns zero if the line of the edge is closer than `level`,
-  /// or if no plane has the whole triangle on its far side.
+  /// Returns the unit normal of the plane through the tip that allows motion around edge 0, 1 or 2.
+  /// The prepared triangle is on the far side of the plane. The triangle is at least `level` from
+  /// the plane, and the edge exactly `level`. Returns zero if the line of the edge is closer than
+  /// `level`, or if no plane has the whole triangle on its far side.
   Vec3 normal_around(int edge, double level) const noexcept;
 
-  /// Returns true if the prepared triangle comes before another by its corners; a total order
-  /// except for duplicates.
+  /// Returns true if the prepared triangle precedes another in lexicographic order of their
+  /// corners. This is a total order, except for duplicates.
   bool before(const PreparedTriangle& other) const noexcept;
 
  private:

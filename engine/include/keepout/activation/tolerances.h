@@ -5,16 +5,16 @@ namespace keepout {
 
 // The thresholds of the proofs, in units of their tolerance tau: see the constants of
 // docs/certified-step.md. Solvers and the rounding of positions leave errors far below one tau. The
-// first three are losses of clearance in increasing order, about one tau apart. Planes are put at
-// the full clearance, so that later cycles regain the loss.
+// first three are losses of clearance, in increasing order and about one tau apart. Planes are put
+// at the full clearance, so that later cycles regain the loss.
 inline constexpr double demand_below = 1.0;         ///< loss of a free motion
 inline constexpr double floor_below = 2.0;          ///< loss of a motion along a plane
 inline constexpr double lost_below = 2.75;          ///< the required clearance is violated
 inline constexpr double touching_within = 4.0;      ///< the tip touches the surface
 inline constexpr double needed_clearance = 8.0;     ///< the least required clearance
 inline constexpr double region_beyond = 8.0;        ///< the searched region beyond the clearance
-inline constexpr double proof_slack = 1.0 / 64.0;   ///< of a proof of clearance
-inline constexpr double contact_slack = 1.0 / 8.0;  ///< of a contact: small compared with
+inline constexpr double proof_slack = 1.0 / 64.0;   ///< slack of a proof of clearance
+inline constexpr double contact_slack = 1.0 / 8.0;  ///< slack of a contact: small compared to
                                                     ///< demand_below
 
 // For the core of an instrument's body, in addition to lost_below.

@@ -17,9 +17,9 @@ struct NearestPoints {
   double proven;  // the distance that a plane with that normal proves; nearly `distance` [length]
 };
 
-/// Returns the nearest points of a triangle and the core of `points`. Each iteration is strictly
-/// nearer, so the search ends. If rounding ends it early, `proven` is less than `distance`.
-/// Precondition: there is a point.
+/// Returns the nearest points of a triangle and the core of `points`. Each iteration finds strictly
+/// nearer points, so the search ends. If rounding ends it early, `proven` is less than `distance`.
+/// Precondition: `points` is not empty.
 ///
 /// Source: Gilbert, Johnson, Keerthi, "A fast procedure for computing the distance between complex
 /// objects in three-dimensional space", 1988.

@@ -9,7 +9,7 @@ namespace keepout {
 // fast test in double precision nearly always decides. If its error bound is too large, the sum is
 // computed exactly (Shewchuk, "Adaptive precision floating-point arithmetic and fast robust
 // geometric predicates", 1997). The results are exact if no product of three coordinate differences
-// underflows or overflows, as for sizes from 1e-90 to 1e90.
+// underflows or overflows. This is the case for sizes from 1e-90 to 1e90.
 
 /// Returns the side of the plane through a, b, c on which d lies. 1: the side of the normal, from
 /// which a, b, c are counter-clockwise. 0: in the plane, or a, b, c define no plane.

@@ -7,8 +7,8 @@
 
 namespace keepout {
 
-/// A convex region that a guided quantity must not leave: one side of a plane, or all points near a
-/// plane, a line or a point.
+/// A convex region that a guided point or direction must not leave (see Guide). It is one side of a
+/// plane, or all points near a plane, a line or a point.
 class Region {
  public:
   /// The form of a region. A static function of the same name makes it.
@@ -18,17 +18,18 @@ class Region {
   /// throws Error for a zero direction, a number that is not finite or too large, or a distance
   /// that is not above 0.
   static Region half_space(const Vec3& point, const Vec3& into);
-  /// Returns all points within `half_width` of a plane: a corridor. That of Li et al. (2020) is 1
-  /// mm to each side of the sagittal plane.
+  /// Returns all points within `half_width` of a plane: a corridor. The corridor of Li et al.
+  /// (2020) is 1 mm to each side of the sagittal plane.
   static Region slab(const Vec3& point, const Vec3& normal, double half_width);
   /// Returns all points within `radius` of a line: an infinite cylinder.
   static Region tube(const Vec3& point, const Vec3& direction, double radius);
   /// Returns all points within `radius` of a point.
   static Region ball(const Vec3& center, double radius);
 
-  /// Returns the signed distance of a point from the region, below 0 inside. [length] The excess is
-  /// convex, and its slope is at most 1. On a path with a second derivative of at most M over [0,
-  /// 1], it is at most M / 8 above its larger value at the ends.
+  /// Returns the signed distance of a point from the region, below 0 inside. This distance, the
+  /// excess, is convex, and its slope is at most 1. Let a path over [0, 1] have a second derivative
+  /// of at most M. Its excess is then at most M / 8 above the larger of the values at the ends.
+  /// [length]
   double excess(const Vec3& point) const noexcept;
 
   /// Returns the unit vector along which the excess grows. Zero on the middle plane, the line or

@@ -25,8 +25,9 @@ struct Separation {
 };
 
 /// Returns the distance that a plane with the unit normal n proves: min n . p over the tool minus
-/// max n . v over the triangle. For any n it is at most the distance of tool and triangle; if below
-/// 0, its negative is at least their depth. Exact to a few roundings of the lengths between them.
+/// max n . v over the triangle. For any n, this distance is at most that of tool and triangle. If
+/// it is below 0, its negative is at least their depth. Exact to a few roundings of the lengths
+/// between them.
 double separation_along(const Vec3& n, const ConvexTool& tool, const Vec3& position,
                         const Triangle& triangle) noexcept;
 
@@ -40,12 +41,12 @@ double separation_along(const Vec3& n, const ConvexTool& tool, const Vec3& posit
 /// returns the first in a fixed order, which may depend on the winding.
 ///
 /// The error of the distance is about 1e-15 of the lengths involved, and the distance is never more
-/// than a plane proves. If the lengths differ by many orders of magnitude, it may be too small by
-/// about 1e-9 of the largest. The error of the depth is the same, but 1e-16 / a of these lengths if
-/// edges are parallel to within an angle a other than 0. A sphere's distance is bitwise
-/// closest_point's to its center minus the radius. Takes a few µs if apart, and about 100 µs in an
-/// overlap with a tool of 64 points. Does not allocate. Preconditions: all numbers are finite, and
-/// no length is above 1e30.
+/// than a plane proves. If the lengths differ by many orders of magnitude, the distance may be too
+/// small by about 1e-9 of the largest. The error of the depth is the same, except if edges are
+/// parallel to within an angle a other than 0: then it is 1e-16 / a of these lengths. The distance
+/// of a sphere is bitwise that of closest_point() from its center, minus the radius. Takes a few µs
+/// if apart, and about 100 µs in an overlap with a tool of 64 points. Does not allocate.
+/// Preconditions: all numbers are finite, and no length is above 1e30.
 Separation separation(const ConvexTool& tool, const Vec3& position,
                       const Triangle& triangle) noexcept;
 
@@ -78,8 +79,8 @@ class NarrowPhase {
   virtual bool is_exact() const noexcept { return false; }
 };
 
-/// Returns true if all coordinates are within 1e30 of the origin. Libraries are called with no
-/// others.
+/// Returns true if all coordinates are within 1e30 of the origin. Other libraries receive only such
+/// coordinates.
 bool is_in_range(const Vec3& position, const Triangle& triangle) noexcept;
 
 /// The exact kernel as a narrow phase. It never fails and does not allocate.

@@ -52,10 +52,11 @@ inline double distance_to(const Box& box, const Vec3& point) noexcept {
   return (point - point.cwiseMax(box.low).cwiseMin(box.high)).norm();
 }
 
-/// Returns a radius for tests of boxes in double precision, within which no box that the ball
-/// touches is missed. `bounds`: of the mesh. It is the ball's radius plus the roundings of the
-/// exact kernel and of the test. Each rounding is about 1e-15 of the lengths involved, which are at
-/// most the ball's radius and its distance to the far end of the mesh. [length]
+/// Returns an enlarged radius of a ball, for tests of boxes in double precision. With this radius,
+/// the test misses no box that the ball touches. `bounds`: of the mesh. The enlarged radius is the
+/// ball's radius plus the roundings of the exact kernel and of the test. Each rounding is about
+/// 1e-15 of the lengths involved. These are at most the ball's radius plus its distance to the far
+/// end of the mesh. [length]
 inline double padded_radius(const Ball& ball, const Box& bounds) noexcept {
   constexpr double rounding = 1e-13;
   const Vec3 from_middle = ball.center - bounds.center();
@@ -80,8 +81,8 @@ Vec3 unit_normal(const Triangle& triangle) noexcept;
 /// equal.
 Triangle ordered_relative(const Triangle& triangle, const Vec3& tip) noexcept;
 
-/// A half-space of motions, called plane: it allows all motions d with normal . d >= offset. It is
-/// relative to the tip, so zero motion is allowed if `offset` <= 0.
+/// A half-space of motions, called a plane. It allows all motions d with normal . d >= offset. It
+/// is relative to the tip, so zero motion is allowed if `offset` <= 0.
 struct HalfSpace {
   Vec3 normal;        // unit, towards the free side
   double offset;      // [length]

@@ -5,9 +5,9 @@
 
 namespace keepout {
 
-/// A displacement of a frame in one cycle (InstrumentConstraint::step), or its velocity
-/// (InstrumentConstraint::place: per second). In the axes of the world, which are those of the
-/// first mesh unless `place` moves it.
+/// A displacement of a frame in one cycle, or a velocity of a frame. InstrumentConstraint::step
+/// takes a displacement, and InstrumentConstraint::place takes a velocity, with units per second.
+/// Both are in the axes of the world. Meshes that `place` has not moved have the same axes.
 struct Twist {
   Vec3 linear = Vec3::Zero();   // of the frame's origin [length]
   Vec3 angular = Vec3::Zero();  // rotation: axis times angle [rad]

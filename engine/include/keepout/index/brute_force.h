@@ -11,7 +11,7 @@ namespace keepout {
 /// Tests every triangle with the exact kernel: the oracle for all other indices.
 class BruteForce final : public SpatialIndex {
  public:
-  /// Stores the mesh; builds nothing. O(1).
+  /// Stores the mesh, in O(1).
   explicit BruteForce(std::shared_ptr<const Mesh> mesh);
 
   void collect(const Ball& ball, TriangleBuffer& candidates) const noexcept override;

@@ -12,9 +12,9 @@
 namespace keepout {
 
 // An index cache stores the order of the triangles of a built index on disk, so that the next build
-// is fast. A file is never trusted. Its version, its length, a digest of its contents and a digest
-// of the mesh must agree, and it must name each triangle once. All else is computed from the mesh
-// (see WideBvh). So a damaged or forged file cannot make an index lose a triangle.
+// is fast. keepout never trusts a file. Its version, its length, a digest of its contents and a
+// digest of the mesh must agree, and it must name each triangle once. keepout computes all else
+// from the mesh (see WideBvh). So a damaged or forged file cannot make an index lose a triangle.
 
 /// Returns the path of the cache file of a mesh. The name contains a digest of the mesh, so meshes
 /// may share a directory.
@@ -31,7 +31,7 @@ bool save_index(const WideBvh& index, const std::filesystem::path& file);
 
 /// Returns the index of a mesh: loads it from `folder`, or builds it and saves it there. Creates a
 /// missing directory. File errors cost only time: if the index cannot be saved, calls `warn` with
-/// the file and the cause. Throws Error if building does.
+/// the file and the cause. Throws Error like the constructor of WideBvh.
 std::unique_ptr<WideBvh> load_or_build(std::shared_ptr<const Mesh> mesh,
                                        const std::filesystem::path& folder,
                                        const std::function<void(const std::string&)>& warn = {});

@@ -12,15 +12,16 @@ namespace keepout {
 
 class Neighborhood;
 
-/// Visits the triangles that a traversal shows.
+/// Receives the triangles that a traversal finds.
 class TriangleVisitor {
  public:
-  /// Visits a triangle. `note`: the visitor's own number for the triangle, which it may write. It
-  /// is MotionTraversal::no_note for a new triangle, or if the traversal had to forget the note.
-  /// `corners`: relative to the tip, in lexicographic order of the mesh's coordinates; null if
-  /// there is a note, as the visitor then knows them. [length]
+  /// Visits a triangle. `note`: a number that the visitor may write, and that the traversal keeps
+  /// for the triangle. It is MotionTraversal::no_note for a new triangle, or if the traversal had
+  /// to forget the note. `corners`: relative to the tip, in lexicographic order of the mesh's
+  /// coordinates; null if there is a note, as the visitor then knows them. [length]
   ///
-  /// Returns the fraction of the motion after which triangles no longer matter; it never grows.
+  /// Returns the fraction of the motion after which triangles no longer matter. It never grows from
+  /// call to call.
   virtual double visit(TriangleId triangle, std::uint32_t& note,
                        const Triangle* corners) noexcept = 0;
 
@@ -30,7 +31,7 @@ class TriangleVisitor {
 
 /// Finds the triangles near straight motions that start at one tip, motion after motion (the
 /// traversal of docs/certified-step.md). The visitor judges each triangle by its own arithmetic, in
-/// any order. Answers therefore do not depend on the traversal or its memory, unless the work
+/// any order. So answers do not depend on the traversal, or on what it remembers, unless the work
 /// budget ends. An index may offer a traversal that is faster than a query for all triangles in the
 /// region (SpatialIndex::traverse_along_motions).
 class MotionTraversal {
@@ -63,25 +64,25 @@ class MotionTraversal {
   virtual bool region_is_empty() const noexcept = 0;
 
   /// Shows the visitor each triangle that the motion may come within the level of, and perhaps
-  /// others. It shows all that may be within the level at the start of the motion. It may skip
-  /// triangles whose contact is surely later than the fraction that the visitor returned last. It
-  /// stops once the budget is spent; triangles may then be missing.
+  /// others. It always shows the triangles that may be within the level at the start of the motion.
+  /// It may skip triangles whose contact is surely later than the fraction that the visitor
+  /// returned last. It stops once the budget is spent; triangles may then be missing.
   ///
-  /// Returns true if neither this motion, nor any other that ends within `alike` times the motion's
-  /// length of its end, comes near a triangle. Precondition: begin() returned true, and
-  /// region_is_empty() is false.
+  /// Returns true if neither this motion nor any similar one comes near a triangle. A motion is
+  /// similar if the ends of both motions are at most `alike` times the motion's length apart.
+  /// Precondition: begin() returned true, and region_is_empty() is false.
   virtual bool traversal(const Vec3& motion, TriangleVisitor& visitor) noexcept = 0;
 
-  /// The largest distance of the ends of two motions that count as alike, as a fraction of their
-  /// length.
+  /// The largest distance between the ends of two similar motions, as a fraction of their length.
   static constexpr double alike = 1e-7;
 
   /// Returns the largest number of triangles that may have notes at the same time.
   virtual std::size_t room() const noexcept = 0;
 };
 
-/// Returns the index's own traversal; if it has none, one that shows all exact hits in the region.
-/// Work is spent from the neighborhood's budget. The neighborhood must outlive the traversal.
+/// Returns the index's own traversal. If the index has none, returns a traversal that shows all
+/// exact hits in the region. The traversal spends work units of the neighborhood's budget. The
+/// neighborhood must outlive the traversal.
 std::unique_ptr<MotionTraversal> make_motion_traversal(Neighborhood& neighborhood);
 
 }  // namespace keepout

@@ -15,9 +15,9 @@ namespace keepout {
 /// are those of WideBvh: `collect` returns exactly the triangles that touch the ball.
 ///
 /// Source: Williams, Taylor, Wolff, "Augmented k-d techniques for accelerated registration and
-/// distance measurement of surfaces", 1997. Unlike there, triangles are split at the median of
-/// their centroids instead of the mean. The depth is then logarithmic in the size of any mesh, and
-/// all leaves except the last are full.
+/// distance measurement of surfaces", 1997. Unlike in that article, triangles are split at the
+/// median of their centroids instead of the mean. The depth is then logarithmic in the size of any
+/// mesh, and all leaves except the last are full.
 class PdTree final : public SpatialIndex {
  public:
   /// Capacity of the index.

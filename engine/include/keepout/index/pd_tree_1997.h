@@ -20,20 +20,20 @@ namespace keepout {
 ///
 /// Source: Williams, Taylor, Wolff, "Augmented k-d techniques for accelerated registration and
 /// distance measurement of surfaces", 1997; used by Li et al., "Anatomical Mesh-Based Virtual
-/// Fixtures for Surgical Robots", 2020. Neither gives the number of triangles in a leaf, or the
-/// treatment of unbalanced splits. The constants below are keepout's choice.
+/// Fixtures for Surgical Robots", 2020. Neither article gives the number of triangles in a leaf, or
+/// the treatment of unbalanced splits. The constants below are keepout's choice.
 class PdTree1997 final : public SpatialIndex {
  public:
-  /// Capacity of the index: their nodes are fewer than 2^32.
+  /// Capacity of the index; so many triangles have fewer than 2^32 nodes.
   static constexpr std::size_t most_triangles = (std::size_t{1} << 31) - 1;
 
   /// The most triangles of a leaf.
   static constexpr std::size_t leaf_triangles = 4;
 
   /// The most levels of nodes, for most_triangles. Splits at the mean may separate a single
-  /// triangle again and again. Below twice the levels of a balanced tree, nodes are therefore split
-  /// at the median. The tree is then at most three times as deep as a balanced one, and a traversal
-  /// needs a stack of fixed size.
+  /// triangle again and again. Deeper than twice the levels of a balanced tree, nodes are therefore
+  /// split at the median. So the tree is at most three times as deep as a balanced one, and a stack
+  /// of fixed size suffices for a traversal.
   static constexpr std::size_t most_levels = 93;
 
   /// Builds the tree. Throws Error for a mesh of more than most_triangles.

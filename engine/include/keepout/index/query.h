@@ -21,10 +21,10 @@ struct Hit {
   ClosestPoint closest;  // relative to the ball's center
 };
 
-/// The work to find a hit, in work units (Budget): mostly cache misses.
+/// The work to find a hit, mostly cache misses. [work units, see Budget]
 inline constexpr std::size_t work_of_hit = 4;
 
-/// Hits, with a declared capacity.
+/// A list of hits with a fixed capacity.
 using HitBuffer = Buffer<Hit>;
 
 /// Fills `hits` with the candidates that touch the ball by the exact kernel (distance <= radius).
@@ -32,10 +32,10 @@ using HitBuffer = Buffer<Hit>;
 void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> candidates,
             HitBuffer& hits) noexcept;
 
-/// A mesh with its index and a work budget; it finds the triangles that touch a ball, exactly, on
-/// any index. The index proposes candidates, and refine() selects the hits. All memory is allocated
-/// at construction. Make one for each thread; mesh and index may be shared. If a rule uses the
-/// index's own traversal, this object only holds mesh, index and the budget of the cycle.
+/// A mesh with its index and a work budget. With any index, it finds exactly the triangles that
+/// touch a ball. The index proposes candidates, and refine() selects the hits. All memory is
+/// allocated at construction. Make one for each thread; mesh and index may be shared. If a rule
+/// uses the index's own traversal, this object only holds mesh, index and the budget of the cycle.
 class Neighborhood {
  public:
   /// Allocates a capacity of `room` candidates in a query, or of all triangles if they are fewer.
@@ -83,12 +83,12 @@ class Neighborhood {
   Budget* budget_;
 };
 
-/// Returns the triangle nearest to a point, and its closest point, relative to `point`; ties go to
-/// the lowest id. Bitwise identical on every index. An index without its own search
-/// (SpatialIndex::nearest) is queried with a ball around the point that grows until it touches the
-/// mesh. Far from the mesh, this ball may touch many triangles. Returns empty if they exceed the
-/// capacity, or if the budget is spent. The hits do not change. Does not allocate. Precondition:
-/// the point is finite.
+/// Returns the triangle nearest to a point, and its closest point, relative to `point`. If several
+/// triangles are equally near, returns the one with the lowest id. Bitwise identical on every
+/// index. An index without its own search (SpatialIndex::nearest) is queried with a ball around the
+/// point that grows until it touches the mesh. Far from the mesh, this ball may touch many
+/// triangles. Returns empty if these triangles exceed the capacity, or if the budget is spent. The
+/// neighborhood's hits do not change. Does not allocate. Precondition: the point is finite.
 std::optional<Hit> find_nearest(Neighborhood& neighborhood, const Vec3& point) noexcept;
 
 /// Classifies a point as inside or outside a watertight mesh that does not intersect itself. The
@@ -104,9 +104,9 @@ class NearestTriangle {
   /// Makes a search of a mesh by an index; both must outlive this object.
   NearestTriangle(const Mesh& mesh, const SpatialIndex& index);
 
-  /// Returns the nearest triangle; ties and precondition as for find_nearest. `guess`: the first
-  /// radius of the search on an index without its own search, such as the last distance plus the
-  /// displacement since. [length] Allocates.
+  /// Returns the triangle that find_nearest returns, with the same precondition. `guess`: the first
+  /// radius of the search on an index without its own search. A good guess is the last distance
+  /// plus the displacement since then. [length] Allocates.
   Hit operator()(const Vec3& point, double guess = 0.0);
 
  private:

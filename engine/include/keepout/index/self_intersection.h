@@ -19,15 +19,15 @@ bool meet_improperly(const Mesh& mesh, TriangleId one, TriangleId other) noexcep
 /// The pairs of triangles of a mesh that meet_improperly.
 struct SelfIntersections {
   std::size_t pairs = 0;    // all of them
-  FaultPlaces places = {};  // of a bounded number; each has the corners of both triangles
+  FaultPlaces places = {};  // of some pairs, with the corners of both triangles
 };
 
 /// Finds the pairs of triangles that meet_improperly, and the places of at most `most_places` of
 /// them. Ignores triangles without an area: they always lie on their neighbors, and examine()
 /// counts them separately.
 ///
-/// `index`: of `mesh`; queried around each triangle, for a few µs each, or longer if the triangle
-/// is long compared with its neighbors. `examined`: if not empty, called after each triangle.
+/// `index`: of `mesh`. Each triangle needs a query of a few µs, or longer if the triangle is long
+/// compared to its neighbors. `examined`: if not empty, called after each triangle.
 SelfIntersections find_self_intersections(const Mesh& mesh, const SpatialIndex& index,
                                           std::size_t most_places = 10,
                                           const std::function<void()>& examined = {});

@@ -16,7 +16,7 @@ namespace keepout {
 
 class TriangleBlocks;
 
-/// Numbers of triangles, with a declared capacity.
+/// A list of triangle numbers with a fixed capacity.
 using TriangleBuffer = Buffer<TriangleId>;
 
 /// Finds the triangles near a point. An index proposes candidates, and the exact kernel decides
@@ -45,16 +45,18 @@ class SpatialIndex {
   /// kernel.
   virtual bool is_exact() const noexcept { return false; }
 
-  /// Returns the triangle nearest to a point by the exact kernel, at any distance; ties go to the
-  /// lowest number. Returns no_triangle if the index has no such search (see find_nearest), or once
-  /// the budget is spent. Thread-safe. Precondition: the point is finite.
+  /// Returns the triangle nearest to a point by the exact kernel, at any distance. If several
+  /// triangles are equally near, returns the lowest number. Returns no_triangle if the index has no
+  /// such search (see find_nearest), or once the budget is spent. Thread-safe. Precondition: the
+  /// point is finite.
   virtual TriangleId nearest(const Vec3& /*point*/, Budget& /*budget*/) const noexcept {
     return no_triangle;
   }
 
-  /// Returns the index's own traversal along motions, which shows far fewer triangles than a query;
-  /// null if the index has no such traversal: see make_motion_traversal. The traversal spends work
-  /// units of the budget. Index and budget must outlive it, and the index must not be refit.
+  /// Returns the index's own traversal along motions; null if the index has no such traversal (see
+  /// make_motion_traversal). A traversal shows far fewer triangles than a query. The traversal
+  /// spends work units of the budget. Index and budget must outlive it, and the index must not be
+  /// refit.
   virtual std::unique_ptr<MotionTraversal> traverse_along_motions(Budget& /*budget*/) const {
     return nullptr;
   }
@@ -63,8 +65,8 @@ class SpatialIndex {
   virtual bool traverses() const noexcept { return false; }
 
   /// Returns an index of a mesh with the same triangles and moved vertices, in a fraction of the
-  /// time of a build. Returns null if the index does not support this. This index may be in use
-  /// meanwhile. Throws Error if the corners of a triangle differ.
+  /// time of a build. Returns null if the index does not support this. Other threads may use this
+  /// index during the call. Throws Error if the corners of a triangle differ.
   virtual std::unique_ptr<SpatialIndex> refitted(std::shared_ptr<const Mesh> /*moved*/) const {
     return nullptr;
   }
@@ -91,8 +93,8 @@ class SpatialIndex {
   std::shared_ptr<const Mesh> mesh_;
 };
 
-/// The work of a query. Unlike its time it is the same on every run, so it shows if a tree became
-/// worse.
+/// The work of a query. Unlike its time, the work is the same on every run. More work for the same
+/// query shows a worse tree.
 struct QueryCounts {
   std::size_t nodes = 0;      // examined nodes, each with all its boxes
   std::size_t blocks = 0;     // leaf blocks whose triangles were compared with the ball

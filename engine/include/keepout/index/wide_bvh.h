@@ -11,12 +11,13 @@
 
 namespace keepout {
 
-/// keepout's fastest index: a tree of axis-aligned boxes with sixteen boxes per node and sixteen
-/// triangles per leaf, in a layout for SIMD. Single precision decides first; if its rounding leaves
-/// a doubt, the exact kernel decides. So `collect` returns exactly the triangles that touch the
-/// ball.
+/// keepout's fastest index, a bounding volume hierarchy (BVH) of axis-aligned boxes. It has sixteen
+/// boxes per node and sixteen triangles per leaf, in a layout for SIMD. Single precision decides
+/// first. If its rounding leaves a doubt, the exact kernel decides. So `collect` returns exactly
+/// the triangles that touch the ball.
 ///
-/// No result may depend on the order of a traversal or of the returned triangles.
+/// The order of a traversal and of the returned triangles is not specified. Results must not depend
+/// on it.
 class WideBvh final : public SpatialIndex {
  public:
   /// Capacity of the index.
@@ -31,9 +32,9 @@ class WideBvh final : public SpatialIndex {
 
   /// Refits the index to a mesh with the same triangles and moved vertices, in about a tenth of the
   /// time of a build. The tree is nearly as good if neighbors stay neighbors. No other thread may
-  /// use the index meanwhile. Every motion constraint on the index then returns mesh_changed until
-  /// MotionConstraint::follow. Throws Error, and changes nothing, if the corners of a triangle
-  /// differ, or without a mesh.
+  /// use the index during the call. Every motion constraint on the index then returns mesh_changed
+  /// until MotionConstraint::follow. Throws Error, and changes nothing, if the corners of a
+  /// triangle differ, or without a mesh.
   void refit(std::shared_ptr<const Mesh> moved, unsigned threads = 0);
 
   /// Builds the tree from the order() of an earlier build, in about a tenth of the time. Boxes

@@ -41,9 +41,9 @@ class Adjacency {
 };
 
 /// Returns the kind of the edge between two triangles by the sign of N_a . v. N_a is the normal of
-/// one triangle, v the edge of the other from a shared vertex to its apex (Li et al. 2020, section
-/// III-A, with v as in the errata). Symmetric in the two triangles. Angles below 1e-12 rad, and
-/// triangles without an area, count as coplanar.
+/// one triangle. v is the edge of the other triangle from a shared vertex to the third vertex (Li
+/// et al. 2020, section III-A; v as in the errata of docs/activation.md). Symmetric in the two
+/// triangles. Angles below 1e-12 rad, and triangles without an area, count as coplanar.
 EdgeKind bend(const Triangle& one, int edge, const Triangle& other, int other_edge) noexcept;
 
 }  // namespace keepout

@@ -20,7 +20,7 @@ struct MeshFaultPlaces {
   FaultPlaces non_manifold_edges = {};    // each place has two corners
   FaultPlaces inconsistent_edges = {};    // each place has two corners
   FaultPlaces pinched_vertices = {};      // each place has one corner
-  FaultPlaces degenerate_triangles = {};  // of either kind; three corners
+  FaultPlaces degenerate_triangles = {};  // both kinds; each place has three corners
   FaultPlaces duplicate_triangles = {};   // three corners
 };
 
@@ -94,9 +94,9 @@ struct MeshFindings {
     return looks_like_micrometers();
   }
 
-  /// Anatomy that a tool must avoid is not smaller. [mm]
+  /// Anatomy that a tool must avoid is at least this large. [mm]
   static constexpr double meters_below = 3.0;
-  /// Anatomy that a tool must avoid is not larger. [mm]
+  /// Anatomy that a tool must avoid is at most this large. [mm]
   static constexpr double micrometers_above = 3000.0;
 };
 
@@ -105,15 +105,15 @@ struct MeshFindings {
 /// the mesh.
 MeshFindings examine(const Mesh& mesh, std::size_t most_places = 10);
 
-/// The presence of two kinds of faulty edges that matter for a constraint; see MeshFindings.
+/// Reports if a mesh has two kinds of faulty edges that matter for a constraint; see MeshFindings.
 struct EdgeFaults {
   bool boundary = false;      // an edge has one triangle: the surface is open
   bool inconsistent = false;  // an edge has two triangles, wound against each other
 };
 
 /// Returns the edge faults that examine() would find, with an error probability of 2^-64. If such
-/// edges are few, it takes a thirtieth of the time: about 5 ms for a million triangles on one
-/// processor. `threads`: to use at once; 0: as many as there are processors.
+/// edges are few, it takes a thirtieth of the time of examine(): about 5 ms for a million triangles
+/// on one processor. `threads`: the number of threads; 0: as many as there are processors.
 EdgeFaults find_edge_faults(const Mesh& mesh, unsigned threads = 0);
 
 /// A unit that the numbers of a file may be in.
@@ -126,7 +126,8 @@ struct UnitGuess {
 std::span<const UnitGuess> length_units() noexcept;
 
 /// Returns the units other than millimeters in which a mesh of that largest extent has the size of
-/// organs, 20 to 600 mm. Returns none if the extent is usual in millimeters: from 30 on.
+/// organs, 20 to 600 mm. Returns no unit if the extent is usual in millimeters: from 30 to
+/// micrometers_above.
 std::vector<UnitGuess> other_units(double extent);
 
 /// Returns warnings, as sentences, for a size that is unusual for anatomy in mm, an open surface,

@@ -16,7 +16,7 @@ namespace keepout {
 
 /// The directions of the axes of patient coordinates. RAS: x to the right, y to the front, z to the
 /// head. LPS: x to the left, y to the back, z to the head. The two differ by half a turn about z,
-/// so a mesh in the wrong space looks correct but is elsewhere.
+/// so a mesh in the wrong space looks correct but is in another place.
 enum class AnatomicalSpace : std::uint8_t { unstated, ras, lps };
 
 /// Returns "RAS", "LPS", or "unstated".
@@ -82,17 +82,17 @@ std::string lower_extension(const std::filesystem::path& path);
 /// the warnings of quick_check().
 ///
 /// Coordinates of binary files are exact. Coordinates of text files are rounded to floats if the
-/// file declares floats (PLY, VTK, VTP), or if all its numerals may be prints of floats. With nine
-/// digits, these are the floats of the equivalent binary file. Otherwise coordinates are rounded to
-/// doubles. The decision applies to the whole file, so that pieces of a VTP file fit together at a
-/// seam.
+/// file declares floats (PLY, VTK, VTP), or if all its numbers may be printed floats. If they have
+/// nine digits, these are the floats of the equivalent binary file. Otherwise coordinates are
+/// rounded to doubles. The decision applies to the whole file, so that pieces of a VTP file fit
+/// together at a seam.
 ///
 /// Throws Error for an invalid unit or scale. Throws Error, which names file, line, cause and
-/// remedy, for a file that cannot be read. Also for a file that states two spaces, or has no known
-/// space although `options.space` requires one. A truncated file is an error. It is only a warning
-/// if no more than the last number of a text, or the end of an OBJ file, can be missing. Truncation
-/// of an OBJ file at the end of a line, or of a legacy VTK file between two sections, cannot be
-/// detected.
+/// remedy, for a file that cannot be read. Also throws Error for a file that states two spaces, or
+/// has no known space although `options.space` requires one. A truncated file is an error. But if
+/// only the last number of a text file, or the end of an OBJ file, can be missing, it is a warning.
+/// Truncation of an OBJ file at the end of a line, or of a legacy VTK file between two sections,
+/// cannot be detected.
 LoadedMesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace keepout

@@ -12,12 +12,12 @@
 namespace keepout {
 
 /// A guidance constraint (guidance virtual fixture) that keeps a tip, or a part of an instrument,
-/// in a convex region. Several guides may act together. Each holds on the whole executed motion: no
-/// motion leaves its region by more than its band. The clearance from meshes has priority over all
-/// guides.
+/// in a convex region. Several guides may act together. Each guide holds on the whole executed
+/// motion: no motion leaves the region by more than the guide's band. The clearance from meshes has
+/// priority over all guides.
 ///
-/// If guides and clearance contradict each other, guides first stop pulling back points outside
-/// their regions, then recovery of clearance slows down: see Relaxation.
+/// If guides and clearance contradict each other, guides first stop pulling back points that are
+/// outside their regions. Then the recovery of clearance slows down: see Relaxation.
 class Guide {
  public:
   static constexpr std::size_t most = 16;  // of a tip or an instrument
@@ -83,8 +83,8 @@ class Guide {
   double band_;
 };
 
-/// The constraints that a cycle relaxed because not all are feasible. A relaxed guide moves no
-/// farther out than its band.
+/// The constraints that a cycle relaxed because they contradict each other. The point of a relaxed
+/// guide moves no farther out than the band.
 enum class Relaxation : std::uint8_t {
   none,  // only the task was compromised
   /// Guides do not pull back points outside their regions (see GuideState::relaxed), or points may

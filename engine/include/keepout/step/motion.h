@@ -35,8 +35,8 @@ class ExtraRows {
   Eigen::Index count_;
 };
 
-/// The request for a motion: the input of a control cycle. (The motion of the tip itself is a
-/// Vec3.)
+/// The request for a motion: the input of a control cycle. The resulting motion of the tip is
+/// Step::motion.
 struct Motion {
   Vec3 tip = unset;      // commanded tip, in the frame of the mesh [length]
   Vec3 desired = unset;  // desired increment [length]
@@ -73,14 +73,14 @@ struct Step {
   std::size_t triangles = 0;
   /// The distance from the tip at the start of the step to the nearest triangle, on either side
   /// [length]. The certified rule knows it for a tip within the required clearance, and for an
-  /// escape. For other tips it is searched only with Distances::always, with the remaining work
-  /// units. Empty if unknown: for invalid_input and mesh_changed, and possibly for out_of_budget.
-  /// Bitwise identical on every index.
+  /// escape. For other tips, the step measures it only with the option Distances::always, and
+  /// spends only the remaining work units. Empty if unknown: for invalid_input and mesh_changed,
+  /// and possibly for out_of_budget. Bitwise identical on every index.
   std::optional<double> distance = std::nullopt;
 
   /// Returns true if there is a motion that may be executed; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it; a literal.
+  /// Returns one line on what happened and what to do about it; a string literal.
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::tip); }
 };
 
@@ -88,7 +88,7 @@ struct Step {
 /// are zero. [ns]
 struct StageTimes {
   std::int64_t query = 0;  // the rule gathers triangles: a query, or the beginning of a traversal
-  std::int64_t activation = 0;  // the rule opens the cycle; may traverse along the target
+  std::int64_t activation = 0;  // the rule measures the tip; it may traverse along the target
   std::int64_t solve = 0;       // solve, judge, cut and refine; may traverse along each trial
 
   /// Returns the time of all stages. [ns]

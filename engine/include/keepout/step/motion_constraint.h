@@ -21,7 +21,8 @@ namespace keepout {
 
 class TipMemory;
 
-/// The treatment of a tip that starts on the forbidden side. For the certified rule.
+/// The treatment of a tip that starts on the forbidden side. Use escape with the certified rule
+/// only.
 enum class Inside : std::uint8_t {
   escape,       // escapes straight through the nearest point of the surface, before anything else
   taken_as_is,  // is not classified: the tip maintains its clearance on the side where it is
@@ -31,14 +32,14 @@ enum class Inside : std::uint8_t {
 /// The names of Inside.
 inline constexpr std::array<std::string_view, 2> inside_names{"escape", "taken_as_is"};
 
-/// Planes around a tip.
+/// Planes that bound the free space around a tip.
 struct Polytope {
   Status status = Status::invalid_input;  // free if the planes are complete
   std::span<const HalfSpace> planes;      // unless ok(), they allow only zero motion
 
   /// Returns true if the planes are complete.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it; a literal.
+  /// Returns one line on what happened and what to do about it; a string literal.
   std::string_view reason() const noexcept { return keepout::reason(status, Subject::polytope); }
 };
 
@@ -58,8 +59,8 @@ struct Polytope {
 ///
 /// Not thread-safe: make one for each control loop. Mesh and index may be shared.
 ///
-/// On a watertight mesh with Inside::escape, a tip that is not where the last step moved it is
-/// classified as inside or outside. After that no certified step changes sides.
+/// On a watertight mesh with Inside::escape, a step first classifies the tip as inside or outside,
+/// unless the tip is on the path of the last step. Certified steps never change the side.
 class MotionConstraint {
  public:
   /// Combines the parts, and allocates all memory. The index must be built on `mesh`; other motion
@@ -95,12 +96,13 @@ class MotionConstraint {
     return step(request, sides, nullptr);
   }
 
-  /// Returns the free space around a tip as one convex polytope, for a caller's own QP, MPC or
-  /// sampler. Every motion within all planes and within `radius` maintains the required clearance;
-  /// guarantee and failures: FreePolytope. The planes stay valid until the next call. After a
-  /// failure they allow only zero motion. Returns inside for a tip on the forbidden side, unless
-  /// tips are not classified (Inside::taken_as_is, or an open mesh). Returns unsupported for a rule
-  /// that guards a whole tool, and if there are guides, as the planes would not maintain them.
+  /// Returns the free space around a tip as one convex polytope, for a caller's own quadratic
+  /// program, predictive controller or sampler. Every motion within all planes and within `radius`
+  /// maintains the required clearance; guarantee and failures: FreePolytope. The planes stay valid
+  /// until the next call. After a failure they allow only zero motion. The status is `inside` for a
+  /// tip on the forbidden side, unless tips are not classified (Inside::taken_as_is, or an open
+  /// mesh). It is `unsupported` for a rule that guards a whole tool, and if there are guides,
+  /// because the planes do not include them.
   Polytope free_polytope(const Vec3& tip, double radius) noexcept;
 
   /// Follows anatomy that has moved: continues with a mesh and its index. The index may be the

@@ -15,7 +15,7 @@ class SpatialIndex;
 
 /// The extent of the search for triangles around the tip: RuleInput::searched_region.
 enum class Query : std::uint8_t {
-  motion,  // where the solved motions may end: ActivationRule::end_region
+  motion,  // the places where motions may end: ActivationRule::end_region
   sphere   // the whole motion sphere, unless its triangles exceed capacity or budget
 };
 
@@ -24,8 +24,8 @@ inline constexpr std::array<std::string_view, 2> query_names{"motion", "sphere"}
 
 /// The tips whose distance a step reports: Step::distance.
 enum class Distances : std::uint8_t {
-  where_known,  // those whose distance the rule finds in any case: costs nothing
-  always        // all: if unknown, searched after the step with the remaining work units
+  where_known,  // those whose distance the rule finds in any case, at no cost
+  always        // all; a search after the step uses the remaining work units
 };
 
 /// The names of Distances.
@@ -86,8 +86,8 @@ inline constexpr std::array step_options{
 /// Returns the table of the options of a struct.
 constexpr const auto& table_of(const StepOptions&) { return step_options; }
 
-/// Returns the required clearance of the tip from the surface: tool radius and margin together,
-/// which the certified rule needs above 0. [length]
+/// Returns the required clearance of the tip from the surface: tool radius + margin. The certified
+/// rule needs it above 0. [length]
 constexpr double required_clearance(const StepOptions& options) noexcept {
   return options.tool_radius + options.margin;
 }
@@ -110,7 +110,7 @@ struct Capacity {
   std::size_t nodes = 0;        // of the branch and bound; at least StepOptions::nodes
   /// Work units of one cycle: see Budget. A motion that cannot be proved within them is not
   /// returned. 0: work_units_of_traversals on an index that traverses along motions, such as
-  /// wide_bvh; work_units_of_queries on others, which return all triangles in the region.
+  /// wide_bvh, else work_units_of_queries. Other indices return all triangles in the region.
   std::size_t work_units = 0;
   std::size_t looks = 0;  // deprecated: use work_units
 

@@ -11,9 +11,9 @@
 
 namespace keepout {
 
-/// Remembers the straight paths of points that the last step proved to be on the free side of a
-/// mesh. Certified motions never cross the surface, so only a point away from its path must be
-/// classified again.
+/// Remembers the straight path of each point in the last step. The step proved that these paths are
+/// on the free side of a mesh. Certified motions never cross the surface. So only a point away from
+/// its path must be classified again.
 template <std::size_t most_points>
 class SideMemory {
  public:

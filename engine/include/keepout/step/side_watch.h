@@ -37,7 +37,7 @@ class SideWatch {
   void after(const Motion& request, const Step& step, const StepOptions& options,
              const Mesh& mesh) noexcept {
     memory_.note(mesh, 0, request.tip + step.motion, -step.motion);
-    // A step that maintains the clearance leaves more than half of it free, for any tolerance.
+    // After a step that maintains the clearance, more than half of it is free, for any tolerance.
     const bool keeps_clearance = step.ok() && step.status != Status::recovering;
     free_around_ = keeps_clearance ? 0.5 * required_clearance(options) : 0.0;
   }

@@ -94,9 +94,10 @@ class Solver {
   /// written.
   virtual bool reads_planes() const noexcept { return false; }
 
-  /// Returns true if planes that no iterate violates do not change the solution at all, and if all
-  /// iterates of a moves_a_point() problem are projections of d. Dual active-set methods do so. A
-  /// rule may then leave out planes that no projection of d violates.
+  /// Returns true if planes that no iterate violates (idle planes) do not change the solution at
+  /// all. In addition, all iterates of a moves_a_point() problem must be projections of d. Both
+  /// hold for dual active-set methods. A rule may then leave out planes that no projection of d
+  /// violates.
   virtual bool ignores_idle_planes() const noexcept { return false; }
 };
 

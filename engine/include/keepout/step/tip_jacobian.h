@@ -22,9 +22,9 @@ class TipJacobian {
       Eigen::Map<const Matrix, Eigen::Unaligned, Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
 
   /// Views any 3 x n matrix of Eigen, fixed or dynamic, by rows or by columns. Also views a block,
-  /// a transpose or a map: of a 6 x n Jacobian, its topRows<3>(). The viewed matrix must outlive
-  /// the step. The compiler rejects temporaries, expressions that must be computed, and types with
-  /// another number of rows. A dynamic matrix with another number of rows makes the step
+  /// a transpose or a map. For a 6 x n Jacobian J, give J.topRows<3>(). The viewed matrix must
+  /// outlive the step. The compiler rejects temporaries, expressions that must be computed, and
+  /// types with another number of rows. A dynamic matrix with another number of rows makes the step
   /// invalid_input.
   template <class Expression>
   requires EigenExpression<std::remove_cvref_t<Expression>> TipJacobian(Expression&& matrix)

@@ -14,9 +14,9 @@ inline constexpr std::string_view convex_tool_forms =
 
 /// Returns the convex tool that a text describes in one of these forms. The origin is the tip; axes
 /// and unit are those of the mesh. A box has two opposite corners. A blade is a box from the tip to
-/// LENGTH along z, with WIDTH in x and THICKNESS in y, centered on the tip. A hull is that of
-/// points, or of the vertices of a mesh file. Throws Error, which names the fault and the forms,
-/// for another text, a tool that ConvexTool refuses, and a file that cannot be read.
+/// LENGTH along z, with WIDTH in x and THICKNESS in y, centered on the tip. A hull is the convex
+/// hull of points, or of the vertices of a mesh file. Throws Error, which names the fault and the
+/// forms, for another text, a tool that ConvexTool refuses, and a file that cannot be read.
 ConvexTool tool_of_text(std::string_view text);
 
 }  // namespace keepout

@@ -21,8 +21,8 @@ inline constexpr std::string_view guide_forms =
 /// one of `region_forms`, as in "corridor=slab:0,0,50:1,0,0:1"; for an instrument, one of
 /// `guide_forms`. Regions are in the frame and unit of the mesh; directions are three numbers of
 /// any length. LINK is the number of a link, 0 for the base; points are in the frame of their link
-/// [length], angles in radians. The default name is that of the form. Throws Error, which names the
-/// fault and the forms.
+/// [length], angles in radians. The default name is the name of the form. Throws Error, which names
+/// the fault and the forms.
 Guide guide_of_text(std::string_view text);
 
 }  // namespace keepout

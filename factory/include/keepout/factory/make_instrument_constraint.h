@@ -18,9 +18,9 @@ struct InstrumentConstraintSettings {
   std::filesystem::path index_cache = {};
   std::string solver = "active_set";  // see solver_backends()
   InstrumentOptions options = {};     // the same in all cycles
-  InstrumentCapacity capacity = {};   // for the largest cycle
-  /// Called with harmless warnings while building: the index could not be saved, or the mesh is so
-  /// large relative to the margin that steps are slow. May be empty.
+  InstrumentCapacity capacity = {};   // of the memory that all cycles use
+  /// Called while building, with two kinds of harmless warnings. Either the index could not be
+  /// saved, or steps are slow because the mesh is so large relative to the margin. May be empty.
   std::function<void(const std::string&)> warn = {};
 };
 

@@ -19,8 +19,9 @@ struct MotionConstraintSettings {
   std::string index = "wide_bvh";  // see index_backends(); fcl_collide is not for real time
   /// The directory of saved indices; only wide_bvh is saved. Empty: indices are not saved.
   std::filesystem::path index_cache = {};
-  /// Called with harmless warnings while building: the index could not be saved, or the mesh is so
-  /// large relative to the required clearance that steps are slow. May be empty.
+  /// Called while building, with two kinds of harmless warnings. Either the index could not be
+  /// saved, or steps are slow because the mesh is so large relative to the required clearance. May
+  /// be empty.
   std::function<void(const std::string&)> warn = {};
   std::string activation = "certified";  // see activation_rules()
   std::string solver = "active_set";     // see solver_backends()

@@ -15,13 +15,13 @@ struct BestStep {
   double bound;  // no safe step costs less [length]
 };
 
-/// Returns the motion nearest to `desired` on which the tip, from `tip` straight to the end, stays
-/// at least `margin` from every triangle. If a triangle is nearer at the start, the tip must not
-/// come closer to it.
+/// Returns the safe motion nearest to `desired`. On a safe motion, the tip moves straight from
+/// `tip` to the end and stays at least `margin` from every triangle. From a triangle that is nearer
+/// at the start, it stays at least as far as at the start.
 ///
-/// Branch and bound over the directions makes it the best of all motions. `cost` exceeds `bound` by
-/// at most 1e-4 |desired|, unless the search stops at its limit of cells. (This can happen if a
-/// whole curve of motions is equally good.) The cost is usually exact to 1e-6 |desired|, and the
+/// Branch and bound over the directions finds the best of all motions. `cost` exceeds `bound` by at
+/// most 1e-4 |desired|, unless the search stops at its limit of cells. (This can happen if a whole
+/// curve of motions is equally good.) The cost is usually exact to 1e-6 |desired|, and the
 /// clearance holds to 1e-12 of the problem's size. A call takes milliseconds.
 ///
 /// Preconditions: all numbers are finite, and the tip is not on a triangle. `near` contains every

@@ -27,7 +27,7 @@ struct ExactDistance {
 /// are finite; threshold [length] is finite and >= 0.
 ExactDistance exact_distance(const Segment& segment, const Triangle& triangle, double threshold);
 
-/// Bounds of a distance from double arithmetic: low <= the exact distance <= high. [length]
+/// Bounds of a distance, computed in double arithmetic: low <= the exact distance <= high. [length]
 struct Bracket {
   double low;       // >= 0
   double estimate;  // from low to high
@@ -43,15 +43,16 @@ struct Bracket {
 /// The width is proved for each pair after the computation, so needles and nearly parallel features
 /// need no case analysis. The size S is the largest 1-norm of corner - from and to - from.
 ///
-/// - `high`: a point of the segment and a point of the triangle are no nearer than the two sets.
-/// Their distance has an error of a few roundings of S, even if they are not the nearest points.
+/// - `high`: the distance of a point of the segment and a point of the triangle. No two such points
+///   are nearer than segment and triangle. The distance has an error of a few roundings of S, even
+///   if they are not the nearest points.
 ///
 /// - `low`: let h be the least n . x over the segment minus the largest over the triangle. Then the
 /// sets are at least h / |n| apart, for any direction n. The error is again a few roundings of S.
 ///
 /// Both errors are below 2^-48 S (bracket_distance.cpp derives this bound). The estimate is the
-/// distance of the two points. If these and n are accurate, as nearly always, the bracket is about
-/// 2^-47 S wide. It is wider if the sets almost touch, or if S is outside 1e-70 .. 1e70: then
+/// distance of the two points. If these points and n are accurate, as nearly always, the bracket is
+/// about 2^-47 S wide. It is wider if the sets almost touch, or if S is outside 1e-70 .. 1e70: then
 /// exact_distance() must decide.
 Bracket bracket_distance(const Segment& segment, const Triangle& triangle) noexcept;
 

@@ -13,14 +13,14 @@ namespace keepout::oracle {
 
 /// The convex hull of a few points: a point, a segment, a flat blade or a solid.
 ///
-/// The distance from a triangle is the least of two kinds: from an edge of the hull to the
-/// triangle, and from a face of the hull to its edges. Both kinds use narrow_distance(). The
-/// constructor determines which pairs and triples of points are edges and faces. It includes
-/// doubtful ones: they are within the hull, so they cannot make the distance too small. A triangle
-/// that is wholly inside is detected separately, by a point in the solid.
+/// The distance from a triangle is the least of many distances. These are from edges of the hull to
+/// the triangle, and from faces of the hull to edges of the triangle. Both kinds use
+/// narrow_distance(). The constructor determines which pairs and triples of points are edges and
+/// faces. It includes doubtful ones: they are within the hull, so they cannot make the distance too
+/// small. A triangle that is wholly inside is detected separately, by a point in the solid.
 ///
-/// A separating direction excludes most pairs: for any direction, no pair is nearer than the
-/// difference of its heights along it.
+/// A separating direction excludes most pairs. In any direction, the heights of a pair differ by at
+/// most the distance of the pair.
 class Hull {
  public:
   static constexpr std::size_t most_points = 64;

@@ -18,8 +18,8 @@ namespace keepout::oracle {
 /// kinematics, distances and search are its own.
 ///
 /// It is fast if an instrument moves a little at a time: each body remembers the triangles that
-/// were near, and its displacement since then. Results do not depend on this memory. One oracle for
-/// each thread.
+/// were near, and its displacement since then. Results do not depend on this memory. Use one oracle
+/// for each thread.
 class InstrumentOracle {
  public:
   /// `base`: the pose of link 0. Throws std::invalid_argument for a body without points or with
@@ -44,7 +44,7 @@ class InstrumentOracle {
   }
 
   /// Returns the distance of the body's surface from the mesh, accurate to 1e-9 of the distance of
-  /// its core and about 1e-12 of the coordinates. It is below 0 if the mesh reaches into the body,
+  /// its core plus about 1e-12 of the coordinates. It is below 0 if the mesh reaches into the body,
   /// and minus the radius only if the core touches the mesh. Infinite if it is more than `reach`.
   /// [length]
   double clearance(std::size_t body, double reach);

@@ -8,8 +8,8 @@
 
 namespace keepout::oracle {
 
-/// A guide in the judge's own terms: a guided part of a robot, and the convex region in which it
-/// must stay.
+/// A guide in the judge's own data types: a guided part of a robot, and the convex region in which
+/// the part must stay.
 struct JudgedGuide {
   enum class Kind : std::uint8_t {
     point,         // `first` stays in the region

@@ -34,7 +34,7 @@ struct JudgedBody {
   double radius = 0.0;  // [length]
 };
 
-/// A robot in the judge's own numbers.
+/// A robot in the judge's own data types.
 struct JudgedRobot {
   std::vector<TableRow> table;
   std::vector<JudgedBody> bodies;

@@ -62,14 +62,14 @@ struct Finding {
 /// `crosses` and `below` are exact for the real numbers that the doubles represent, on every mesh:
 /// open, degenerate, self-intersecting, far from the origin. `distance` has a relative error of at
 /// most 1e-9 and agrees with both. It is 0 if and only if the segment crosses. It is <= the
-/// threshold if below, and >= the threshold if not.
+/// threshold if `below`, else >= the threshold.
 ///
 /// Results do not depend on earlier calls; the time does. A segment near the last one takes 1 to 2
 /// µs in contact with a mesh of a million triangles, and less in free space. Exact arithmetic takes
-/// about 10 µs for each triangle that needs it: whose distance is within about 2^-47 of its size of
-/// the threshold, or that almost touches.
+/// about 10 µs for each triangle that needs it. These triangles almost touch, or their distance
+/// differs from the threshold by less than about 2^-47 of their size.
 ///
-/// One oracle for each thread. Copies are cheap: they share the tree.
+/// Use one oracle for each thread. Copies are cheap: they share the tree.
 class SafetyOracle {
  public:
   /// Builds the tree in O(n log n): about 2 s for a million triangles.

@@ -37,8 +37,8 @@ inline Bounds united(const Bounds& a, const Bounds& b) noexcept {
   return {a.low.cwiseMin(b.low), a.high.cwiseMax(b.high)};
 }
 
-/// Returns a box that contains all points within `reach` [length, >= 0] of a box. The sum has a
-/// rounding error of at most 2^-53 of itself, so 2^-52 of itself is added, which is at least the
+/// Returns a box that contains all points within `reach` [length, >= 0] of a box. The rounding
+/// error of a sum is at most 2^-53 of the sum. So 2^-52 of the sum is added, which is at least the
 /// distance to the next double.
 inline Bounds inflated(const Bounds& box, double reach) noexcept {
   const Eigen::Array3d low = box.low.array() - reach;
@@ -51,7 +51,7 @@ inline Bounds inflated(const Bounds& box, double reach) noexcept {
 /// place. It is immutable, so any number of threads may use it.
 ///
 /// Boxes are the exact bounds of their triangles. Each test either consists of comparisons only, or
-/// is widened by more than its rounding. So it may return extra triangles, but misses none.
+/// is widened by more than its rounding. So the tree may return extra triangles, but misses none.
 class TriangleTree {
  public:
   /// Builds the tree in O(n log n): about 1 s for a million triangles, 64 bytes for each triangle.

@@ -66,7 +66,7 @@ class Chain {
   const Pose& flange() const noexcept { return flange_; }
 
   /// Returns an upper bound of the distance from the origin of the base to that of any link or the
-  /// flange. It is the sum of the lengths between joints and the travel of prismatic joints.
+  /// flange. It is the sum of all lengths between joints, plus the travel of prismatic joints.
   /// Infinite for a prismatic joint without limits. [length]
   double reach() const noexcept { return reach_; }
 
@@ -86,7 +86,7 @@ class Chain {
     Vec3 position;
   };
   std::array<Way, most_joints> ways_;
-  std::array<Mat3, most_joints + 1> to_link_;  // from a link's frame to the frame rotated so
+  std::array<Mat3, most_joints + 1> to_link_;  // from a link's frame to that rotated frame
   friend class ChainState;
 };
 
@@ -112,13 +112,13 @@ class ChainState {
   /// Returns the pose of the flange.
   Pose flange() const noexcept;
 
-  /// Returns column k of the Jacobian of a point `at` of link `link`: the motion of the point with
-  /// joint k. Zero for joints beyond the link. [length / unit of the joint]
+  /// Returns column k of the Jacobian of a point `at` of link `link`: the motion of the point per
+  /// unit of joint k. Zero for joints beyond the link. [length / unit of the joint]
   Vec3 linear(int k, int link, const Vec3& at) const noexcept {
     if (k > link) return Vec3::Zero();
     return turns(k) ? Vec3(axis(k).cross(at - origin(k))) : axis(k);
   }
-  /// Returns the rotation of link `link` with joint k. [rad / unit of the joint]
+  /// Returns the rotation of link `link` per unit of joint k. [rad / unit of the joint]
   Vec3 angular(int k, int link) const noexcept {
     return k <= link && turns(k) ? axis(k) : Vec3::Zero();
   }

@@ -18,7 +18,7 @@ struct DenavitHartenberg {
   double alpha = 0.0;                    // about x [rad]
   double d = 0.0;                        // along z, at position 0 [length]
   double theta = 0.0;                    // about z, at position 0 [rad]
-  JointLimits limits = {};               // of the position that is added
+  JointLimits limits = {};               // of the joint's position
 };
 
 /// The order of the four transforms of a row.

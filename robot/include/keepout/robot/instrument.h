@@ -53,9 +53,10 @@ class Instrument {
   std::vector<std::array<std::uint8_t, most_points_of_a_body>> numbers_;
 };
 
-/// Returns the ball of a tip on three prismatic joints along the axes of the world, without limits:
-/// q is its center. So a tip can have several moving meshes, like an instrument. For one mesh that
-/// does not move, MotionConstraint is several times faster. [length]
+/// Returns an instrument with one ball, the tip, on three prismatic joints along the axes of the
+/// world. The joints have no limits; q is the center of the ball. So a tip can have several moving
+/// meshes, like an instrument. For one mesh that does not move, MotionConstraint is several times
+/// faster. [length]
 Instrument free_ball(double radius);
 
 }  // namespace keepout

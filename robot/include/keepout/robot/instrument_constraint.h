@@ -25,10 +25,10 @@ namespace keepout {
 /// motion q + s dq, s in [0, 1], is then proved, or truncated to the part that is proved.
 ///
 /// Guarantee (docs/joint-space-step.md, Theorem 1, with its conditions and assumptions): a joint
-/// that starts within its limits stays within them. Let the core of a body (see Body) be at least
-/// radius + F from a mesh at the start. It is then at least radius + F - 3 tolerance from the mesh
-/// for all s. F is the certified clearance of this pair of body and mesh, from the body's surface:
-/// margin - band, or less if the body starts closer.
+/// that starts within its limits stays within them. Each pair of a body and a mesh has a certified
+/// clearance F from the body's surface: margin - band, or less if the body starts closer. Let the
+/// core of the body (see Body) be at least radius + F from the mesh at the start. Then it is at
+/// least radius + F - 3 tolerance from the mesh for all s.
 ///
 /// If a mesh moves in the cycle (see place), the guarantee is for its pose at each s (Theorem 3).
 /// The joints must then execute the whole increment, at constant speed over the cycle. If they
@@ -55,16 +55,16 @@ class InstrumentConstraint {
   InstrumentConstraint& operator=(InstrumentConstraint&&) noexcept;
   ~InstrumentConstraint();
 
-  /// Runs one control cycle: returns the increment that moves the flange most nearly by
-  /// `displacement`, the motion of this cycle (not a velocity) [length], [rad].
-  /// `q`: the positions (n) of the joints [rad or length]. Revolute joints must be within 100 rad
-  /// of 0, prismatic ones within 100 times the size of instrument and meshes. On failure the
-  /// increment is empty and the status gives the cause; meshes with a velocity still move by one
-  /// period. Does not allocate or throw.
+  /// Runs one control cycle: returns the increment whose motion of the flange is nearest to
+  /// `displacement`. `displacement`: a motion for one cycle, not a velocity [length], [rad]. `q`:
+  /// the positions (n) of the joints [rad or length]. Revolute joints must be within 100 rad of 0,
+  /// prismatic ones within 100 times the size of instrument and meshes. On failure the increment is
+  /// empty and the status gives the cause; meshes with a velocity still move by one period. Does
+  /// not allocate or throw.
   InstrumentStep step(std::span<const double> q, const Twist& displacement) noexcept;
 
-  /// Like step(q, const Twist&), but returns the increment nearest to `desired`, dq (n), with
-  /// `weights` (n, above 0; empty: all 1): minimizes sum w_k (dq_k - desired_k)^2.
+  /// Like step(q, const Twist&), but returns the increment dq nearest to `desired` (n): minimizes
+  /// sum w_k (dq_k - desired_k)^2. `weights`: w (n), above 0; empty: all 1.
   InstrumentStep step(std::span<const double> q, std::span<const double> desired,
                       std::span<const double> weights = {}) noexcept;
 
@@ -72,23 +72,23 @@ class InstrumentConstraint {
   /// mesh, above the band; 0: the margin of the options [length]. Forgets the last cycle, like
   /// forget(). All meshes share the work budget of a cycle, which is by default that of the slowest
   /// index: see InstrumentCapacity::work_units. Throws Error, and changes nothing, for more meshes
-  /// than InstrumentCapacity::most_meshes, for a margin that is negative or NaN, and for a mesh or
-  /// an index that the constructor would reject. Allocates: not for the control path.
+  /// than InstrumentCapacity::most_meshes, and for a margin that is negative or NaN. Also does so
+  /// for a mesh or an index that the constructor would reject. Allocates: not for the control path.
   std::size_t add_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index,
                        double margin = 0.0);
 
   /// Sets the pose of a mesh at the start of the next cycle, and its velocity. The velocity is that
-  /// of its frame's origin [length/s], and of its rotation about that origin [rad/s]. Rebuilds
-  /// nothing. A mesh with a velocity moves in every step until it is placed again, so a loop should
-  /// place it in each cycle, as measured. The margin must cover the error of this prediction within
-  /// a cycle.
+  /// of its frame's origin [length/s], and of its rotation about that origin [rad/s]. The index is
+  /// not rebuilt. A mesh with a velocity moves in every step until it is placed again, so a loop
+  /// should place it in each cycle, at its measured pose. The proof assumes that the mesh moves at
+  /// this velocity. The margin must cover the difference to its true motion within a cycle.
   ///
-  /// The rotation must be orthonormal to 1e-6 in each element of R^T R; it is made exact. The
-  /// position must be within 100 times the lengths of instrument and meshes. Each component of the
-  /// velocity must be below 1e9. Returns free if the pose is accepted. Otherwise returns
-  /// invalid_input: the mesh keeps its last pose and velocity, and step() returns invalid_input
-  /// until a valid pose is set. For a number that no mesh has, returns invalid_input and changes
-  /// nothing.
+  /// The rotation must be orthonormal to 1e-6 in each element of R^T R; the nearest exact rotation
+  /// replaces it. The position must be within 100 times the lengths of instrument and meshes. Each
+  /// component of the velocity must be below 1e9. Returns free if the pose is accepted. Otherwise
+  /// returns invalid_input: the mesh keeps its last pose and velocity, and step() returns
+  /// invalid_input until a valid pose is set. For a number that no mesh has, returns invalid_input
+  /// and changes nothing.
   ///
   /// step() returns invalid_input while a mesh turns by more than a radian in a cycle, or moves by
   /// more than 100 times the lengths of instrument and meshes. It returns margin_too_small while a
@@ -102,18 +102,18 @@ class InstrumentConstraint {
   /// Returns the part of a motion that is clear, without a search for a better motion: for
   /// planners. An increment of 0 tests a configuration. `increment`: dq (n), of any size. Long
   /// motions are proved in up to 64 parts, each with the work budget of a cycle. The proof ends at
-  /// a part that starts too close. Ignores joint limits, and the side that the last step was on.
-  /// Use a separate constraint for planning: the next step after prove() starts without the rows of
-  /// the last step, and classifies its side.
+  /// a part that starts too close. Ignores joint limits, and the side of the mesh on which the last
+  /// step was. Use a separate constraint for planning: the next step after prove() starts without
+  /// the rows of the last step, and classifies all bodies as inside or outside again.
   MotionProof prove(std::span<const double> q, std::span<const double> increment) noexcept;
 
-  /// Forgets the last cycle. For motions that do not continue each other.
+  /// Forgets the last cycle. Call this if the next motion does not start where the last one ended.
   void forget() noexcept;
 
-  /// Replaces the guides from the next step on: see Guide. A guide that starts outside its
-  /// region may then leave it farther, by at most one band from its place at the next step. Throws
-  /// Error, and changes nothing, for more guides than Guide::most, for link 0 or a link that the
-  /// chain does not have, or if rounding hides a band. Allocates: not for the control path.
+  /// Replaces the guides from the next step on: see Guide. If a guided point is outside its region
+  /// at that time, it may move out by at most one more band. Throws Error, and changes nothing, for
+  /// more guides than Guide::most, for link 0 or a link that the chain does not have, or if
+  /// rounding hides a band. Allocates: not for the control path.
   void set_guides(std::vector<Guide> guides);
 
   /// Follows anatomy that has deformed: continues with a mesh and its index. The index may be the

@@ -108,10 +108,10 @@ inline constexpr std::array instrument_capacity_options{
 /// See table_of(const StepOptions&).
 constexpr const auto& table_of(const InstrumentCapacity&) { return instrument_capacity_options; }
 
-/// Returns a band for the curvature of every motion that the joint limits allow in a cycle of
-/// `period` > 0 seconds. It is an eighth of the largest second-derivative bound of any body's
-/// point, and at least `least`. Infinite without limits. Throws Error for numbers out of range.
-/// [length]
+/// Returns a band that suffices for the curvature of every motion that the joint limits allow in a
+/// cycle of `period` > 0 seconds. It is an eighth of the largest second-derivative bound of any
+/// body's point, and at least `least`. Infinite if the limits do not bound the curvature. Throws
+/// Error for numbers out of range. [length]
 double recommended_band(const Instrument& instrument, double period, double least = 0.002);
 
 }  // namespace keepout

@@ -24,16 +24,16 @@ struct DegradedClearance {
 struct InstrumentStep {
   Status status = Status::invalid_input;   // the outcome of the cycle
   std::span<const double> increment = {};  // dq (n); empty unless ok() [rad or length]
-  /// The fraction of the solved motion that `increment` is. With status truncated, the solved
-  /// motion may be for a part of the command only; 1 then means all of that part.
+  /// `increment` as a fraction of the motion that the solver found. With status truncated, the
+  /// solver may have solved for a part of the command only. Then 1 means the whole part.
   double fraction = 0.0;
   double share = 0.0;         // deprecated: use fraction
   int rounds = 0;             // number of trial motions that were solved and judged
-  std::size_t rows = 0;       // constraints that limit the motion, joint limits apart
-  std::size_t triangles = 0;  // largest number in reach of one body and one trial motion
+  std::size_t rows = 0;       // constraints that limit the motion, without joint limits
+  std::size_t triangles = 0;  // largest number near one body in one trial motion
   /// The distance of the nearest body from a mesh at the start of the cycle; below 0 if the body
-  /// reaches through the surface. Empty if no body is within margin + max(band, slowing_within), or
-  /// if the work budget ended first. [length]
+  /// intersects the surface. Empty if no body is within margin + max(band, slowing_within), or if
+  /// the work budget ended first. [length]
   std::optional<double> distance = std::nullopt;
   int nearest = -1;       // the number of that body
   int nearest_mesh = -1;  // the number of the mesh
@@ -49,15 +49,16 @@ struct InstrumentStep {
   std::span<const GuideState> guides = {};   // the state of each guide, in the order given
   Relaxation relaxation = Relaxation::none;  // the constraints that were relaxed
   /// The limits that make the motion differ from the commanded one. With a motion, these are all
-  /// constraints that limit or shorten it (not a refinement that exceeds budget or capacity).
+  /// constraints that limit or shorten it. A budget or capacity that ends only a refinement is not
+  /// one of them.
   /// Without a motion, these are the causes why no motion could be proved.
   /// joints_outside is reported with any status, singularity only without another limit.
   Limits limits = {};
 
   /// Returns true if the increment may be executed; it may be zero.
   bool ok() const noexcept { return is_ok(status); }
-  /// Returns one line on what happened and what to do about it. It also reports a joint of a free
-  /// motion that starts outside its position limits.
+  /// Returns one line on what happened and what to do about it. For a free motion, it also reports
+  /// a joint that starts outside its position limits.
   std::string_view reason() const noexcept;
 };
 

@@ -15,10 +15,10 @@ namespace keepout {
 /// satisfied if its bound is at most 0, and infeasible otherwise. Among equal rows, the one with
 /// the lowest index is active.
 ///
-/// Status `optimal` satisfies each row to about 1e-13 of the length of the motion, or to 1e-11 at a
-/// vertex of nearly parallel planes. Status `infeasible` excludes every motion up to 1000 times the
-/// length of those tried. If rounding decides between the two, the status is `iteration_limit`.
-/// Details: active_set_tolerances.h.
+/// An `optimal` solution satisfies each row to about 1e-13 of the length of the motion, or to 1e-11
+/// at a vertex of nearly parallel planes. The status `infeasible` excludes every motion up to 1000
+/// times as long as those tried. If rounding decides between the two, the status is
+/// `iteration_limit`. Details: active_set_tolerances.h.
 ///
 /// Source: Goldfarb, Idnani, "A numerically stable dual method for solving strictly convex
 /// quadratic programs", Mathematical Programming 27, 1983.

@@ -12,15 +12,15 @@
 
 namespace keepout {
 
-/// A solver of the step problem, to be made by its name.
+/// A solver of the step problem (StepProblem) that make_solver() makes by its name.
 struct SolverBackend {
   std::string_view name;         // for make_solver
   std::string_view description;  // one line, for lists
   /// Makes a new solver, like make_solver.
   std::unique_ptr<Solver> (*make)();
   Allocation allocation;  // use of heap memory while it solves
-  /// The largest distance of an `optimal` solution from the best one, and its largest KKT residual:
-  /// relative, like KktResidual.
+  /// Bound of two relative errors of an `optimal` solution: its distance from the best solution,
+  /// and its KktResidual.
   double accuracy;
   std::string (*library)();  // name and version of the underlying library; null for keepout's own
 };
@@ -32,8 +32,8 @@ Registry<SolverBackend> solver_backends();
 /// Returns the names of the available solvers. Loads no module.
 std::vector<std::string> solver_names();
 
-/// Returns a new solver without reserved memory: see Solver::reserve. Loads at most the module with
-/// the solver. Throws Error for an unknown name.
+/// Returns a new solver without reserved memory: see Solver::reserve. Loads no module except that
+/// of the solver. Throws Error for an unknown name.
 std::unique_ptr<Solver> make_solver(std::string_view name);
 
 }  // namespace keepout

@@ -43,8 +43,8 @@ class GuardPoolOf {
   /// A borrowed constraint. It must not outlive the pool.
   using Loan = std::unique_ptr<Guard, GiveBack>;
 
-  /// Returns a borrowed constraint; waits while `most` are in use. A thread that borrows a second
-  /// constraint before it returns the first may wait forever.
+  /// Borrows a constraint. Waits while `most` constraints are in use. A thread that borrows a
+  /// second constraint before it returns the first may wait forever.
   Loan borrow();
 
   /// Returns the options of the constraints.

@@ -21,18 +21,18 @@ namespace keepout {
 // any other space. The returned objects share the pool, and may be called from any thread.
 
 /// Returns a checker of states. A state is valid if it is within the space's bounds and maintains
-/// the required clearance (keeps_margin).
+/// the required clearance: see keeps_margin().
 std::shared_ptr<ompl::base::StateValidityChecker> make_state_validity_checker(
     const std::shared_ptr<ompl::base::SpaceInformation>& space, std::shared_ptr<GuardPool> guards);
 
 /// Returns a validator of straight motions. A motion is valid only if the certified rule proves the
-/// whole motion (proves), and its end is within the space's bounds. The last valid state of an
-/// invalid motion is the end of the proved part; if the motion leaves the bounds, it is the start.
-/// The space's longest valid segment is not used.
+/// whole motion (see proves()), and its end is within the space's bounds. The last valid state of
+/// an invalid motion is the end of the proved part, or the start if the motion leaves the bounds.
+/// Ignores the space's longest valid segment.
 std::shared_ptr<ompl::base::MotionValidator> make_motion_validator(
     const std::shared_ptr<ompl::base::SpaceInformation>& space, std::shared_ptr<GuardPool> guards);
 
-/// Sets both of the above in the space.
+/// Sets the checker and the validator above in the space.
 void set_certified_checkers(const std::shared_ptr<ompl::base::SpaceInformation>& space,
                             const std::shared_ptr<GuardPool>& guards);
 

@@ -14,22 +14,23 @@ namespace keepout {
 
 /// The options of ProjectingSteer.
 struct SteerOptions {
-  /// The longest step while sliding along the anatomy. Short steps follow the surface closely; long
-  /// steps are fewer. 0: an eighth of the motion sphere's radius. [length]
+  /// The longest step while sliding along the anatomy. Short steps follow the surface closely. A
+  /// path of long steps has fewer steps. 0: an eighth of the motion sphere's radius. [length]
   double sliding_step = 0.0;
   /// The path ends at a step that reduces the distance to the target by less than this fraction of
-  /// its length. In [0, 1).
+  /// the step's length. In [0, 1).
   double least_gain = 0.05;
   std::size_t most_steps = 1000;  // of one path
 };
 
-/// A steering function for any planner: moves a tip from a point towards another by certified
-/// steps, which slide along the anatomy in between. Each straight piece of the path is a step that
-/// the rule has proved, so the whole path maintains the required clearance
-/// (docs/certified-step.md). Each step reduces the distance to the target, so the path ends.
+/// A steering function for any planner. It moves a tip from one point towards another by certified
+/// steps, which slide along the anatomy. Each straight piece of the path is a step that the rule
+/// has proved, so the whole path maintains the required clearance (docs/certified-step.md). Each
+/// step reduces the distance to the target, so the path ends.
 ///
-/// Not thread-safe, like the guard. Paths do not depend on earlier calls. If the guard classifies
-/// tips, this requires that no other code uses the guard in between.
+/// Not thread-safe, like the motion constraint `guard`. Paths do not depend on earlier calls. If
+/// the guard classifies tips as inside or outside, no other code may use the guard between two
+/// calls.
 class ProjectingSteer {
  public:
   /// Makes a steering function; the guard must outlive it. Throws Error for options out of range.
@@ -39,9 +40,9 @@ class ProjectingSteer {
   enum class Ending : std::uint8_t {
     arrived,    // the last point is exactly the target
     length,     // the path has the longest length
-    stuck,      // no step leads nearer: a wall, or a hollow
+    stuck,      // no step leads nearer, as in front of a wall or in a hollow
     steps,      // the path has the most steps
-    not_free,   // the start is not free or out of bounds, or the target is not finite
+    not_free,   // the start is not free or is out of bounds, or the target is not finite
     unbounded,  // the next step would leave the bounds
   };
 

@@ -4,7 +4,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/build/leaf_enclosure.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target.h, which sets the target to compile for.
+// This include must follow foreach_target.h, which sets the target to compile for.
 #include "../../../lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -13,7 +13,7 @@ namespace keepout::HWY_NAMESPACE {
 constexpr std::size_t width = hn::MaxLanes(FloatTag());
 constexpr std::size_t leaf_count = NodeBlock::lanes;
 
-/// A vector for each leaf, whose lanes are later reduced to one number for each leaf.
+/// One vector for each leaf. put_together() later reduces the lanes of a vector to one number.
 struct alignas(64) Rows {
   float row[leaf_count][width];
 };
@@ -153,16 +153,16 @@ HWY_INLINE void set_sizes(FloatTag d, const Rows& bottoms, const Rows& tops, con
     const Vector axis = load(d, cylinders.axis, first);
     const Vector box_middle = load(d, cylinders.middle, first);
     const Vector middle = box_middle + hn::Mul(hn::Set(d, 0.5f), hn::Add(bottom, top)) * axis;
-    // Rounding moves it further, and off the line of the measurement.
+    // The rounded middle is not exactly at the computed height, and not exactly on the axis.
     const Vector moved = middle - box_middle;
     const V along = dot(axis, moved);
     const Vector off = moved - along * axis;
 
     // The greatest distance of a corner from the middle of the box.
     const V far = norm1(load(d, boxes.high, first) - load(d, boxes.low, first));
-    // The most that rounding adds to a length, as a fraction of the sum of the coordinates' sizes:
-    // 32 u, with the unit roundoff u of float. The errors of a dozen operations, and of the axis's
-    // length, add up to less than 24 u.
+    // Rounding changes a length by less than this fraction of far + norm1(moved). The errors of a
+    // dozen operations, and of the axis's length, add up to less than 24 u. Here u is the unit
+    // roundoff of float, and `outward` is more than 32 u.
     constexpr float outward = 2e-6f;
     const V rounding = hn::Mul(hn::Set(d, outward), hn::Add(far, norm1(moved)));
     // Squares of very small or very large numbers are lost.

@@ -7,7 +7,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/build/node_enclosure.cpp"
 #include <hwy/foreach_target.h>
-// After foreach_target.h, which sets the target to compile for.
+// This include must follow foreach_target.h, which sets the target to compile for.
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -140,7 +140,8 @@ void EncloseNode(const NodeBlock& node, const CylinderBlock& of_node, NodeBlock&
     radius = hn::Max(radius, hn::IfThenElseZero(is_used, its.away));
     far = hn::Max(far, hn::IfThenElseZero(is_used, its.far));
   });
-  constexpr double outward = 2e-6;  // axes are not exactly of length 1; rounding to float
+  // Covers the rounding to float, and axes whose length is not exactly 1.
+  constexpr double outward = 2e-6;
   const double rounding = outward * hn::GetLane(hn::MaxOfLanes(d, far));
   above.half_height[lane] =
       static_cast<float>(hn::GetLane(hn::MaxOfLanes(d, half_height)) + rounding);

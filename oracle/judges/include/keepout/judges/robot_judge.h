@@ -20,10 +20,10 @@ namespace keepout::oracle {
 struct RobotVerdict {
   /// The smallest clearance of all bodies at all poses; infinite beyond the margin. [length]
   double least = std::numeric_limits<double>::infinity();
-  /// The smallest difference of a clearance and the promised clearance of its pair. [length]
+  /// The smallest value of a clearance minus the promised clearance of its pair. [length]
   double beyond = std::numeric_limits<double>::infinity();
-  /// The smallest difference of a guided point's depth in its region and the promised depth, in
-  /// tolerances of the guide.
+  /// The smallest value of a guided point's depth in its region minus the promised depth, divided
+  /// by the tolerance of the guide.
   double guide_room = std::numeric_limits<double>::infinity();
   bool is_below = false;       // a body came closer than promised, beyond rounding
   bool is_guide_left = false;  // a guide was left by more than promised, beyond rounding
@@ -45,18 +45,18 @@ struct JudgedScene {
   bool has_band = true;  // the step uses InstrumentOptions::band; MotionConstraint has none
 };
 
-/// Follows an instrument and checks each cycle against the theorem: no body comes closer to a mesh
-/// than its certified clearance. This is margin - band, or if the body was closer already, its
-/// clearance minus the band. It decreases only if a step reported a degraded clearance. Guides are
-/// judged in the same way, with the depth in their region as clearance. Kinematics, distances and
-/// regions are those of the oracle.
+/// Follows an instrument and checks each cycle against the theorem of docs/joint-space-step.md: no
+/// body comes closer to a mesh than its certified clearance. The certified clearance is margin -
+/// band, or if the body was closer already, its clearance minus the band. It decreases only if a
+/// step reported a degraded clearance. Guides are judged in the same way, with the depth in their
+/// region as clearance. Kinematics, distances and regions are those of the oracle.
 ///
-/// The judge samples a cycle at its start and end, at a random pose in each eighth of it, and near
-/// the margin again around the worst pose. Two neighbors are up to a quarter of the motion apart.
-/// So it can miss a dip between two samples (docs/joint-space-step.md, "How it is tested"). Over a
-/// flat surface the dip is at most M / 128, with M the second-derivative bound. Over an edge or a
-/// corner it is at most half of the path between the samples. The samples are random, so it misses
-/// such a dip in some cycles only.
+/// The judge samples a cycle at its start and end, and at a random pose in each eighth of it. Near
+/// the margin, it samples again around the worst pose. Two neighboring samples are up to a quarter
+/// of the motion apart. So the judge can miss a dip between two samples (docs/joint-space-step.md,
+/// "How it is tested"). Over a flat surface the dip is at most M / 128, with M the
+/// second-derivative bound. Over an edge or a corner it is at most half of the path between the
+/// samples. The samples are random, so the judge misses such a dip in some cycles only.
 class RobotJudge {
  public:
   /// `limits`: the chain that has the joint limits. It and `random` must outlive the judge.
@@ -73,13 +73,13 @@ class RobotJudge {
   /// place() states. Each body must maintain its whole certified clearance.
   RobotVerdict judge(std::span<const double> next);
   /// Like judge(next), but bodies must maintain only the clearance that `step` promises. The body
-  /// `must_keep` must maintain all of it.
+  /// `must_keep` must maintain its whole certified clearance.
   RobotVerdict judge(std::span<const double> next, const InstrumentStep& step,
                      std::optional<std::size_t> must_keep = std::nullopt);
 
-  /// Returns true if the joints may move to `next` in the coming cycle, without leaving a guide. No
-  /// body may come closer than the margin minus a tenth of the band, or than it is. Samples nine
-  /// poses.
+  /// Returns true if the joints may move to `next` in the coming cycle. No body may come closer
+  /// than the margin minus a tenth of the band, and no guide may be left by more than a tenth of
+  /// its band. A body or a guide that starts beyond this must not get worse. Samples nine poses.
   bool would_allow(std::span<const double> next);
 
   /// Returns the smallest clearance of each body at the poses of the last cycle; infinite beyond

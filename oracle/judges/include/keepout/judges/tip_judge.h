@@ -23,7 +23,7 @@ enum class Breach : std::uint8_t {
   left_inside,    // a tip on the forbidden side makes another motion than a retreat
   limits_broken,  // a joint leaves its limits, or moves farther than a cycle allows
   guide_left,     // a guided point leaves its region by more than promised
-  strayed         // a free motion ends farther from the target than standing still
+  strayed         // a free motion ends farther from the target than zero motion
 };
 inline constexpr std::size_t breach_kinds = 9;
 inline constexpr std::size_t tip_breach_kinds = 6;
@@ -34,8 +34,8 @@ std::string_view name(Breach breach) noexcept;
 struct TipVerdict {
   std::optional<Breach> breach;
   bool was_led_out = false;  // an escape from the forbidden side, which may cross the surface
-  /// The distance of the whole motion from the mesh. Infinite if it is farther than a little beyond
-  /// the required clearance, or if the tip was too close before. [length]
+  /// The distance of the whole motion from the mesh. Infinite if it exceeds the required clearance
+  /// by more than a little, or if the tip was too close before. [length]
   double distance = std::numeric_limits<double>::infinity();
   double threshold = 0.0;             // the least distance allowed [length]
   double tolerance = 0.0;             // tau [length]

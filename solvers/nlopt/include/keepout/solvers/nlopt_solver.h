@@ -17,7 +17,7 @@ enum class NloptMethod : std::uint8_t {
   mma      // moving asymptotes, globally convergent (Svanberg 2002)
 };
 
-/// The result of keepout's check of an answer of NLopt.
+/// The result of keepout's check of a solution from NLopt.
 enum class NloptFinding : std::uint8_t {
   refused,      // NLopt was not called: the problem is invalid, ill-posed or too large
   optimal,      // feasible, and within `accuracy` of the best
@@ -36,16 +36,17 @@ struct NloptReport {
   NloptFinding finding = NloptFinding::refused;  // the result of the check
 };
 
-/// A solver that uses a method of NLopt and trusts no answer of it. An answer is `optimal` only if
-/// it is within `accuracy` of the solution of ActiveSet. A problem that ActiveSet rejects, or
-/// proves infeasible, returns the same status. All other answers return `iteration_limit`.
+/// A solver that uses a method of NLopt and checks each solution. The status is `optimal` only if
+/// the solution is within `accuracy` of that of ActiveSet. For a problem that ActiveSet rejects or
+/// proves infeasible, the status is that of ActiveSet. In all other cases the status is
+/// `iteration_limit`.
 ///
-/// "optimal" satisfies each row to 1e-11 of the motion, and the conditions of optimality
-/// (KktResidual) to `accuracy`. Its distance from the best u* in task space, |R (u - u*)| with J^T
-/// J + damping I = R^T R, is also below `accuracy`. That distance is relative to the larger of |R
-/// u*| and |d| / sqrt(n). It is NLopt's own point, except for the last digits, which move it onto
-/// rows that it violates. Results are reproducible: the work is limited by a number of evaluations,
-/// never by time. Allocates while it solves.
+/// An `optimal` solution satisfies each row to 1e-11 of the motion, and the conditions of
+/// optimality (KktResidual) to `accuracy`. Its distance from the best u* in task space, |R (u -
+/// u*)| with J^T J + damping I = R^T R, is also below `accuracy`. That distance is relative to the
+/// larger of |R u*| and |d| / sqrt(n). The solution is NLopt's own point, except for its last
+/// digits: the solver moves it onto rows that it violates. Results are reproducible: the work is
+/// limited by a number of evaluations, never by time. Allocates while it solves.
 class NloptSolver final : public Solver {
  public:
   /// Makes a solver without reserved memory: see reserve.
