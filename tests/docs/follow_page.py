@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the commands and files of a page of docs/ exactly as written, so that the page stays correct.
 
-    follow_page.py PAGE FOLDER [--keepout COMMAND] [--prefix INSTALLED] [--python PATH]
+    follow_page.py PAGE FOLDER [--keepout COMMAND] [--prefix INSTALLED] [--python PATH] [--sources ROOT]
 
 A comment above each block of code, invisible to readers, states what to do with the block:
 
@@ -14,7 +14,7 @@ A comment above each block of code, invisible to readers, states what to do with
     <!-- by hand: WHY -->    Skip it. WHY states why a test cannot do it.
 
 A block without such a comment is an error. FOLDER is emptied first. `keepout` runs COMMAND. find_package
-searches INSTALLED, and Python searches PATH.
+searches INSTALLED, and Python searches PATH. With ROOT, `~/keepout` leads to ROOT.
 """
 
 import argparse
@@ -31,7 +31,7 @@ ORDER = re.compile(r"<!-- (?P<what>file|run fails|run python|run|output|by hand)
 
 
 class Reader:
-    def __init__(self, page, folder, keepout, prefix, python):
+    def __init__(self, page, folder, keepout, prefix, python, sources=None):
         self.page, self.folder, self.python = page, folder, python
         self.environment = dict(os.environ, LC_ALL="C.UTF-8")
         folder.mkdir(parents=True, exist_ok=True)
@@ -46,6 +46,11 @@ class Reader:
             # Debian's Python, for which the module was built.
             (commands / "python3").symlink_to("/usr/bin/python3")
             self.environment["PYTHONPATH"] = str(python)
+        if sources:
+            home = folder / "home"
+            home.mkdir()
+            (home / "keepout").symlink_to(sources.resolve())
+            self.environment["HOME"] = str(home)
         self.printed = None  # by the last run
         self.was_left_out = False
 
@@ -116,10 +121,11 @@ def main():
     parser.add_argument("--keepout", type=pathlib.Path)
     parser.add_argument("--prefix", type=pathlib.Path)
     parser.add_argument("--python", type=pathlib.Path)
+    parser.add_argument("--sources", type=pathlib.Path)
     given = parser.parse_args()
     folder = given.folder.resolve()
     shutil.rmtree(folder, ignore_errors=True)
-    Reader(given.page, folder, given.keepout, given.prefix, given.python).follow()
+    Reader(given.page, folder, given.keepout, given.prefix, given.python, given.sources).follow()
 
 
 if __name__ == "__main__":
