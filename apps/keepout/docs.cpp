@@ -43,6 +43,9 @@ void docs(const DocsOptions& options, std::ostream& out) {
     return;
   }
   out << folder.string() << '\n';
+  std::error_code error;
+  const std::filesystem::path site = folder.parent_path() / "site/index.html";
+  if (std::filesystem::exists(site, error)) out << site.string() << '\n';
   for (const std::string& name : pages_of_docs()) {
     constexpr std::size_t column = 28;
     std::string cell = "  " + name;

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of docs/concepts.md; see `draw`, which draws them."""
+"""The pictures of docs/concepts.md and docs/README.md; see `draw`, which draws them."""
 
 import sys
 
 import keepout
 import numpy as np
 
-from section import HEIGHT, Picture, Section, closed_loop, dot, math_of, prism, solved, split, unit
+from section import HEIGHT, Picture, Section, closed_loop, dot, math_of, prism, solved, split, unit, xy
 
 
 def tissue(x):
@@ -265,5 +265,51 @@ def polytope():
     p.save("polytope.svg")
 
 
+def pipeline():
+    p = Picture(600, 312, "From the mesh to the step",
+                "Mesh, index, candidates, exact hits, planes, problem, step: each stage passes its result to the next. "
+                "By default the index passes the triangles along each trial motion to the rule.")
+    wide, high, rows = 126, 80, (52, 176)
+    left = lambda column: 18 + column * (wide + 20)
+
+    def arrow(style, *points):
+        u = unit(points[-1] - points[-2])
+        p.put(f'<path class="line {style} firm" d="M{"L".join(map(xy, [*points[:-1], points[-1] - 5 * u]))}"/>')
+        corners = (points[-1], points[-1] - (9 - 5j) * u, points[-1] - (9 + 5j) * u)
+        p.put(f'<path class="{style.split()[0]}-f" d="M{"L".join(map(xy, corners))}Z"/>')
+
+    middles = []
+    for i, (color, name, *words) in enumerate((
+            ("asked", "mesh", "triangles of", "the anatomy"),
+            ("asked", "index", "finds triangles", "near the tip"),
+            ("trial", "candidates", "may touch the", "motion sphere"),
+            ("trial", "exact hits", "touch it; with", "closest points"),
+            ("one", "planes", "the rule makes", "them from hits"),
+            ("two", "problem", "nearest motion", "in the planes"),
+            ("made", "step", "motion, status", "and reason"))):
+        x, y = left(i if i < 4 else 7 - i), rows[i > 3]
+        middles.append(complex(x + wide / 2, y + high / 2))
+        p.put(f'<rect class="line {color} firm" x="{x}" y="{y}" width="{wide}" height="{high}" rx="8"/>')
+        for line, style, words_ in zip((26, 48, 65), (f"name {color}-t", "small", "small"), (name, *words)):
+            p.text(x + wide / 2, y + line, words_, style, "middle")
+    for a, b in zip(middles, middles[1:]):
+        u = unit(b - a)
+        half = abs(u.real) * wide / 2 + abs(u.imag) * high / 2
+        arrow("asked", a + half * u, b - half * u)
+    index, planes, problem, step = (middles[i] for i in (1, 4, 5, 6))
+    down, out = 1j * high / 2, wide / 2
+    arrow("one dashed", index - down, complex(index.real, 34), complex(592, 34), complex(592, planes.imag), planes + out)
+    p.text(index.real + 8, 25, "by default: only the triangles along each trial motion", "small")
+    arrow("asked", problem - down - 24j, problem - down)
+    p.text(problem.real - 8, rows[1] - 12, "desired increment", "small", "end")
+    arrow("one", step + down, step + down + 24j, planes + down + 24j, planes + down)
+    p.text(problem.real, rows[1] + high + 44, "the rule rejects the motion: one more plane", "small", "middle")
+    arrow("made", step - out, step - out - 38)
+    p.text(left(0) + 42, step.imag - 4, "robot", "name", "middle")
+    p.text(left(0) + 42, step.imag + 16, "zero motion", "small", "middle")
+    p.text(left(0) + 42, step.imag + 33, "after a failure", "small", "middle")
+    p.save("pipeline.svg")
+
+
 PICTURES = {"fixture": fixture, "candidates": candidates, "rules": rules, "rim": rim, "margin": margin,
-            "polytope": polytope}
+            "polytope": polytope, "pipeline": pipeline}

@@ -94,6 +94,7 @@ STYLE = """
     .halo { paint-order: stroke; stroke: #fbfaf7; stroke-width: 4px; stroke-linejoin: round; }
     .small { font-size: 13px; }
     .bold { font-weight: 600; }
+    .name { font-weight: 600; font-size: 18px; }
     .math { font-family: Georgia, "Times New Roman", "Noto Serif", serif; font-style: italic;
             font-size: 17px; }
     .code { font-family: ui-monospace, SFMono-Regular, Menlo, Consolas, monospace; }
