@@ -2,7 +2,8 @@
 """The faults that `python3 docs/figures --check` finds.
 
 1. A page differs from its records.
-2. A row of a table has another number of cells than its header.
+2. A row of a table has another number of cells than its header, or a line of text begins with a figure: its
+   marker would end the paragraph.
 3. A record is stale, by the rule in records.py. This is skipped where git's history is missing.
 4. No page prints a record, or a page states a time that is not the figure of a record.
 """
@@ -12,6 +13,7 @@ import re
 import pages
 import records
 
+BEGINS_WITH_FIGURE = re.compile(r"^ *<!--[\w.]+-->.*\S", re.M)
 TIME = re.compile(r"\b\d[\d.,]* ?(?:µs|us|ns)\b")
 RULE = re.compile(r"^ *\|?(?: *:?-+:? *\|)+ *:?-* *:?-* *\|? *$")
 
@@ -37,6 +39,8 @@ def uneven_rows(text):
 
 def of_page(text, figures):
     """Yields the faults of a page."""
+    yield from (f"{text.count(chr(10), 0, found.start()) + 1}: a line of text begins with a figure"
+                for found in BEGINS_WITH_FIGURE.finditer(text))
     yield from (f"{line}: a row has another number of cells than its header" for line in uneven_rows(text))
     if unknown := [name for name in pages.names_of(text) if name not in figures]:
         yield f" unknown figures {', '.join(unknown)}"

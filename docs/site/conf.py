@@ -86,8 +86,8 @@ def shorten(app, what, name, thing, options, *parts):
 
 
 def mend_theme(app, failure):
-    """Debian's theme names a style from the root of a web server, loads a module, which no page from the disk may, and
-    has lost the rule for readers who prefer a dark page."""
+    """Repairs three faults of Debian's theme. It names a style from the root of a web server. It loads a module, which
+    no page from the disk may load. It lacks the rule for readers who prefer a dark page."""
     if failure:
         return
     static = Path(app.outdir, "_static")
