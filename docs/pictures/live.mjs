@@ -23,7 +23,7 @@ const browser = await packages("puppeteer-core").launch({
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
 const tab = await browser.newPage();
-await tab.setViewport({ width: 1280, height: 760, deviceScaleFactor: 1.6 });
+await tab.setViewport({ width: 1280, height: 760, deviceScaleFactor: 1 });
 await tab.goto(pathToFileURL(page).href);
 await tab.waitForFunction(() => !document.querySelector("#grip").hidden, { timeout: 120_000 });
 const { x, y } = await tab.evaluate(() => {
@@ -37,13 +37,14 @@ for (let i = 0; i < frames; ++i) {
   const turn = (2 * Math.PI * i) / frames;
   await tab.mouse.move(x - 42 * (1 - Math.cos(turn)), y + 26 * Math.sin(2 * turn), { steps: 3 });
   await new Promise((done) => setTimeout(done, 150));
-  await tab.screenshot({ path: join(folder, `${String(i).padStart(3, "0")}.png`) });
+  const path = join(folder, `${String(i).padStart(3, "0")}.png`);
+  await tab.screenshot({ path, clip: { x: 310, y: 0, width: 970, height: 700 } });
 }
 await browser.close();
 const gif = `
 import glob, sys
 from PIL import Image
-frames = [Image.open(name).convert("RGB").resize((800, 475), Image.LANCZOS) for name in sorted(glob.glob(sys.argv[1]))]
+frames = [Image.open(name).convert("RGB").resize((776, 560), Image.LANCZOS) for name in sorted(glob.glob(sys.argv[1]))]
 colors = frames[len(frames) // 2].quantize(96)
 frames = [frame.quantize(palette=colors, dither=Image.Dither.NONE) for frame in frames]
 frames[0].save(sys.argv[2], save_all=True, append_images=frames[1:], duration=100, loop=0, optimize=True)
