@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // More triangles than 21 bits can number: where Bullet by itself takes some for others, silently.
 
-#include "adapters/index_contract.h"
+#include "keepout/testing/index_probes.h"
 #include "keepout/adapters/index_registry.h"
 
 namespace keepout {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contract of every index on real anatomy, scans and parts.
 
-#include "adapters/index_contract.h"
+#include "keepout/testing/index_probes.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/mesh/load_mesh.h"

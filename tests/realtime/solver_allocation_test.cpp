@@ -5,7 +5,7 @@
 
 #include "keepout/solvers/registry.h"
 #include "realtime/counted_allocations.h"
-#include "solvers/random_problems.h"
+#include "keepout/fixtures/random_problems.h"
 
 namespace keepout::test {
 namespace {

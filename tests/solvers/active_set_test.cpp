@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "keepout/solvers/kkt.h"
-#include "solvers/random_problems.h"
+#include "keepout/fixtures/random_problems.h"
 
 namespace keepout::test {
 namespace {

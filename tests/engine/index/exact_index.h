@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "adapters/index_contract.h"
+#include "keepout/testing/index_probes.h"
 #include "index/wide_bvh/tree.h"
 
 namespace keepout {

@@ -3,7 +3,7 @@
 
 #include <thread>
 
-#include "adapters/index_contract.h"
+#include "keepout/testing/index_probes.h"
 #include "index/wide_bvh/tree.h"
 #include "temporary_folder.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numeric>
 
-#include "adapters/index_contract.h"
+#include "keepout/testing/index_probes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
