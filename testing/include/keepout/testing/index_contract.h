@@ -9,8 +9,12 @@
 #include <future>
 #include <set>
 
+#include "keepout/activation/registry.h"
 #include "keepout/geometry/convex_tool.h"
 #include "keepout/geometry/separation.h"
+#include "keepout/index/brute_force.h"
+#include "keepout/solvers/registry.h"
+#include "keepout/step/motion_constraint.h"
 #include "keepout/testing/index_probes.h"
 
 namespace keepout {
@@ -21,6 +25,43 @@ inline double distance_to_box_around(const Triangle& corners, const Vec3& from, 
   const Vec3 high = corners[0].cwiseMax(corners[1]).cwiseMax(corners[2]);
   return (low - from.cwiseMax(to)).cwiseMax(from.cwiseMin(to) - high).cwiseMax(0.0).norm();
 }
+
+/// Collects the triangles that a traversal shows, and checks their corners and notes.
+class ShownTriangles final : public TriangleVisitor {
+ public:
+  ShownTriangles(const Mesh& mesh, const Vec3& tip) : mesh_(mesh), tip_(tip) {}
+
+  /// Begins a motion. `latest`: the fraction that each visit returns.
+  void start(double latest) {
+    latest_ = latest;
+    triangles_.clear();
+  }
+
+  double visit(TriangleId triangle, std::uint32_t& note,
+               const Triangle* corners) noexcept override {
+    if (triangle >= mesh_.triangle_count() || (note == MotionTraversal::no_note) != (corners != nullptr)) {
+      contradicts_ = true;
+    } else if (corners != nullptr) {
+      contradicts_ |= *corners != ordered_relative(mesh_.triangle(triangle), tip_);
+    } else {
+      contradicts_ |= note != triangle;
+    }
+    note = triangle;
+    triangles_.insert(triangle);
+    return latest_;
+  }
+
+  const std::set<TriangleId>& triangles() const noexcept { return triangles_; }
+  /// Returns true if the corners or the note of a triangle were wrong.
+  bool contradicts() const noexcept { return contradicts_; }
+
+ private:
+  const Mesh& mesh_;
+  Vec3 tip_;
+  double latest_ = MotionTraversal::never;
+  std::set<TriangleId> triangles_;
+  bool contradicts_ = false;
+};
 
 /// The requirements on an index, compared with brute force. Instantiate it in one source.
 class IndexContract : public testing::TestWithParam<IndexBackend> {};
@@ -213,10 +254,113 @@ TEST_P(IndexContract, SaysWhatItHoldsAtMostAndWhatLibraryIsBehindIt) {
   EXPECT_NE(library.find_first_of("0123456789"), std::string::npos) << library;
 }
 
-TEST_P(IndexContract, SaysWhetherItWalksAlongMotions) {
+TEST_P(IndexContract, SaysWhetherItTraversesAlongMotions) {
   const auto index = GetParam().make(std::make_shared<const Mesh>(make_cube(50)));
   Budget budget;
   EXPECT_EQ(index->traverses(), index->traverse_along_motions(budget) != nullptr);
+}
+
+TEST_P(IndexContract, ATraversalShowsEveryTriangleThatAMotionComesNear) {
+  if (!GetParam().make(mesh_of("cube"))->traverses()) return;
+  std::size_t seen = 0, clear = 0;
+  for (const Shape& shape : shapes_to_try()) {
+    SCOPED_TRACE(shape.name);
+    const auto mesh = mesh_of(shape.make());
+    const auto index = GetParam().make(mesh);
+    Budget budget;
+    const auto traversal = index->traverse_along_motions(budget);
+    const double size = mesh->bounds().size().norm();
+    Random random(12);
+    for (const double offset : {0.0, 0.5, 1.01, 2.0}) {
+      const double level = size * std::pow(10.0, random.uniform(-4.0, -2.0));
+      // Close to each other, so that what the traversal remembers of a cycle matters.
+      Vec3 tip = surface_points(*mesh, 1, offset * level, random)[0];
+      for (int cycle = 0; cycle < 12; ++cycle) {
+        const double longest = level * std::pow(10.0, random.uniform(-1.0, 0.5));
+        tip += 0.3 * longest * random.direction();
+        ASSERT_TRUE(traversal->begin({tip, {tip, longest + level}, level, longest}));
+        const bool is_empty = traversal->region_is_empty();
+        ShownTriangles shown(*mesh, tip);
+        for (const double part : {1.0, 0.5, 0.1}) {
+          const Vec3 motion = part * longest * random.direction();
+          bool nothing_near = is_empty;
+          shown.start(MotionTraversal::never);
+          if (!is_empty) nothing_near = traversal->traversal(motion, shown);
+          const std::set<TriangleId> along = shown.triangles();
+          shown.start(0.0);  // from now on only triangles near the start matter
+          if (!is_empty) traversal->traversal(motion, shown);
+          ASSERT_FALSE(shown.contradicts());
+          const ConvexTool segment = ConvexTool::hull(std::vector<Vec3>{Vec3::Zero(), motion});
+          for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
+            const Triangle corners = mesh->triangle(t);
+            if (distance_to_box_around(corners, tip, tip + motion) > level) continue;
+            const double surely = level * (1.0 - 1e-9) - 1e-12 * size;
+            if (separation(segment, tip, corners).distance > surely) continue;
+            ASSERT_TRUE(along.contains(t)) << t << " of a motion from " << tip.transpose();
+            ASSERT_FALSE(nothing_near);
+            if (closest_point(corners, tip).distance > surely) continue;
+            ASSERT_TRUE(shown.triangles().contains(t)) << t << " at " << tip.transpose();
+          }
+          seen += along.size();
+          clear += nothing_near ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(seen, 1000u);
+  EXPECT_GT(clear, 50u);
+}
+
+TEST_P(IndexContract, ATraversalSpendsWorkAndStopsWithoutBudget) {
+  const auto mesh = mesh_of("star_bumps");
+  const auto index = GetParam().make(mesh);
+  if (!index->traverses()) return;
+  const Vec3 tip = mesh->vertex(0);
+  const double near = 5.0;  // of a shape 100 mm large: many triangles
+  Budget enough, few(1);
+  for (Budget* budget : {&enough, &few}) {
+    const auto traversal = index->traverse_along_motions(*budget);
+    ShownTriangles shown(*mesh, tip);
+    shown.start(MotionTraversal::never);
+    if (traversal->begin({tip, {tip, 2.0 * near}, near, near})) {
+      traversal->traversal(Vec3(near, 0.0, 0.0), shown);
+    }
+    if (budget == &enough) {
+      EXPECT_GT(budget->spent(), 2u);
+      EXPECT_GT(shown.triangles().size(), 20u);
+    } else {
+      EXPECT_TRUE(budget->is_spent());
+      EXPECT_LT(shown.triangles().size(), 20u);
+    }
+  }
+}
+
+TEST_P(IndexContract, StepsAreThoseOfBruteForce) {
+  if (GetParam().name == "brute_force") return;
+  for (const std::string_view shape : {"star_bumps", "gear"}) {
+    const auto mesh = mesh_of(shape);
+    const auto guard_of = [&](std::shared_ptr<const SpatialIndex> index) {
+      return MotionConstraint(mesh, std::move(index), make_activation("certified"),
+                              make_solver("active_set"), {.radius = 1.0, .margin = 0.5});
+    };
+    MotionConstraint guard = guard_of(GetParam().make(mesh));
+    MotionConstraint expected = guard_of(std::make_shared<BruteForce>(mesh));
+    Random random(13);
+    std::size_t limited = 0;
+    for (Vec3 tip : surface_points(*mesh, test::trials<std::size_t>(40), 0.6, random)) {
+      const Vec3 press = random.direction();
+      for (int cycle = 0; cycle < 20; ++cycle) {
+        const Motion motion{.tip = tip, .desired = 0.2 * (press + random.direction())};
+        const Step step = guard.step(motion);
+        const Step right = expected.step(motion);
+        ASSERT_EQ(step.status, right.status) << shape << " at " << tip.transpose();
+        ASSERT_EQ(step.motion, right.motion) << shape << " at " << tip.transpose();
+        limited += step.status == Status::limited ? 1 : 0;
+        tip += step.motion;
+      }
+    }
+    EXPECT_GT(limited, 20u);
+  }
 }
 
 TEST_P(IndexContract, NeverGivesATriangleTwice) {
