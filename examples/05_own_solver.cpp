@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A solver of your own: Hildreth's method (plugin/hildreth.h) in a motion constraint, checked against the conditions of
-// Karush, Kuhn and Tucker and against active_set.
+// A solver of your own: Hildreth's method (plugin/hildreth.h) in a motion constraint, checked
+// against the conditions of Karush, Kuhn and Tucker and against active_set.
 #include <algorithm>
 #include <cstdio>
 #include <memory>

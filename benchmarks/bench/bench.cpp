@@ -117,8 +117,8 @@ void add_speed_options(CLI::App& command, BenchOptions& options) {
       "--speed", options.is_speed,
       "Measure the table of required ratios, in one process on one core; takes some "
       "minutes. With --triangles: one size, for meshes of about a million");
-  for (const char* name : {"--list", "--plugin", "--index", "--activation", "--solver", "--mesh", "--radius",
-                           "--full", "--queries", "--seconds", "--poses", "--csv"}) {
+  for (const char* name : {"--list", "--plugin", "--index", "--activation", "--solver", "--mesh",
+                           "--radius", "--full", "--queries", "--seconds", "--poses", "--csv"}) {
     speed->excludes(name);
   }
   command

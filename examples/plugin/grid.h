@@ -118,7 +118,8 @@ class Grid final : public keepout::SpatialIndex {
     }
 
    private:
-    /// Returns the cell of a point along an axis. It grows with the coordinate in spite of rounding.
+    /// Returns the cell of a point along an axis. It grows with the coordinate in spite of
+    /// rounding.
     int place(const keepout::Vec3& point, int axis) const noexcept {
       const double at = (point[axis] - low_[axis]) * per_length_;
       return static_cast<int>(std::clamp(at, 0.0, side_[axis] - 1.0));
@@ -231,7 +232,7 @@ class Grid final : public keepout::SpatialIndex {
     /// A triangle that a motion of this cycle may reach.
     struct Triangle {
       const Near* near;
-      keepout::Vec3 away;  // from the center of the sphere to the tip
+      keepout::Vec3 away;      // from the center of the sphere to the tip
       double distance = -1.0;  // from the tip; below 0: not measured yet
       keepout::Vec3 towards_tip = keepout::Vec3::Zero();  // unit, from the nearest point
       std::uint32_t note = no_note;
@@ -248,12 +249,15 @@ class Grid final : public keepout::SpatialIndex {
         return false;
       }
       for (const keepout::TriangleId t : collected_) {
-        near_.push_back({t, grid_.spheres_[t],
-                         keepout::ordered_relative(grid_.mesh().triangle(t), keepout::Vec3::Zero())});
+        near_.push_back(
+            {t, grid_.spheres_[t],
+             keepout::ordered_relative(grid_.mesh().triangle(t), keepout::Vec3::Zero())});
       }
       ball_ = ball;
       // A larger ball lasts longer, and a smaller one has fewer triangles to test in each cycle.
-      padding_ = near_.size() < 64 ? 1.5 * padding_ + 0.1 * longest_ : near_.size() > 256 ? 0.7 * padding_ : padding_;
+      padding_ = near_.size() < 64    ? 1.5 * padding_ + 0.1 * longest_
+                 : near_.size() > 256 ? 0.7 * padding_
+                                      : padding_;
       return true;
     }
 
@@ -268,7 +272,7 @@ class Grid final : public keepout::SpatialIndex {
     const Grid& grid_;
     keepout::Budget& budget_;
     keepout::TriangleBuffer collected_;
-    double padding_ = 0.0;                            // of the next ball [length]
+    double padding_ = 0.0;                             // of the next ball [length]
     keepout::Ball ball_{keepout::Vec3::Zero(), -1.0};  // that near_ covers
     std::vector<Near> near_;
 
@@ -281,8 +285,8 @@ class Grid final : public keepout::SpatialIndex {
 
   /// Returns a bound of the roundings of coordinates, for a query at a point. [length]
   double rounding_at(const keepout::Vec3& point) const noexcept {
-    return 1e-12 * (point.lpNorm<1>() + mesh().bounds().low.lpNorm<1>() +
-                    mesh().bounds().high.lpNorm<1>());
+    return 1e-12 *
+           (point.lpNorm<1>() + mesh().bounds().low.lpNorm<1>() + mesh().bounds().high.lpNorm<1>());
   }
 
   std::vector<keepout::Ball> spheres_;  // around each triangle

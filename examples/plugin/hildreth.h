@@ -9,9 +9,9 @@
 
 #include "keepout/step/solver.h"
 
-/// Turns the problem into that of the point w = R u nearest to z, with J^T J + damping I = R^T R. It
-/// finds w by coordinate ascent on the dual: each sweep corrects one multiplier after another. The
-/// code is short, but slow if planes are nearly parallel, and it never proves that a problem is
+/// Turns the problem into that of the point w = R u nearest to z, with J^T J + damping I = R^T R.
+/// It finds w by coordinate ascent on the dual: each sweep corrects one multiplier after another.
+/// The code is short, but slow if planes are nearly parallel, and it never proves that a problem is
 /// infeasible, unless a row of zeros contradicts itself. Source: Hildreth, "A quadratic programming
 /// procedure", Naval Research Logistics Quarterly 4, 1957.
 class Hildreth final : public keepout::Solver {

@@ -13,7 +13,8 @@ namespace {
 constexpr keepout::IndexBackend indices[] = {
     {.name = "my_grid",
      .description = "uniform grids, one for each class of sizes",
-     .make = [](std::shared_ptr<const keepout::Mesh> mesh) -> std::unique_ptr<keepout::SpatialIndex> {
+     .make =
+         [](std::shared_ptr<const keepout::Mesh> mesh) -> std::unique_ptr<keepout::SpatialIndex> {
        return std::make_unique<Grid>(std::move(mesh));
      },
      .most_triangles = std::size_t{1} << 31,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares every index of the registry with brute force, by the contract that users' indices pass too.
+// Compares every index of the registry with brute force, by the contract that users' indices pass
+// too.
 #include "keepout/testing/index_contract.h"
 
 #include "index_module.h"

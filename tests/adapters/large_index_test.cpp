@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // More triangles than 21 bits can number: where Bullet by itself takes some for others, silently.
 
-#include "keepout/testing/index_probes.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/testing/index_probes.h"
 
 namespace keepout {
 namespace {

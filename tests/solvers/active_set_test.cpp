@@ -8,8 +8,8 @@
 
 #include <numbers>
 
-#include "keepout/solvers/kkt.h"
 #include "keepout/fixtures/random_problems.h"
+#include "keepout/solvers/kkt.h"
 
 namespace keepout::test {
 namespace {

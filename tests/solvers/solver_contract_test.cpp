@@ -9,7 +9,8 @@
 namespace keepout::test {
 namespace {
 
-/// Returns the measured limits of the solvers of libraries. keepout's own solver must never give up.
+/// Returns the measured limits of the solvers of libraries. keepout's own solver must never give
+/// up.
 Allowance allowance_of(std::string_view solver) {
   // Strides are prime numbers, because the kinds of problems alternate with small periods.
   const auto stride = [](int in_long, int in_short) { return all_trials() ? in_long : in_short; };

@@ -245,7 +245,8 @@ void add_load_options(CLI::App& command, LoadOptions& load) {
 CLI::Option* add_plugins(CLI::App& command) {
   const auto load = [](const std::vector<std::string>& files) {
     for (const std::string& file : files) {
-      if (!std::filesystem::is_regular_file(file)) throw Error("--plugin: there is no file " + file);
+      if (!std::filesystem::is_regular_file(file))
+        throw Error("--plugin: there is no file " + file);
       const std::string path = std::filesystem::absolute(file);
       if (add_index_backends(path) + add_solver_backends(path) > 0) continue;
       throw Error("the plugin " + path +

@@ -145,8 +145,8 @@ CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& v
 
 // Options that several commands have.
 
-/// Adds the option --plugin, which loads shared objects with indices and solvers of the user. Add it
-/// before the options that choose parts by name, so that they know the names in the plugins.
+/// Adds the option --plugin, which loads shared objects with indices and solvers of the user. Add
+/// it before the options that choose parts by name, so that they know the names in the plugins.
 CLI::Option* add_plugins(CLI::App& command);
 
 /// Adds an option that chooses an index, a solver or a narrow phase by name: see one_of_parts.

@@ -14,8 +14,8 @@
 
 /// Marks a shared object as a module or plugin for this version of keepout. Write it once in its
 /// sources, outside of all namespaces.
-#define KEEPOUT_MODULE()                                                                         \
-  extern "C" [[gnu::visibility("default")]] const char keepout_module_version[];                 \
+#define KEEPOUT_MODULE()                                                         \
+  extern "C" [[gnu::visibility("default")]] const char keepout_module_version[]; \
   extern "C" const char keepout_module_version[] = KEEPOUT_VERSION
 
 namespace keepout {
@@ -46,8 +46,8 @@ std::span<const Part> parts_in_module(const char* module, const char* table) {
                           : *static_cast<const std::span<const Part>*>(parts);
 }
 
-/// The table of all parts of one kind: keepout's own, those in modules, and those in plugins. A table must live as
-/// long as the program.
+/// The table of all parts of one kind: keepout's own, those in modules, and those in plugins. A
+/// table must live as long as the program.
 template <class Part>
 class PartTable {
  public:
@@ -136,7 +136,7 @@ class PartTable {
   std::span<const Part> own_;
   std::span<const PeerPart> peers_;
   const char* table_;
-  std::vector<Part> plugged_;  // of plugins
+  std::vector<Part> plugged_;           // of plugins
   mutable std::once_flag is_complete_;  // of all_ and absent_
   mutable std::vector<Part> all_;
   mutable std::vector<PeerPart> absent_;

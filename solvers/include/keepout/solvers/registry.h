@@ -31,8 +31,9 @@ struct SolverBackend {
 Registry<SolverBackend> solver_backends();
 
 /// Adds the solvers of a plugin: a shared object that exports the table `keepout_solvers` (see
-/// docs/adding_a_backend.md). Returns their number, 0 without such a table. For the arguments, errors
-/// and the precondition see PartTable::add in keepout/module.h. All other functions then know them.
+/// docs/adding_a_backend.md). Returns their number, 0 without such a table. For the arguments,
+/// errors and the precondition see PartTable::add in keepout/module.h. All other functions then
+/// know them.
 std::size_t add_solver_backends(const std::string& plugin);
 
 /// Returns the names of the available solvers. Loads no module.

@@ -4,7 +4,8 @@
 // The tests that every index must pass, for the rows of an index registry or of a plugin:
 //
 //     using keepout::IndexContract;
-//     INSTANTIATE_TEST_SUITE_P(Mine, IndexContract, testing::ValuesIn(keepout_indices), keepout::by_name);
+//     INSTANTIATE_TEST_SUITE_P(Mine, IndexContract, testing::ValuesIn(keepout_indices),
+//     keepout::by_name);
 
 #include <future>
 #include <set>
@@ -39,7 +40,8 @@ class ShownTriangles final : public TriangleVisitor {
 
   double visit(TriangleId triangle, std::uint32_t& note,
                const Triangle* corners) noexcept override {
-    if (triangle >= mesh_.triangle_count() || (note == MotionTraversal::no_note) != (corners != nullptr)) {
+    if (triangle >= mesh_.triangle_count() ||
+        (note == MotionTraversal::no_note) != (corners != nullptr)) {
       contradicts_ = true;
     } else if (corners != nullptr) {
       contradicts_ |= *corners != ordered_relative(mesh_.triangle(triangle), tip_);

@@ -4,7 +4,8 @@
 // The tests that every solver must pass, for the rows of a solver registry or of a plugin:
 //
 //     using keepout::test::SolverContract;
-//     INSTANTIATE_TEST_SUITE_P(Mine, SolverContract, testing::Values(keepout::test::SolverUnderTest{row}),
+//     INSTANTIATE_TEST_SUITE_P(Mine, SolverContract,
+//     testing::Values(keepout::test::SolverUnderTest{row}),
 //                              keepout::by_name);
 
 #include "keepout/testing/solver_infeasibility.h"

@@ -9,9 +9,9 @@
 #include <ostream>
 #include <span>
 
+#include "keepout/fixtures/random_problems.h"
 #include "keepout/solvers/kkt.h"
 #include "keepout/solvers/registry.h"
-#include "keepout/fixtures/random_problems.h"
 #include "keepout/testing/trials.h"
 
 namespace keepout::test {
