@@ -276,7 +276,7 @@ class Grid final : public keepout::SpatialIndex {
     keepout::Ball ball_{keepout::Vec3::Zero(), -1.0};  // that near_ covers
     std::vector<Near> near_;
 
-    // Of the present cycle.
+    // The state of the present cycle.
     keepout::Vec3 tip_ = keepout::Vec3::Zero();
     double level_ = 0.0, longest_ = 0.0, rounding_ = 0.0;  // [length]
     std::vector<Triangle> in_reach_;

@@ -190,7 +190,7 @@ TEST_P(IndexContract, FindsAllThatIsNearACapsuleOnceEach) {
   }
 }
 
-// What is left out without a word would be moved into.
+// A motion could hit triangles that are left out without a report.
 TEST_P(IndexContract, SaysThatThereIsMoreNearACapsuleThanThereIsRoomFor) {
   const auto mesh = mesh_of(make_cube(25.0));
   const auto index = GetParam().make(mesh);
