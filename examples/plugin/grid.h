@@ -30,8 +30,9 @@ class Grid final : public keepout::SpatialIndex {
       double radius = 0.0;
       for (const keepout::Vec3& corner : c) radius = std::max(radius, (corner - middle).norm());
       spheres_[t] = {middle, radius};
-      const double halvings = radius > 0.0 ? std::log2(largest / radius) : most_levels;
-      of_level[static_cast<std::size_t>(std::clamp(halvings, 0.0, most_levels - 1.0))].push_back(t);
+      constexpr double finest = most_levels - 1;
+      const double halvings = radius > 0.0 ? std::log2(largest / radius) : finest;
+      of_level[static_cast<std::size_t>(std::clamp(halvings, 0.0, finest))].push_back(t);
     }
     for (const auto& triangles : of_level) {
       if (!triangles.empty()) levels_.emplace_back(spheres_, triangles);
@@ -57,7 +58,7 @@ class Grid final : public keepout::SpatialIndex {
   }
 
  private:
-  static constexpr double most_levels = 16;
+  static constexpr std::size_t most_levels = 16;
 
   /// One grid.
   class Level {

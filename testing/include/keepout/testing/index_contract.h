@@ -275,16 +275,17 @@ TEST_P(IndexContract, ATraversalShowsEveryTriangleThatAMotionComesNear) {
     Random random(12);
     for (const double offset : {0.0, 0.5, 1.01, 2.0}) {
       const double level = size * std::pow(10.0, random.uniform(-4.0, -2.0));
-      // Close to each other, so that what the traversal remembers of a cycle matters.
+      // Straight on in small steps, so that it matters what the traversal remembers of a cycle.
+      const double longest = level * std::pow(10.0, random.uniform(-1.0, 0.5));
+      const Vec3 ahead = random.direction();
       Vec3 tip = surface_points(*mesh, 1, offset * level, random)[0];
       for (int cycle = 0; cycle < 12; ++cycle) {
-        const double longest = level * std::pow(10.0, random.uniform(-1.0, 0.5));
-        tip += 0.3 * longest * random.direction();
+        tip += 0.2 * longest * ahead;
         ASSERT_TRUE(traversal->begin({tip, {tip, longest + level}, level, longest}));
         const bool is_empty = traversal->region_is_empty();
         ShownTriangles shown(*mesh, tip);
         for (const double part : {1.0, 0.5, 0.1}) {
-          const Vec3 motion = part * longest * random.direction();
+          const Vec3 motion = part * longest * (part == 1.0 ? ahead : random.direction());
           bool nothing_near = is_empty;
           shown.start(MotionTraversal::never);
           if (!is_empty) nothing_near = traversal->traversal(motion, shown);

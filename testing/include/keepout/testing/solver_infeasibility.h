@@ -54,7 +54,8 @@ TEST_P(SolverContract, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
           << "seed " << i << ": " << name(status);
     }
   }
-  if (allowance_.proves_infeasible) EXPECT_GT(recognised, (is_exact() ? 0.95 : 0.8) * posed);
+  if (!allowance_.proves_infeasible) return;
+  EXPECT_GT(recognised, (is_exact() ? 0.95 : 0.8) * posed);
 }
 
 TEST_P(SolverContract, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding) {
