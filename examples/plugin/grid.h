@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -18,31 +19,30 @@
 /// class before. A triangle is only in the cell that contains the center of its box.
 class Grid final : public keepout::SpatialIndex {
  public:
-  explicit Grid(std::shared_ptr<const keepout::Mesh> on)
-      : SpatialIndex(std::move(on)), spheres_(mesh().triangle_count()) {
+  explicit Grid(std::shared_ptr<const keepout::Mesh> on) : SpatialIndex(std::move(on)) {
+    std::vector<keepout::Ball> spheres(mesh().triangle_count());
     std::array<std::vector<keepout::TriangleId>, most_levels> of_level;
     const double largest = mesh().longest_edge();
-    for (keepout::TriangleId t = 0; t < spheres_.size(); ++t) {
+    for (keepout::TriangleId t = 0; t < spheres.size(); ++t) {
       const keepout::Triangle c = mesh().triangle(t);
       const keepout::Vec3 low = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
       const keepout::Vec3 high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
       const keepout::Vec3 middle = 0.5 * (low + high);
       double radius = 0.0;
       for (const keepout::Vec3& corner : c) radius = std::max(radius, (corner - middle).norm());
-      spheres_[t] = {middle, radius};
+      spheres[t] = {middle, radius};
       constexpr double finest = most_levels - 1;
       const double halvings = radius > 0.0 ? std::log2(largest / radius) : finest;
       of_level[static_cast<std::size_t>(std::clamp(halvings, 0.0, finest))].push_back(t);
     }
     for (const auto& triangles : of_level) {
-      if (!triangles.empty()) levels_.emplace_back(spheres_, triangles);
+      if (!triangles.empty()) levels_.emplace_back(spheres, triangles);
     }
   }
 
   void collect(const keepout::Ball& ball,
                keepout::TriangleBuffer& candidates) const noexcept override {
-    const double radius = ball.radius + rounding_at(ball.center) + 1e-12 * ball.radius;
-    for (const Level& level : levels_) level.collect({ball.center, radius}, spheres_, candidates);
+    for_each_in(ball, [&](keepout::TriangleId t, const keepout::Ball&) { candidates.push(t); });
   }
 
   bool traverses() const noexcept override { return true; }
@@ -52,7 +52,7 @@ class Grid final : public keepout::SpatialIndex {
   }
 
   std::size_t memory() const noexcept override {
-    std::size_t bytes = spheres_.capacity() * sizeof(spheres_[0]);
+    std::size_t bytes = 0;
     for (const Level& level : levels_) bytes += level.memory();
     return bytes;
   }
@@ -65,7 +65,7 @@ class Grid final : public keepout::SpatialIndex {
    public:
     Level(const std::vector<keepout::Ball>& spheres,
           const std::vector<keepout::TriangleId>& triangles)
-        : low_(spheres[triangles[0]].center), triangles_(triangles.size()) {
+        : low_(spheres[triangles[0]].center), items_(triangles.size()) {
       keepout::Vec3 high = low_;
       for (const keepout::TriangleId t : triangles) {
         low_ = low_.cwiseMin(spheres[t].center);
@@ -92,11 +92,13 @@ class Grid final : public keepout::SpatialIndex {
       for (const keepout::TriangleId t : triangles) ++first_[cell_of_triangle(t) + 1];
       for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
       std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-      for (const keepout::TriangleId t : triangles) triangles_[next[cell_of_triangle(t)]++] = t;
+      for (const keepout::TriangleId t : triangles) {
+        items_[next[cell_of_triangle(t)]++] = {spheres[t], t};
+      }
     }
 
-    void collect(const keepout::Ball& ball, const std::vector<keepout::Ball>& spheres,
-                 keepout::TriangleBuffer& candidates) const noexcept {
+    template <class Call>
+    void for_each_in(const keepout::Ball& ball, const Call& call) const noexcept {
       const double reach = ball.radius + largest_ * (1.0 + 1e-12);
       const keepout::Vec3 low = ball.center.array() - reach;
       const keepout::Vec3 high = ball.center.array() + reach;
@@ -105,20 +107,25 @@ class Grid final : public keepout::SpatialIndex {
         for (int y = place(low, 1); y <= place(high, 1); ++y) {
           const std::uint32_t end = first_[cell_of(x, y, last_z) + 1];
           for (std::uint32_t i = first_[cell_of(x, y, first_z)]; i < end; ++i) {
-            const keepout::Ball& sphere = spheres[triangles_[i]];
+            const keepout::Ball& sphere = items_[i].sphere;
             const double touching = ball.radius + sphere.radius * (1.0 + 1e-12);
             if ((sphere.center - ball.center).squaredNorm() > touching * touching) continue;
-            candidates.push(triangles_[i]);
+            call(items_[i].triangle, sphere);
           }
         }
       }
     }
 
     std::size_t memory() const noexcept {
-      return first_.capacity() * sizeof(first_[0]) + triangles_.capacity() * sizeof(triangles_[0]);
+      return first_.capacity() * sizeof(first_[0]) + items_.capacity() * sizeof(items_[0]);
     }
 
    private:
+    struct Item {
+      keepout::Ball sphere;
+      keepout::TriangleId triangle;
+    };
+
     /// Returns the cell of a point along an axis. It grows with the coordinate in spite of
     /// rounding.
     int place(const keepout::Vec3& point, int axis) const noexcept {
@@ -137,7 +144,7 @@ class Grid final : public keepout::SpatialIndex {
     double per_length_ = 0.0;
     std::array<int, 3> side_{};         // cells along each axis
     std::vector<std::uint32_t> first_;  // of each cell, and the end
-    std::vector<keepout::TriangleId> triangles_;
+    std::vector<Item> items_;           // cell by cell
   };
 
   /// The traversal. It collects the triangles around the tip from the grid only when the tip leaves
@@ -145,8 +152,7 @@ class Grid final : public keepout::SpatialIndex {
   /// plane through the point that is nearest to the tip.
   class Traversal final : public keepout::MotionTraversal {
    public:
-    Traversal(const Grid& grid, keepout::Budget& budget)
-        : grid_(grid), budget_(budget), collected_(most_triangles) {
+    Traversal(const Grid& grid, keepout::Budget& budget) : grid_(grid), budget_(budget) {
       near_.reserve(most_triangles);
       in_reach_.reserve(most_triangles);
       order_.reserve(most_triangles);
@@ -171,7 +177,7 @@ class Grid final : public keepout::SpatialIndex {
       rounding_ = grid_.rounding_at(tip_) + 1e-9 * (level + longest_);
       in_reach_.clear();
       budget_.spend(1 + near_.size() / 16);
-      for (const Near& near : near_) {
+      for (Near& near : near_) {
         const keepout::Vec3 away = tip_ - near.sphere.center;
         const double reach = level_ + longest_ + near.sphere.radius + rounding_;
         if (away.squaredNorm() <= reach * reach) in_reach_.push_back({.near = &near, .away = away});
@@ -195,7 +201,9 @@ class Grid final : public keepout::SpatialIndex {
         // Is the plane clear?
         if (triangle.distance < 0.0) measure(triangle);
         const double above = triangle.distance - level_ - slack;
-        double time = 0.0;  // before which it is clear, as a fraction of the motion
+        // The fraction of the motion until which it is clear. Triangles near the tip come first,
+        // even if the visitor returns a negative fraction.
+        double time = -std::numeric_limits<double>::infinity();
         if (above > 0.0) {
           const double descent = -triangle.towards_tip.dot(motion);
           if (descent < above) continue;
@@ -224,15 +232,16 @@ class Grid final : public keepout::SpatialIndex {
    private:
     static constexpr std::size_t most_triangles = 4096;
 
-    /// A triangle in the ball, with its corners in lexicographic order.
+    /// A triangle in the ball. Its corners are in lexicographic order, once they are needed.
     struct Near {
       keepout::TriangleId triangle;
+      bool has_corners = false;
       keepout::Ball sphere;
       keepout::Triangle corners;
     };
     /// A triangle that a motion of this cycle may reach.
     struct Triangle {
-      const Near* near;
+      Near* near;
       keepout::Vec3 away;      // from the center of the sphere to the tip
       double distance = -1.0;  // from the tip; below 0: not measured yet
       keepout::Vec3 towards_tip = keepout::Vec3::Zero();  // unit, from the nearest point
@@ -241,38 +250,35 @@ class Grid final : public keepout::SpatialIndex {
 
     /// Stores the triangles that may touch the ball. Returns false if they are too many.
     bool fill(const keepout::Ball& ball) noexcept {
-      collected_.clear();
-      grid_.collect(ball, collected_);
-      budget_.spend(8 + collected_.size());
       near_.clear();
-      if (collected_.overflowed()) {
-        padding_ = 0.0;
-        return false;
-      }
-      for (const keepout::TriangleId t : collected_) {
-        near_.push_back(
-            {t, grid_.spheres_[t],
-             keepout::ordered_relative(grid_.mesh().triangle(t), keepout::Vec3::Zero())});
-      }
-      ball_ = ball;
+      bool fits = true;
+      grid_.for_each_in(ball, [&](keepout::TriangleId t, const keepout::Ball& sphere) {
+        fits = near_.size() < most_triangles;
+        if (fits) near_.push_back({.triangle = t, .sphere = sphere, .corners = {}});
+      });
+      budget_.spend(8 + near_.size() / 4);
       // A larger ball lasts longer, and a smaller one has fewer triangles to test in each cycle.
-      padding_ = near_.size() < 64    ? 1.5 * padding_ + 0.1 * longest_
-                 : near_.size() > 256 ? 0.7 * padding_
-                                      : padding_;
-      return true;
+      if (near_.size() < 32) padding_ = 1.5 * padding_ + 0.1 * longest_;
+      if (near_.size() > 128) padding_ *= fits ? 0.7 : 0.0;
+      ball_ = ball;
+      return fits;
     }
 
     void measure(Triangle& triangle) noexcept {
       budget_.spend(1);
-      const keepout::ClosestPoint closest =
-          keepout::closest_point_of_ordered(triangle.near->corners, tip_);
+      Near& near = *triangle.near;
+      if (!near.has_corners) {
+        near.corners =
+            keepout::ordered_relative(grid_.mesh().triangle(near.triangle), keepout::Vec3::Zero());
+        near.has_corners = true;
+      }
+      const keepout::ClosestPoint closest = keepout::closest_point_of_ordered(near.corners, tip_);
       triangle.distance = closest.distance;
       if (closest.distance > 0.0) triangle.towards_tip = -closest.offset / closest.distance;
     }
 
     const Grid& grid_;
     keepout::Budget& budget_;
-    keepout::TriangleBuffer collected_;
     double padding_ = 0.0;                             // of the next ball [length]
     keepout::Ball ball_{keepout::Vec3::Zero(), -1.0};  // that near_ covers
     std::vector<Near> near_;
@@ -284,12 +290,18 @@ class Grid final : public keepout::SpatialIndex {
     std::vector<std::pair<double, Triangle*>> order_;  // the earliest first
   };
 
+  /// Calls a function with each triangle whose sphere touches the ball, and with the sphere.
+  template <class Call>
+  void for_each_in(const keepout::Ball& ball, const Call& call) const noexcept {
+    const double radius = ball.radius * (1.0 + 1e-12) + rounding_at(ball.center);
+    for (const Level& level : levels_) level.for_each_in({ball.center, radius}, call);
+  }
+
   /// Returns a bound of the roundings of coordinates, for a query at a point. [length]
   double rounding_at(const keepout::Vec3& point) const noexcept {
     return 1e-12 *
            (point.lpNorm<1>() + mesh().bounds().low.lpNorm<1>() + mesh().bounds().high.lpNorm<1>());
   }
 
-  std::vector<keepout::Ball> spheres_;  // around each triangle
   std::vector<Level> levels_;
 };

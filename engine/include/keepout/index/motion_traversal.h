@@ -19,8 +19,8 @@ class TriangleVisitor {
   /// is MotionTraversal::no_note for a new triangle, or if the traversal had to forget the note.
   /// `corners`: relative to the tip, in lexicographic order of the mesh's coordinates; null if
   /// there is a note, as the visitor then knows them. [length]
-  ///
-  /// Returns the fraction of the motion after which triangles no longer matter; it never grows.
+  /// Returns the fraction of the motion after which triangles no longer matter; it never grows. It
+  /// is negative once a triangle within the level was shown.
   virtual double visit(TriangleId triangle, std::uint32_t& note,
                        const Triangle* corners) noexcept = 0;
 
@@ -63,8 +63,8 @@ class MotionTraversal {
   virtual bool region_is_empty() const noexcept = 0;
 
   /// Shows the visitor each triangle that the motion may come within the level of, and perhaps
-  /// others. It shows all that may be within the level at the start of the motion. It may skip
-  /// triangles whose contact is surely later than the fraction that the visitor returned last. It
+  /// others. It always shows all that may be within the level at the start of the motion. It may
+  /// skip others whose contact is surely later than the fraction that the visitor returned last. It
   /// stops once the budget is spent; triangles may then be missing.
   ///
   /// Returns true if neither this motion, nor any other that ends within `alike` times the motion's

@@ -290,7 +290,7 @@ TEST_P(IndexContract, ATraversalShowsEveryTriangleThatAMotionComesNear) {
           shown.start(MotionTraversal::never);
           if (!is_empty) nothing_near = traversal->traversal(motion, shown);
           const std::set<TriangleId> along = shown.triangles();
-          shown.start(0.0);  // from now on only triangles near the start matter
+          shown.start(-1.0);  // from now on, only triangles near the start matter
           if (!is_empty) traversal->traversal(motion, shown);
           ASSERT_FALSE(shown.contradicts());
           const ConvexTool segment = ConvexTool::hull(std::vector<Vec3>{Vec3::Zero(), motion});
