@@ -44,5 +44,5 @@ rejected "invalid ELF header" --plugin bench.txt
 rejected "no version of keepout" --plugin plain.so
 rejected "keepout 0.0.1" --plugin other.so
 rejected "exports no parts" --plugin empty.so
-rejected "has the index 'my_grid', and keepout has one of that name" --plugin $plugin,$plugin
+rejected "has the index 'my_grid', and another part has that name" --plugin $plugin,$plugin
 rejected "did you mean 'my_grid'" --plugin $plugin --index my_gird

@@ -67,7 +67,7 @@ class PartTable {
       const bool is_peer = std::ranges::find(peers_, part.name, &PeerPart::name) != peers_.end();
       if (is_peer || with_name(own_, part.name) || with_name(plugged_, part.name)) {
         throw Error("the plugin " + file + " has the " + std::string(kind_) + " '" +
-                    std::string(part.name) + "', and keepout has one of that name; rename it");
+                    std::string(part.name) + "', and another part has that name: rename it");
       }
       plugged_.push_back(part);
     }
