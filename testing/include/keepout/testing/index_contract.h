@@ -274,11 +274,11 @@ TEST_P(IndexContract, ATraversalShowsEveryTriangleThatAMotionComesNear) {
     const double size = mesh->bounds().size().norm();
     Random random(12);
     for (const double offset : {0.0, 0.5, 1.01, 2.0}) {
-      const double level = size * std::pow(10.0, random.uniform(-4.0, -2.0));
-      // Straight on in small steps, so that it matters what the traversal remembers of a cycle.
+      const double level = size * std::pow(10.0, random.uniform(-4.0, -1.4));
+      // Towards the surface in small steps, so that it matters what the traversal remembers.
       const double longest = level * std::pow(10.0, random.uniform(-1.0, 0.5));
       const Vec3 ahead = random.direction();
-      Vec3 tip = surface_points(*mesh, 1, offset * level, random)[0];
+      Vec3 tip = surface_points(*mesh, 1, offset * level, random)[0] - 2.0 * longest * ahead;
       for (int cycle = 0; cycle < 12; ++cycle) {
         tip += 0.2 * longest * ahead;
         ASSERT_TRUE(traversal->begin({tip, {tip, longest + level}, level, longest}));
