@@ -19,6 +19,7 @@ class TriangleVisitor {
   /// is MotionTraversal::no_note for a new triangle, or if the traversal had to forget the note.
   /// `corners`: relative to the tip, in lexicographic order of the mesh's coordinates; null if
   /// there is a note, as the visitor then knows them. [length]
+  ///
   /// Returns the fraction of the motion after which triangles no longer matter; it never grows. It
   /// is negative once a triangle within the level was shown.
   virtual double visit(TriangleId triangle, std::uint32_t& note,
