@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A solver of your own: Hildreth's method in a motion constraint, checked against the conditions of
-// Karush, Kuhn and Tucker and against active_set.
+// A solver of your own: Hildreth's method (plugin/hildreth.h) in a motion constraint, checked
+// against the conditions of Karush, Kuhn and Tucker and against active_set.
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <utility>
@@ -16,62 +15,7 @@
 #include "keepout/solvers/recording_solver.h"
 #include "keepout/solvers/registry.h"
 #include "keepout/step/motion_constraint.h"
-
-/// Finds the point nearest to d that satisfies all rows, by coordinate ascent on the dual: each
-/// sweep corrects one multiplier after another. The code is short, but slow if planes are nearly
-/// parallel. For the motion of the tip only, without joints. Source: Hildreth, "A quadratic
-/// programming procedure", Naval Research Logistics Quarterly 4, 1957.
-class Hildreth final : public keepout::Solver {
- public:
-  void reserve(int /*variables*/, int rows) override {
-    forces_.resize(static_cast<std::size_t>(rows));
-    multipliers_.reserve(forces_.size());
-    active_.reserve(forces_.size());
-  }
-
-  keepout::SolveStatus solve(const keepout::StepProblem& problem,
-                             keepout::Solution& solution) noexcept override {
-    const Eigen::Index rows = problem.rows.rows();
-    if (!keepout::moves_a_point(problem)) return keepout::SolveStatus::invalid_input;
-    if (rows > static_cast<Eigen::Index>(forces_.size()))
-      return keepout::SolveStatus::over_capacity;
-    u_ = problem.desired;
-    std::fill_n(forces_.begin(), rows, 0.0);
-    const double enough = 1e-14 * u_.norm();
-    double largest = 1.0;
-    int sweeps = 0;
-    for (; largest > enough && sweeps < most_sweeps; ++sweeps) {
-      largest = 0.0;
-      for (Eigen::Index i = 0; i < rows; ++i) {
-        const keepout::Vec3 row = problem.rows.row(i);
-        double& force = forces_[static_cast<std::size_t>(i)];
-        const double change =
-            std::max(-force, (problem.bounds[i] - row.dot(u_)) / row.squaredNorm());
-        force += change;
-        u_ += change * row;
-        largest = std::max(largest, std::abs(change) * row.norm());
-      }
-    }
-    if (!(largest <= enough)) return keepout::SolveStatus::iteration_limit;  // or infeasible
-    active_.clear();
-    multipliers_.clear();
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(rows); ++i) {
-      if (forces_[i] == 0.0) continue;
-      active_.push_back(i);
-      multipliers_.push_back(2.0 * forces_[i]);  // for |u - d|^2, not for half of it
-    }
-    solution = {{u_.data(), 3}, multipliers_, active_, sweeps};
-    return keepout::SolveStatus::optimal;
-  }
-
- private:
-  static constexpr int most_sweeps = 100000;
-
-  keepout::Vec3 u_ = keepout::Vec3::Zero();
-  std::vector<double> forces_;  // (rows), >= 0: u = d + sum of forces_i row_i
-  std::vector<double> multipliers_;
-  std::vector<std::uint32_t> active_;
-};
+#include "plugin/hildreth.h"
 
 keepout::MotionConstraint guard_with(std::unique_ptr<keepout::Solver> solver,
                                      const std::shared_ptr<const keepout::Mesh>& mesh) {

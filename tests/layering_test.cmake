@@ -28,6 +28,7 @@ foreach(part bullet ccd cgal embree fcl include src)
 endforeach()
 forbid(solvers "${include}keepout/(adapters|factory|fixtures|control|robot)/" "solvers know only the engine")
 forbid(fixtures "${include}keepout/(adapters|solvers|factory|control|urdf)/" "fixtures know only the engine and robots")
+forbid(testing "${include}keepout/(factory|control|robot)/" "contracts know indices, solvers and generated input")
 forbid(control "${include}keepout/(adapters|solvers|factory|fixtures|robot)/" "control knows only the engine")
 forbid(robot "${include}keepout/(adapters|solvers|factory|fixtures|control)/" "robot knows only the engine")
 
@@ -75,7 +76,7 @@ forbid(python "${include}keepout/(fixtures|judges|oracle)/" "the module is the l
 foreach(part engine adapters solvers control robot factory fixtures)
   forbid(${part} "${include}(pybind11/|Python.h)" "the library knows no Python")
 endforeach()
-foreach(part engine adapters solvers control robot factory fixtures)
+foreach(part engine adapters solvers control robot factory fixtures testing)
   forbid(${part} "${include}keepout/(judges|oracle)/" "the oracle is for tests and the command")
 endforeach()
 

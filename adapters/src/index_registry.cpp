@@ -42,14 +42,16 @@ constexpr PeerPart peers[] = {
      "cgal"},
 };
 
-const PartTable<IndexBackend>& table() {
-  static const PartTable<IndexBackend> table("index", ours, peers, "keepout_indices");
+PartTable<IndexBackend>& table() {
+  static PartTable<IndexBackend> table("index", ours, peers, "keepout_indices");
   return table;
 }
 
 }  // namespace
 
 Registry<IndexBackend> index_backends() { return table().all(); }
+
+std::size_t add_index_backends(const std::string& plugin) { return table().add(plugin); }
 
 std::vector<std::string> index_names() { return table().names(); }
 

@@ -134,8 +134,9 @@ void add_speed_options(CLI::App& command, BenchOptions& options) {
       "--speed", options.is_speed,
       "Measure the table of required ratios, in one process on one core; takes some "
       "minutes. With --triangles: one size, for meshes of about a million");
-  for (const char* name : {"--list", "--sweep", "--index", "--activation", "--solver", "--mesh",
-                           "--radius", "--full", "--queries", "--seconds", "--poses", "--csv"}) {
+  for (const char* name :
+       {"--list", "--sweep", "--plugin", "--index", "--activation", "--solver", "--mesh",
+        "--radius", "--full", "--queries", "--seconds", "--poses", "--csv"}) {
     speed->excludes(name);
   }
   command
@@ -170,6 +171,7 @@ void add_bench(CLI::App& app, BenchOptions& options) {
                             const CLI::Validator& known, const char* text) {
     command.add_option(name, list, text)->delimiter(',')->type_name("NAMES")->check(known);
   };
+  add_plugins(command);
   add_list("--index", options.selection.indices, one_of_parts(index_names(), index_backends),
            "Indices to measure");
   add_list("--activation", options.selection.activations, one_of(names(activation_rules())),

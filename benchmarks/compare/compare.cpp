@@ -199,6 +199,7 @@ void add_compare(CLI::App& app, CompareOptions& options) {
                                           "input: indices, solvers, narrow phases");
   command.add_option("MESH", options.mesh, std::string(mesh_help))->capture_default_str();
   add_load_options(command, options.load);
+  add_plugins(command);
   add_number(command, "--poses", options.extent.poses, 6, 1'000'000,
              "Poses for the indices, under each rule");
   add_number(command, "--problems", options.extent.problems, 10, 1'000'000,

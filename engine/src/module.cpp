@@ -40,8 +40,11 @@ std::vector<fs::path> own_folders() {
 
 /// Returns the file of a module; empty if it is absent.
 fs::path file_of(const char* module) {
-  const std::string name = std::string(module) + ".so";
   std::error_code error;
+  if (std::string_view(module).find('/') != std::string_view::npos) {  // a plugin
+    return fs::is_regular_file(module, error) ? fs::path(module) : fs::path();
+  }
+  const std::string name = std::string(module) + ".so";
   if (const char* const named = std::getenv("KEEPOUT_MODULES");
       named != nullptr && *named != '\0') {
     const fs::path file = fs::path(named) / name;
@@ -70,7 +73,8 @@ void* load(const char* module) {
   const auto* const version = static_cast<const char*>(dlsym(handle, "keepout_module_version"));
   if (version == nullptr || std::string_view(version) != KEEPOUT_VERSION) {
     throw Error("the module " + file.string() + " belongs to " +
-                (version == nullptr ? "no version of keepout" : "keepout " + std::string(version)) +
+                (version == nullptr ? "no version of keepout (has it KEEPOUT_MODULE()?)"
+                                    : "keepout " + std::string(version)) +
                 ", and this is keepout " + KEEPOUT_VERSION + "; install the same version of both");
   }
   return handle;

@@ -19,14 +19,16 @@ constexpr PeerPart peers[] = {{"nlopt_slsqp", needs_nlopt, "nlopt"},
                               {"nlopt_cobyla", needs_nlopt, "nlopt"},
                               {"nlopt_mma", needs_nlopt, "nlopt"}};
 
-const PartTable<SolverBackend>& table() {
-  static const PartTable<SolverBackend> table("solver", ours, peers, "keepout_solvers");
+PartTable<SolverBackend>& table() {
+  static PartTable<SolverBackend> table("solver", ours, peers, "keepout_solvers");
   return table;
 }
 
 }  // namespace
 
 Registry<SolverBackend> solver_backends() { return table().all(); }
+
+std::size_t add_solver_backends(const std::string& plugin) { return table().add(plugin); }
 
 std::vector<std::string> solver_names() { return table().names(); }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // More triangles than 21 bits can number. Bullet alone would confuse some of them without an error.
 
-#include "adapters/index_contract.h"
 #include "keepout/adapters/index_registry.h"
+#include "keepout/testing/index_probes.h"
 
 namespace keepout {
 namespace {

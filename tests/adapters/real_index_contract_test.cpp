@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the contract of every index on real anatomy, scans and parts.
 
-#include "adapters/index_contract.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/mesh/load_mesh.h"
+#include "keepout/testing/index_probes.h"
 
 namespace keepout {
 namespace {

@@ -5,7 +5,7 @@
 . "$(dirname "$0")/common.sh"
 prefix=$1 source=$2
 
-for forbidden in cgal gpl fixtures oracle; do
+for forbidden in cgal gpl real_mesh oracle; do
   found=$(find "$prefix" -iname "*$forbidden*")
   [ -z "$found" ] || fail "not to be installed: $found"
 done

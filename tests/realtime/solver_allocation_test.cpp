@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "keepout/fixtures/random_problems.h"
 #include "keepout/solvers/registry.h"
 #include "realtime/counted_allocations.h"
-#include "solvers/random_problems.h"
 
 namespace keepout::test {
 namespace {

@@ -3,7 +3,7 @@
 // rows, on every SIMD target.
 
 #include "keepout/solvers/active_set.h"
-#include "solvers/solver_contract.h"
+#include "keepout/testing/solver_trials.h"
 #include "unit_planes.h"
 
 namespace keepout::test {

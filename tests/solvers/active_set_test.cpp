@@ -8,8 +8,8 @@
 
 #include <numbers>
 
+#include "keepout/fixtures/random_problems.h"
 #include "keepout/solvers/kkt.h"
-#include "solvers/random_problems.h"
 
 namespace keepout::test {
 namespace {

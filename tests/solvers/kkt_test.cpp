@@ -4,7 +4,7 @@
 // spoiling it.
 #include "keepout/solvers/kkt.h"
 
-#include "solvers/random_problems.h"
+#include "keepout/fixtures/random_problems.h"
 #include "trials.h"
 
 namespace keepout::test {

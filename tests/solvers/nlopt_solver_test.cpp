@@ -5,7 +5,7 @@
 
 #include "answer_check.h"
 #include "keepout/solvers/active_set.h"
-#include "solvers/solver_contract.h"
+#include "keepout/testing/solver_trials.h"
 
 namespace keepout::test {
 namespace {

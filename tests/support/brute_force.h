@@ -2,23 +2,14 @@
 #pragma once
 
 #include "chains.h"
-#include "keepout/geometry/closest_point.h"
 #include "keepout/geometry/separation.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/robot/instrument.h"
+#include "keepout/testing/index_probes.h"
 
 namespace keepout {
 
-// Distances found triangle by triangle, without an index.
-
-/// Returns the distances from a point to all triangles.
-inline std::vector<double> distances(const Mesh& mesh, const Vec3& point) {
-  std::vector<double> all(mesh.triangle_count());
-  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
-    all[t] = closest_point(mesh.triangle(t), point).distance;
-  }
-  return all;
-}
+// Distances found triangle by triangle, without an index: see also keepout/testing/index_probes.h.
 
 /// Returns the distance from a point to the mesh.
 inline double distance_to(const Mesh& mesh, const Vec3& point) {

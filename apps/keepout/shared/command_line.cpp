@@ -233,7 +233,27 @@ void add_load_options(CLI::App& command, LoadOptions& load) {
                    "Reverse the winding of each triangle, if the normals point into the solid");
 }
 
+CLI::Option* add_plugins(CLI::App& command) {
+  const auto load = [](const std::vector<std::string>& files) {
+    for (const std::string& file : files) {
+      if (!std::filesystem::is_regular_file(file))
+        throw Error("--plugin: there is no file " + file);
+      const std::string path = std::filesystem::absolute(file);
+      if (add_index_backends(path) + add_solver_backends(path) > 0) continue;
+      throw Error("the plugin " + path +
+                  " exports no parts: it needs a table keepout_indices or keepout_solvers");
+    }
+  };
+  return command
+      .add_option_function<std::vector<std::string>>(
+          "--plugin", load,
+          "Shared objects with indices or solvers of your own: docs/adding_a_backend.md")
+      ->delimiter(',')
+      ->type_name("FILES");
+}
+
 void add_constraint_options(CLI::App& command, MotionConstraintSettings& settings) {
+  add_plugins(command);
   add_part(command, "--index", settings.index, index_names(), index_backends,
            "Spatial index that finds triangles");
   command

@@ -16,6 +16,7 @@
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/registry.h"
 #include "keepout/step/guide.h"
+#include "shared/names.h"
 
 namespace keepout::app {
 
@@ -56,15 +57,16 @@ CLI::Validator one_of(std::span<const std::string_view> names) {
 /// Accepts the names of the available parts. For a part whose module is absent, the message says
 /// what it needs. `backends` returns the registry of these parts.
 template <class Backends>
-CLI::Validator one_of_parts(std::vector<std::string> names, Backends backends) {
-  const CLI::Validator known = one_of(std::move(names));
+CLI::Validator one_of_parts(std::vector<std::string> at_start, Backends backends) {
+  const CLI::Validator known = one_of(std::move(at_start));
   const auto check = [known, backends](std::string& text) {
     const std::string problem = known(text);
     if (problem.empty()) return problem;
-    for (const PeerPart& part : backends().absent()) {
+    const auto all = backends();  // with the parts of plugins
+    for (const PeerPart& part : all.absent()) {
       if (part.name == text) return "'" + text + "' needs " + std::string(part.needs);
     }
-    return problem;
+    return one_of(names(all))(text);
   };
   return {check, known.get_description()};
 }
@@ -139,6 +141,10 @@ CLI::Option* add_name(CLI::App& command, const std::string& name, std::string& v
                       std::vector<std::string> names, const std::string& description);
 
 // Options that several commands have.
+
+/// Adds the option --plugin, which loads shared objects with indices and solvers of the user. Add
+/// it before the options that choose parts by name, so that they know the names in the plugins.
+CLI::Option* add_plugins(CLI::App& command);
 
 /// Adds an option that chooses an index, a solver or a narrow phase by name: see one_of_parts.
 template <class Backends>

@@ -143,6 +143,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
       ->default_str("1/1")
       ->excludes(named)
       ->excludes(chosen);
+  add_plugins(command);
   add_part(command, "--index", campaign.index, index_names(), index_backends,
            "Index that finds triangles");
   const std::vector<CLI::Option*> of_a_run = command.get_options([&](const CLI::Option* option) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "adapters/index_contract.h"
 #include "index/wide_bvh/tree.h"
+#include "keepout/testing/index_probes.h"
 
 namespace keepout {
 

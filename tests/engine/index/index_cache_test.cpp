@@ -3,8 +3,8 @@
 
 #include <thread>
 
-#include "adapters/index_contract.h"
 #include "index/wide_bvh/tree.h"
+#include "keepout/testing/index_probes.h"
 #include "temporary_folder.h"
 
 namespace keepout {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <numeric>
 
-#include "adapters/index_contract.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree.h"
 #include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
+#include "keepout/testing/index_probes.h"
 
 namespace keepout {
 namespace {

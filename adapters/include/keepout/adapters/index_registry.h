@@ -34,6 +34,12 @@ struct IndexBackend {
 /// Returns all indices, brute force first. Loads all modules with indices (see keepout/module.h).
 Registry<IndexBackend> index_backends();
 
+/// Adds the indices of a plugin: a shared object that exports the table `keepout_indices` (see
+/// docs/adding_a_backend.md). Returns their number, 0 without such a table. For the arguments,
+/// errors and the precondition see PartTable::add in keepout/module.h. All other functions then
+/// know them.
+std::size_t add_index_backends(const std::string& plugin);
+
 /// Returns the names of the available indices. Loads no module.
 std::vector<std::string> index_names();
 

@@ -21,7 +21,7 @@ class TriangleVisitor {
   /// coordinates; null if there is a note, as the visitor then knows them. [length]
   ///
   /// Returns the fraction of the motion after which triangles no longer matter. It never grows from
-  /// call to call.
+  /// call to call. It is negative after a triangle that is within the level at the start.
   virtual double visit(TriangleId triangle, std::uint32_t& note,
                        const Triangle* corners) noexcept = 0;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <string>
@@ -28,6 +29,12 @@ struct SolverBackend {
 /// Returns all solvers, keepout's own first. Loads the module of the NLopt solvers (see
 /// keepout/module.h).
 Registry<SolverBackend> solver_backends();
+
+/// Adds the solvers of a plugin: a shared object that exports the table `keepout_solvers` (see
+/// docs/adding_a_backend.md). Returns their number, 0 without such a table. For the arguments,
+/// errors and the precondition see PartTable::add in keepout/module.h. All other functions then
+/// know them.
+std::size_t add_solver_backends(const std::string& plugin);
 
 /// Returns the names of the available solvers. Loads no module.
 std::vector<std::string> solver_names();

@@ -1,15 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "brute_force.h"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <ostream>
+#include <utility>
+#include <vector>
+
 #include "keepout/adapters/index_registry.h"
 #include "keepout/fixtures/poses.h"
+#include "keepout/geometry/closest_point.h"
 #include "keepout/index/spatial_index.h"
-#include "meshes.h"
+#include "keepout/testing/places.h"
+#include "keepout/testing/trials.h"
 
 namespace keepout {
 
-/// Returns points of every kind that may reveal an error of an index; fewer under sanitizers.
+/// Returns the distances from a point to all triangles.
+inline std::vector<double> distances(const Mesh& mesh, const Vec3& point) {
+  std::vector<double> all(mesh.triangle_count());
+  for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+    all[t] = closest_point(mesh.triangle(t), point).distance;
+  }
+  return all;
+}
+
+/// Returns places of every kind that an index might get wrong; fewer in short tests.
 inline std::vector<Vec3> probing_points(const Mesh& mesh, std::size_t of_each_kind) {
   of_each_kind = test::trials(of_each_kind);
   Random random(1);
@@ -25,7 +42,7 @@ inline std::vector<Vec3> probing_points(const Mesh& mesh, std::size_t of_each_ki
   return points;
 }
 
-/// Returns radii from zero to the whole mesh. Some are exactly the distance of a triangle.
+/// Returns radii from zero to the whole mesh, and some that a triangle touches exactly.
 inline std::vector<double> probing_radii(const Mesh& mesh, const std::vector<double>& distances,
                                          Random& random) {
   const double size = mesh.bounds().size().norm();
@@ -41,14 +58,14 @@ inline std::vector<double> probing_radii(const Mesh& mesh, const std::vector<dou
           farthest};
 }
 
-/// A query point, the distances that brute force computes there, and the query radii.
+/// A place of queries, the distances by brute force, and the radii of the queries.
 struct Probe {
   Vec3 point;
   std::vector<double> distances;  // of every triangle
   std::vector<double> radii;
 };
 
-/// Returns the probes of a mesh, computed once for all indices.
+/// Returns the probes of a mesh, which serve all indices.
 inline std::vector<Probe> probes(const Mesh& mesh, std::size_t of_each_kind) {
   Random random(2);
   std::vector<Probe> all;
@@ -60,13 +77,13 @@ inline std::vector<Probe> probes(const Mesh& mesh, std::size_t of_each_kind) {
   return all;
 }
 
-/// Fails unless the index returns, for each point and radius, all triangles of brute force, and no
-/// triangle twice. If the index has its own nearest search, it must find the nearest triangle.
+/// Fails unless the index finds, at every place and radius, each triangle that brute force finds,
+/// and no triangle twice. An index with its own search for the nearest triangle must find that one.
 inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
                                     const std::vector<Probe>& probes) {
   TriangleBuffer candidates(mesh.triangle_count());
-  std::vector<std::size_t> found(mesh.triangle_count(), 0);  // number of the last query
-  std::size_t question = 0;
+  std::vector<std::size_t> found(mesh.triangle_count(), 0);  // the last query with the triangle
+  std::size_t query = 0;
   Budget unlimited;
   for (const Probe& probe : probes) {
     if (const TriangleId nearest = index.nearest(probe.point, unlimited); nearest != no_triangle) {
@@ -77,15 +94,15 @@ inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
     for (const double radius : probe.radii) {
       candidates.clear();
       index.collect({probe.point, radius}, candidates);
-      ASSERT_FALSE(candidates.overflowed()) << "a triangle is returned twice";
-      ++question;
+      ASSERT_FALSE(candidates.overflowed()) << "a triangle was given twice";
+      ++query;
       for (const TriangleId t : candidates) {
         ASSERT_LT(t, found.size());
-        ASSERT_NE(found[t], question) << "returns triangle " << t << " twice";
-        found[t] = question;
+        ASSERT_NE(found[t], query) << "gives triangle " << t << " twice";
+        found[t] = query;
       }
       for (TriangleId t = 0; t < found.size(); ++t) {
-        if (probe.distances[t] > radius || found[t] == question) continue;
+        if (probe.distances[t] > radius || found[t] == query) continue;
         FAIL() << "misses triangle " << t << " at " << probe.point.transpose() << " radius "
                << radius << ", " << radius - probe.distances[t] << " within it";
       }
@@ -93,7 +110,7 @@ inline void expect_brute_force_sets(const Mesh& mesh, const SpatialIndex& index,
   }
 }
 
-/// Prints the name of a backend in test output.
+/// Prints an index in the messages of a test.
 inline void PrintTo(const IndexBackend& backend, std::ostream* out) { *out << backend.name; }
 
 }  // namespace keepout

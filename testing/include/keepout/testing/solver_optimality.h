@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
 // Problems solved by hand, and many that are checked by the conditions of optimality.
+
 #include <Eigen/LU>
 #include <optional>
 
-#include "solvers/solver_contract.h"
+#include "keepout/testing/solver_trials.h"
 
 namespace keepout::test {
-namespace {
 
 using Real = long double;
 using RealVector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using RealMatrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Feasibility of a vertex that is computed with a 64-bit mantissa from numbers of size 1.
-constexpr Real tolerance = 1e-13L;
+inline constexpr Real tolerance = 1e-13L;
 
 /// Returns the minimizer by trying every set of active rows in extended precision: exponential in
 /// m, and too simple to be wrong. Empty if no set of rows yields a feasible point.
-std::optional<Eigen::VectorXd> enumerate_minimum(const StepProblem& problem) {
+inline std::optional<Eigen::VectorXd> enumerate_minimum(const StepProblem& problem) {
   const Eigen::Index n = problem.jacobian.cols();
   const Eigen::Index m = problem.rows.rows();
   const RealMatrix jacobian = problem.jacobian.cast<Real>();
@@ -56,11 +58,7 @@ std::optional<Eigen::VectorXd> enumerate_minimum(const StepProblem& problem) {
   return best;
 }
 
-using SolverOptimality = SolverContract;
-
-INSTANTIATE_TEST_SUITE_P(Solvers, SolverOptimality, testing::ValuesIn(solver_backends()), by_name);
-
-TEST_P(SolverOptimality, WithoutRowsTheTaskIsMetExactly) {
+TEST_P(SolverContract, WithoutRowsTheTaskIsMetExactly) {
   const Problem problem =
       point_problem(Eigen::Vector3d(1, -2, 3), StepProblem::RowMatrix(0, 3), Eigen::VectorXd(0));
   ASSERT_TRUE(optimal(problem));
@@ -68,7 +66,7 @@ TEST_P(SolverOptimality, WithoutRowsTheTaskIsMetExactly) {
   EXPECT_TRUE(solution_.active.empty());
 }
 
-TEST_P(SolverOptimality, PushIntoTheCornerOfABoxStopsAtTheCorner) {
+TEST_P(SolverContract, PushIntoTheCornerOfABoxStopsAtTheCorner) {
   // The box -1 <= u <= 1 with target (3, 0.5, -2) has its optimum at (1, 0.5, -1). Its gradient
   // (-4, 0, 2) is balanced by row 0 (-x >= -1) with 4 and row 5 (z >= -1) with 2.
   StepProblem::RowMatrix rows(6, 3);
@@ -84,7 +82,7 @@ TEST_P(SolverOptimality, PushIntoTheCornerOfABoxStopsAtTheCorner) {
   EXPECT_NEAR(solution_.multipliers[1], 2, digits(1e-14));
 }
 
-TEST_P(SolverOptimality, PushAcrossAnEdgeSlidesAlongTheEdge) {
+TEST_P(SolverContract, PushAcrossAnEdgeSlidesAlongTheEdge) {
   // A wedge z >= x, z >= -x with its edge along y: only this part of (0, 1, -1) is left.
   StepProblem::RowMatrix rows(2, 3);
   rows << -1, 0, 1, 1, 0, 1;
@@ -96,7 +94,7 @@ TEST_P(SolverOptimality, PushAcrossAnEdgeSlidesAlongTheEdge) {
   EXPECT_NEAR(solution_.multipliers[1], 1, digits(1e-14));
 }
 
-TEST_P(SolverOptimality, DampingShortensTheMotion) {
+TEST_P(SolverContract, DampingShortensTheMotion) {
   // min (u - 1)^2 + 3 u^2 is at 1/4.
   Problem problem =
       point_problem(Eigen::VectorXd::Ones(1), StepProblem::RowMatrix(0, 1), Eigen::VectorXd(0));
@@ -105,7 +103,7 @@ TEST_P(SolverOptimality, DampingShortensTheMotion) {
   EXPECT_NEAR(u()[0], 0.25, digits(1e-16));
 }
 
-TEST_P(SolverOptimality, DampingAlonePicksTheShortestFeasibleMotion) {
+TEST_P(SolverContract, DampingAlonePicksTheShortestFeasibleMotion) {
   // Without task rows, the optimum is the point of x + y >= 2 that is nearest to 0.
   Problem problem;
   problem.jacobian.resize(0, 2);
@@ -117,14 +115,14 @@ TEST_P(SolverOptimality, DampingAlonePicksTheShortestFeasibleMotion) {
   EXPECT_LT((u() - Eigen::Vector2d(1, 1)).norm(), digits(1e-15));
 }
 
-TEST_P(SolverOptimality, AVertexAtRestWithNothingAskedStaysAtRest) {
+TEST_P(SolverContract, AVertexAtRestWithNothingAskedStaysAtRest) {
   const Problem problem = point_problem(
       Eigen::Vector3d::Zero(), StepProblem::RowMatrix::Identity(3, 3), Eigen::VectorXd::Zero(3));
   ASSERT_TRUE(optimal(problem));
   EXPECT_EQ(u(), Eigen::VectorXd(Eigen::Vector3d::Zero()));
 }
 
-TEST_P(SolverOptimality, ThousandsOfProblemsOfEveryClassAreOptimal) {
+TEST_P(SolverContract, ThousandsOfProblemsOfEveryClassAreOptimal) {
   // 7 tasks x 9 kinds of planes x 1600 = 100800 problems. The planes of every kind have a common
   // point up to rounding, so "infeasible" is always wrong. A solver may give up at a vertex, or in
   // a slab that rounding may close. keepout's own solver never does.
@@ -145,7 +143,7 @@ TEST_P(SolverOptimality, ThousandsOfProblemsOfEveryClassAreOptimal) {
   }
 }
 
-TEST_P(SolverOptimality, MixturesOfAllKindsOfPlanesAreOptimal) {
+TEST_P(SolverContract, MixturesOfAllKindsOfPlanesAreOptimal) {
   // Problem 397870 is one of half a million in which rounding activates a row that pulls.
   for (int i = 397870; i > 377870; i -= stride()) {
     Random random(static_cast<std::uint64_t>(i) + 4500000);
@@ -159,7 +157,7 @@ TEST_P(SolverOptimality, MixturesOfAllKindsOfPlanesAreOptimal) {
   }
 }
 
-TEST_P(SolverOptimality, ProblemsOfAsManyRowsAsItCanTakeAreOptimal) {
+TEST_P(SolverContract, ProblemsOfAsManyRowsAsItCanTakeAreOptimal) {
   for (const Task task : tasks) {
     for (const Planes planes : plane_kinds) {
       for (int i = 0; i < 10; i += stride()) {  // 630 problems
@@ -174,7 +172,7 @@ TEST_P(SolverOptimality, ProblemsOfAsManyRowsAsItCanTakeAreOptimal) {
   }
 }
 
-TEST_P(SolverOptimality, TheMinimumIsTheOneFoundByEnumeration) {
+TEST_P(SolverContract, TheMinimumIsTheOneFoundByEnumeration) {
   for (int i = 0; i < 4000; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 5000000);
     const auto task = tasks[static_cast<std::size_t>(random.integer(0, 4))];
@@ -192,11 +190,10 @@ TEST_P(SolverOptimality, TheMinimumIsTheOneFoundByEnumeration) {
     };
     EXPECT_LE(length(off), GetParam().accuracy * std::max(length(u()), problem.desired.norm()))
         << "seed " << i;
-    if (GetParam().library == nullptr) {
+    if (is_exact()) {
       EXPECT_LT(off.norm(), 1e-9 * (1 + expected->norm())) << "seed " << i;
     }
   }
 }
 
-}  // namespace
 }  // namespace keepout::test

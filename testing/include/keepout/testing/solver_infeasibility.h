@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
 // Solvers recognize problems without a solution, and never report a solvable problem as infeasible.
-#include "solvers/solver_contract.h"
+
+#include "keepout/testing/solver_trials.h"
 
 namespace keepout::test {
-namespace {
 
-using SolverInfeasibility = SolverContract;
-
-INSTANTIATE_TEST_SUITE_P(Solvers, SolverInfeasibility, testing::ValuesIn(solver_backends()),
-                         by_name);
-
-TEST_P(SolverInfeasibility, ContradictionsAreRecognised) {
+TEST_P(SolverContract, ContradictionsAreRecognised) {
   // Some of the rows, made unit rows, add up to 0 u >= margin with weights of order 1. Margins go
   // down to 1e-9, far above rounding. For a task of condition 1e6, they go down to 1e-3 only. Its
   // steps are 1e6 times longer than the distances between planes, and round to 1e-10.
@@ -32,7 +29,7 @@ TEST_P(SolverInfeasibility, ContradictionsAreRecognised) {
   }
 }
 
-TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
+TEST_P(SolverContract, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
   // The weights span twelve decades. The planes are parallel up to the last digits, and meet where
   // the margin is below rounding. A solver may give up there, but must not claim an optimum that
   // violates a row.
@@ -57,10 +54,11 @@ TEST_P(SolverInfeasibility, ContradictionsOnlyFarAwayAreNeverSolvedWrongly) {
           << "seed " << i << ": " << name(status);
     }
   }
-  EXPECT_GT(recognised, (GetParam().library == nullptr ? 0.95 : 0.8) * posed);
+  if (!allowance_.proves_infeasible) return;
+  EXPECT_GT(recognised, (is_exact() ? 0.95 : 0.8) * posed);
 }
 
-TEST_P(SolverInfeasibility, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding) {
+TEST_P(SolverContract, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding) {
   // b <= a u <= b + width. Slabs wider than rounding are solvable; widths below minus rounding
   // are infeasible. In between, either answer is right, but "optimal" must satisfy the rows to the
   // bound, which optimal() checks.
@@ -92,7 +90,7 @@ TEST_P(SolverInfeasibility, ASlabIsOpenEmptyOrUndecidedByItsWidthAgainstRounding
   }
 }
 
-TEST_P(SolverInfeasibility, PlanesThatMeetAtATinyAngleStillHaveTheirEdge) {
+TEST_P(SolverContract, PlanesThatMeetAtATinyAngleStillHaveTheirEdge) {
   // y >= 0 and -y + angle x >= h meet in a wedge with its apex at x = h / angle. The target is
   // behind the apex, so the answer is the apex, however slim the wedge.
   for (const double angle : {1e-1, 1e-4, 1e-8, 1e-10}) {
@@ -108,7 +106,7 @@ TEST_P(SolverInfeasibility, PlanesThatMeetAtATinyAngleStillHaveTheirEdge) {
   }
 }
 
-TEST_P(SolverInfeasibility, ARowOfZerosCountsOnlyByItsBound) {
+TEST_P(SolverContract, ARowOfZerosCountsOnlyByItsBound) {
   for (const double bound : {-1.0, 0.0, 1e-300, 1.0}) {
     StepProblem::RowMatrix rows(2, 2);
     rows << 0, 0, 0, 1;
@@ -124,11 +122,7 @@ TEST_P(SolverInfeasibility, ARowOfZerosCountsOnlyByItsBound) {
 
 // The answer must not depend on units, on lengths and order of rows, or on earlier problems.
 
-using SolverSymmetry = SolverContract;
-
-INSTANTIATE_TEST_SUITE_P(Solvers, SolverSymmetry, testing::ValuesIn(solver_backends()), by_name);
-
-TEST_P(SolverSymmetry, AnotherUnitOfLengthGivesTheSameMotionInThatUnit) {
+TEST_P(SolverContract, AnotherUnitOfLengthGivesTheSameMotionInThatUnit) {
   for (int i = 0; i < 500; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 1000000);
     const auto planes = plane_kinds[static_cast<std::size_t>(random.integer(0, 8))];
@@ -150,7 +144,7 @@ TEST_P(SolverSymmetry, AnotherUnitOfLengthGivesTheSameMotionInThatUnit) {
   }
 }
 
-TEST_P(SolverSymmetry, TheLengthOfARowDoesNotMatter) {
+TEST_P(SolverContract, TheLengthOfARowDoesNotMatter) {
   for (int i = 0; i < 500; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 2000000);
     const Problem problem =
@@ -170,7 +164,7 @@ TEST_P(SolverSymmetry, TheLengthOfARowDoesNotMatter) {
   }
 }
 
-TEST_P(SolverSymmetry, TheOrderOfTheRowsDoesNotMatter) {
+TEST_P(SolverContract, TheOrderOfTheRowsDoesNotMatter) {
   for (int i = 0; i < 1000; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 3000000);
     const auto planes = plane_kinds[static_cast<std::size_t>(random.integer(0, 4))];
@@ -190,7 +184,7 @@ TEST_P(SolverSymmetry, TheOrderOfTheRowsDoesNotMatter) {
   }
 }
 
-TEST_P(SolverSymmetry, EarlierSolvesLeaveNoTrace) {
+TEST_P(SolverContract, EarlierSolvesLeaveNoTrace) {
   Random random(4000000);
   for (int i = 0; i < 200; i += stride()) {
     const Problem problem =
@@ -211,7 +205,7 @@ TEST_P(SolverSymmetry, EarlierSolvesLeaveNoTrace) {
   }
 }
 
-TEST_P(SolverSymmetry, ActiveRowsAreSortedAndPush) {
+TEST_P(SolverContract, ActiveRowsAreSortedAndPush) {
   for (int i = 0; i < 1000; i += stride()) {
     Random random(static_cast<std::uint64_t>(i) + 6000000);
     Problem problem = make_problem(Task::identity, Planes::lattice, 5, 60, random);
@@ -224,5 +218,4 @@ TEST_P(SolverSymmetry, ActiveRowsAreSortedAndPush) {
   }
 }
 
-}  // namespace
 }  // namespace keepout::test
