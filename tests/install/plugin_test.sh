@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests that a plugin that was built outside of the tree, against an installed keepout, passes the contracts
-# of keepout::testing, and that the commands use it, and reject wrong files.
+# Builds a plugin outside of the tree, against an installed keepout. Tests that it passes the contracts of
+# keepout::testing, that the commands use it, and that they reject wrong files.
 #   plugin_test.sh PREFIX WORK EXAMPLES
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/common.sh"
