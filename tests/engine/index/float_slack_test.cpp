@@ -9,6 +9,7 @@
 #include "index/tree_parts/ball_screen.h"
 #include "index/wide_bvh/traversal/filters.h"
 #include "index/wide_bvh/traversal/traversal_cache.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {

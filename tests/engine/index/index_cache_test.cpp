@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/index/index_cache.h"
 
+#include <random>
 #include <thread>
 
 #include "index/wide_bvh/tree.h"
 #include "keepout/testing/index_probes.h"
+#include "meshes.h"
 #include "temporary_folder.h"
 
 namespace keepout {

@@ -10,6 +10,7 @@
 
 #include "engine/index/exact_index.h"
 #include "index/pd_tree/tree.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {

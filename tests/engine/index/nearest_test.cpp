@@ -6,6 +6,7 @@
 #include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/testing/index_probes.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {

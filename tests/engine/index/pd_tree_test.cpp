@@ -8,6 +8,7 @@
 #include "index/pd_tree/tree.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/pd_tree_1997.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "engine/index/exact_index.h"
 #include "keepout/error.h"
+#include "meshes.h"
 
 namespace keepout {
 namespace {
