@@ -87,17 +87,17 @@ int register_fiducials(const RegisterOptions& options, std::ostream& out) {
                           : " If the measured ones are in meters, give --measured-in m";
   }
   if (doubt.empty() && options.fle) doubt = fit.doubt_of(*options.fle);
+  if (const double extent = extent_of(pairs.model);
+      doubt.empty() && extent < MeshFindings::meters_below) {
+    doubt = "the points of the model are within " + formatted("%g", extent) +
+            " mm of each other: give both sides in mm";
+  }
   if (doubt.empty() && !options.fle) {
     try {
       target_error(fit, fit.center);
     } catch (const Error& error) {
       doubt = error.what();
     }
-  }
-  if (const double extent = extent_of(pairs.model);
-      doubt.empty() && extent < MeshFindings::meters_below) {
-    doubt = "the points of the model are within " + formatted("%g", extent) +
-            " mm of each other: give both sides in mm";
   }
   if (!doubt.empty()) std::cerr << "keepout: do not trust this registration: " << doubt << '\n';
   const double largest = std::ranges::max(fit.residuals);

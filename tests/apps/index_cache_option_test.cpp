@@ -107,8 +107,11 @@ TEST_F(IndexCacheOption, WhatCannotBeKeptIsToldOfOnceAndWhy) {
   EXPECT_LACKS(folder.run(replay + "kept").output, "keepout:");
 }
 
-TEST_F(IndexCacheOption, OtherIndicesKeepNothing) {
-  answer("--index-cache cache", "pd_tree");
+TEST_F(IndexCacheOption, OtherIndicesAreRefused) {
+  const ProcessOutcome outcome = folder.run(
+      "replay gear.stl --poses poses.txt --out s.csv --index pd_tree --index-cache cache");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_CONTAINS(outcome.output, "only the index wide_bvh can be stored, not 'pd_tree'");
   EXPECT_FALSE(std::filesystem::exists(folder.file("cache")));
 }
 

@@ -200,9 +200,10 @@ TEST_F(Live, WhatIsWrongIsToldAndNoPageIsWritten) {
 
 TEST_F(Live, NeitherAMeshNorThePagesOwnPartsAreOverwritten) {
   write_binary_stl(folder_.file("mesh.stl"), make_shape("cube"));
-  for (const std::string name : {"mesh.stl", "web/live.html"}) {
+  for (const auto& [name, told, status] : {std::tuple("mesh.stl", "ends with .html", 2),
+                                           std::tuple("web/live.html", "would overwrite it", 1)}) {
     const std::string before = folder_.contents(name);
-    expect_refused("cube ./mesh.stl --out " + name, "would overwrite it");
+    expect_refused(std::string("cube ./mesh.stl --out ") + name, told, status);
     EXPECT_EQ(folder_.contents(name), before) << name;
   }
 }

@@ -118,7 +118,8 @@ TEST_F(Report, IsRefusedOfWhatIsNoRecord) {
   folder_.write("web/report.html", "<p>of another version</p>");
   ASSERT_EQ(run("verify cube.stl --steps 500 --json v.json").status, 0);
   expect_refused("report v.json", "is not the front end of this keepout");
-  expect_refused("report v.json --out v.json", "is the same file");
+  folder_.write("v.html", folder_.contents("v.json"));
+  expect_refused("report v.html --out v.html", "is the same file");
 }
 
 TEST_F(Report, OfExperimentsIsPlainAsLongAsItsFrontEndIsMissing) {
