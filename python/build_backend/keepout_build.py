@@ -102,6 +102,13 @@ def output_of(*command):
     return subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True).stdout
 
 
+def copyright_of(library):
+    """Returns the file with the license of a library of Debian."""
+    # Packages may list files below /lib, which is a link to /usr/lib.
+    found = subprocess.run(["dpkg", "-S", library, library.removeprefix("/usr")], capture_output=True, text=True)
+    return f"/usr/share/doc/{found.stdout.split(':')[0]}/copyright"
+
+
 def bundle(staging):
     """Puts the libraries that the module needs, and their licenses, beside it. Returns the oldest
     version of glibc that has all needed symbols."""
@@ -116,8 +123,7 @@ def bundle(staging):
             continue
         shutil.copy(os.path.realpath(path), folder / name)
         binaries.append(folder / name)
-        package = output_of("dpkg", "-S", os.path.realpath(path)).split(":")[0]
-        shutil.copy(f"/usr/share/doc/{package}/copyright", folder / f"{package}.copyright")
+        shutil.copy(copyright_of(os.path.realpath(path)), folder / f"{name}.copyright")
     run("patchelf", "--set-rpath", "$ORIGIN/../keepout.libs", module)
     for binary in binaries[1:]:
         run("patchelf", "--set-rpath", "$ORIGIN", binary)

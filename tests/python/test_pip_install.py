@@ -2,7 +2,10 @@
 """`pip install .` works without a network, and the installed package needs nothing else."""
 
 import os
+import re
+import shutil
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -43,6 +46,24 @@ def test_into_a_fresh_environment(tmp_path):
     assert (installed / "keepout" / "py.typed").exists()
     run(python, "-m", "pip", "uninstall", "--yes", "keepout")
     assert not (installed / "keepout").exists()
+
+
+@pytest.mark.skipif(not build or not shutil.which("patchelf"), reason="no build directory, or no patchelf")
+def test_a_portable_wheel_contains_all_libraries_but_glibc(tmp_path):
+    settings = [f"--config-settings=build-dir={build}", "--config-settings=portable=yes"]
+    run(sys.executable, "-m", "pip", "wheel", ".", "--no-deps", "--wheel-dir", str(tmp_path), *settings)
+    (wheel,) = tmp_path.glob("keepout-*-manylinux_2_*.whl")
+    with zipfile.ZipFile(wheel) as packed:
+        packed.extractall(tmp_path / "package")
+    module = next((tmp_path / "package" / "keepout").glob("_core*.so"))
+    libraries = dict(re.findall(r"(\S+) => (\S+)", run("ldd", str(module))))
+    outside = [name for name, path in libraries.items() if not Path(path).resolve().is_relative_to(tmp_path.resolve())]
+    assert set(outside) <= {"libc.so.6", "libm.so.6"}
+    assert len(libraries) > len(outside)
+    for name in set(libraries) - set(outside):
+        assert (tmp_path / "package" / "keepout.libs" / f"{name}.copyright").stat().st_size > 100
+    script = f"import sys; sys.path.insert(0, {str(tmp_path / 'package')!r}); sys.prefix = {str(tmp_path)!r}\n" + use
+    assert run(sys.executable, "-c", script).split()[1] == "limited"
 
 
 def test_a_build_directory_that_is_none_is_refused(tmp_path):
