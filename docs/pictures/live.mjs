@@ -38,13 +38,13 @@ for (let i = 0; i < frames; ++i) {
   await tab.mouse.move(x - 42 * (1 - Math.cos(turn)), y + 26 * Math.sin(2 * turn), { steps: 3 });
   await new Promise((done) => setTimeout(done, 150));
   const path = join(folder, `${String(i).padStart(3, "0")}.png`);
-  await tab.screenshot({ path, clip: { x: 310, y: 0, width: 970, height: 700 } });
+  await tab.screenshot({ path, clip: { x: 312, y: 0, width: 656, height: 760 } });
 }
 await browser.close();
 const gif = `
 import glob, sys
 from PIL import Image
-frames = [Image.open(name).convert("RGB").resize((776, 560), Image.LANCZOS) for name in sorted(glob.glob(sys.argv[1]))]
+frames = [Image.open(name).convert("RGB").resize((410, 475), Image.LANCZOS) for name in sorted(glob.glob(sys.argv[1]))]
 colors = frames[len(frames) // 2].quantize(96)
 frames = [frame.quantize(palette=colors, dither=Image.Dither.NONE) for frame in frames]
 frames[0].save(sys.argv[2], save_all=True, append_images=frames[1:], duration=100, loop=0, optimize=True)
