@@ -16,7 +16,7 @@ namespace keepout {
 namespace {
 
 constexpr IndexBackend ours[] = {
-    {"brute_force", "every triangle, one after the other: the oracle", make_index_of<BruteForce>,
+    {"brute_force", "every triangle, one after the other: the reference", make_index_of<BruteForce>,
      no_triangle, nullptr},
     {"wide_bvh", "axis-aligned boxes and triangles sixteen at a time", make_index_of<WideBvh>,
      WideBvh::most_triangles, nullptr},

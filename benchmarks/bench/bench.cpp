@@ -207,13 +207,13 @@ void add_bench(CLI::App& app, BenchOptions& options) {
   command.add_flag(
       "--full", options.full,
       "Up to 18 million triangles, and the skull with a million; takes tens of minutes and 14 GB");
-  command.add_option("--queries", options.queries, "Most steps of each combination")
+  command.add_option("--queries", options.queries, "Most steps of each combination; default: 2500")
       ->type_name("NUMBER")
       ->transform(whole_number(5, 10'000'000));
   command
       .add_option("--seconds", options.seconds,
                   "Most time for a combination in each of two rounds: stage by stage, "
-                  "and whole steps")
+                  "and whole steps; default: 1")
       ->type_name("S")
       ->check(length(Zero::refused));
   command

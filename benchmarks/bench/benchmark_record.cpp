@@ -104,11 +104,15 @@ BenchmarkRow new_row() {
     "hash": "0000000000000000", "hashes_of_first": {}, "verified": false, "wrong": false, "remark": ""})");
 }
 
+constexpr std::size_t fewest_ranked = 20;  // steps of a row, for its median to be ranked
+
 Ranking ranking_of(const Benchmark& benchmark) {
   Rows rows;
   for (const BenchmarkRow& row : benchmark.rows) {
-    if (!row["step_us"].is_null() && median(&row) > 0.0 && row["remark"] == "")
+    const bool has_few_steps = row.contains("queries") && row["queries"] < fewest_ranked;
+    if (!row["step_us"].is_null() && median(&row) > 0.0 && row["remark"] == "" && !has_few_steps) {
       rows.push_back(&row);
+    }
   }
   if (rows.empty()) return {};
   const auto largest = std::ranges::max(
@@ -281,8 +285,9 @@ void write_short_csv(std::ostream& out, const Benchmark& benchmark) {
   Json rows = Json::array();
   for (const BenchmarkRow& row : benchmark.rows) {
     Json& kept = rows.emplace_back();
-    for (const char* key : {"mesh", "triangles", "index", "activation", "solver", "radius",
-                            "build_s", "bytes_per_triangle", "candidates_mean", "hits_mean"}) {
+    for (const char* key :
+         {"mesh", "triangles", "index", "activation", "solver", "radius", "build_s",
+          "bytes_per_triangle", "queries", "candidates_mean", "hits_mean"}) {
       kept[key] = row[key];
     }
     for (const char* stage : {"collect_us", "exact_us", "query_us", "step_us"}) {

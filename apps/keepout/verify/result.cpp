@@ -72,7 +72,7 @@ Columns<Json> tip_columns() {
 constexpr const char* tip_legend =
     R"(contact: fraction of limited steps. led out: recovering steps from the forbidden side,
 which may cross. other: steps without a motion. crossed, broken: breaches of the
-theorem. least: smallest distance of any motion minus tool radius and margin, in tau
+theorem. least: smallest distance of any motion minus the promised distance, in tau
 and as a length.
 )";
 

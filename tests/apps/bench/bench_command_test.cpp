@@ -123,11 +123,11 @@ TEST_F(BenchCommand, SweepsOverSizesAndWritesAShortTable) {
   std::istringstream csv(folder.contents("b.csv"));
   std::string line;
   std::getline(csv, line);
-  EXPECT_EQ(
-      line,
-      "mesh,triangles,index,activation,solver,radius,build_s,bytes_per_triangle,candidates_mean,"
-      "hits_mean,collect_us_p50,collect_us_p99,exact_us_p50,exact_us_p99,query_us_p50,"
-      "query_us_p99,step_us_p50,step_us_p99,verified");
+  EXPECT_EQ(line,
+            "mesh,triangles,index,activation,solver,radius,build_s,bytes_per_triangle,queries,"
+            "candidates_mean,"
+            "hits_mean,collect_us_p50,collect_us_p99,exact_us_p50,exact_us_p99,query_us_p50,"
+            "query_us_p99,step_us_p50,step_us_p99,verified");
   std::getline(csv, line);
   EXPECT_TRUE(line.starts_with("bunny,10000,wide_bvh,paper,active_set,1")) << line;
   EXPECT_TRUE(line.ends_with(",true")) << line;
