@@ -16,7 +16,12 @@ class Register : public testing::Test {
     options.fiducials = file;
     std::ostringstream out;
     testing::internal::CaptureStderr();
-    status = register_fiducials(options, out);
+    try {
+      status = register_fiducials(options, out);
+    } catch (const Error&) {
+      doubt = testing::internal::GetCapturedStderr();  // else the next capture aborts
+      throw;
+    }
     doubt = testing::internal::GetCapturedStderr();
     return out.str();
   }
