@@ -112,6 +112,15 @@ void print_parts(std::ostream& out, std::string_view name, std::size_t count, st
   if (count > 0) print_row(out, name, counted(count, kind) + std::string(words));
 }
 
+/// Returns the anatomical space that the written file states.
+std::string written_space(const LoadedMesh& loaded) {
+  const std::string& stated = loaded.stated_name;
+  if (loaded.space != AnatomicalSpace::unstated) {
+    return std::string(name(loaded.space)) + ", stated in the file written";
+  }
+  return stated.empty() ? "unstated" : "no longer stated: " + stated + " is neither RAS nor LPS";
+}
+
 void print_orientation(std::ostream& out, const Orientation& done, std::size_t triangles) {
   print_row(out, "turned",
             grouped(done.turned) + " of " + counted(triangles, "triangle") + ": " +
@@ -160,12 +169,7 @@ void print_text(const ConvertOptions& options, const LoadedMesh& loaded, const C
               "coordinates to single precision, by at most " + trimmed(*result.rounding, 3) +
                   " mm; .ply keeps all digits");
   }
-  print_row(out, "space",
-            loaded.space == AnatomicalSpace::unstated
-                ? loaded.stated_name.empty()
-                      ? "unstated"
-                      : "no longer stated: " + loaded.stated_name + " is neither RAS nor LPS"
-                : std::string(name(loaded.space)) + ", stated in the file written");
+  print_row(out, "space", written_space(loaded));
 }
 
 }  // namespace

@@ -109,6 +109,9 @@ Json or_null(AnatomicalSpace space) {
   return name(space);
 }
 
+/// Returns a text for JSON; null if it is empty.
+Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
 void print_text(const InspectOptions& options, const Inspection& inspection, std::ostream& out) {
   const MeshFindings& mesh = inspection.mesh;
   out << options.mesh.string() << '\n';
@@ -169,42 +172,40 @@ Json list_of(const FaultPlaces& places, std::size_t most) {
 Json members_of(const Inspection& inspection, std::size_t most_places) {
   const MeshFindings& mesh = inspection.mesh;
   const auto& crossings = inspection.self_intersections;
-  Json json{
-      {"unit", "mm"},
-      {"other_units", Json::array()},
-      {"space", or_null(inspection.loaded.space)},
-      {"stated_space",
-       inspection.loaded.stated_name.empty() ? Json(nullptr) : Json(inspection.loaded.stated_name)},
-      {"triangles", mesh.triangles},
-      {"vertices", mesh.vertices},
-      {"edges", mesh.edges},
-      {"components", mesh.components},
-      {"edge_components", mesh.edge_components},
-      {"boundary_edges", mesh.boundary_edges},
-      {"non_manifold_edges", mesh.non_manifold_edges},
-      {"inconsistent_edges", mesh.inconsistent_edges},
-      {"pinched_vertices", mesh.pinched_vertices},
-      {"repeated_vertex_triangles", mesh.repeated_vertex_triangles},
-      {"collinear_triangles", mesh.collinear_triangles},
-      {"duplicate_triangles", mesh.duplicate_triangles},
-      {"closed", mesh.is_closed()},
-      {"watertight", mesh.is_watertight()},
-      {"inside_out", mesh.is_inside_out()},
-      {"looks_like_meters", mesh.looks_like_meters()},
-      {"looks_like_micrometers", mesh.looks_like_micrometers()},
-      {"euler_characteristic", mesh.euler_characteristic},
-      {"genus", or_null(mesh.genus)},
-      {"area", mesh.area},
-      // The volume of an open surface would depend on the position of the origin.
-      {"signed_volume", mesh.is_watertight() ? Json(mesh.signed_volume) : nullptr},
-      {"bounds", {{"low", json_of(mesh.bounds.low)}, {"high", json_of(mesh.bounds.high)}}},
-      {"self_intersections", crossings ? Json(crossings->pairs) : Json(nullptr)},
-      {"scale", inspection.loaded.scale},
-      {"flipped", inspection.loaded.flipped},
-      {"warnings", inspection.loaded.warnings},
-      {"notices", inspection.loaded.notices},
-      {"most_places", most_places},
-      {"findings", Json::array()}};
+  Json json{{"unit", "mm"},
+            {"other_units", Json::array()},
+            {"space", or_null(inspection.loaded.space)},
+            {"stated_space", or_null(inspection.loaded.stated_name)},
+            {"triangles", mesh.triangles},
+            {"vertices", mesh.vertices},
+            {"edges", mesh.edges},
+            {"components", mesh.components},
+            {"edge_components", mesh.edge_components},
+            {"boundary_edges", mesh.boundary_edges},
+            {"non_manifold_edges", mesh.non_manifold_edges},
+            {"inconsistent_edges", mesh.inconsistent_edges},
+            {"pinched_vertices", mesh.pinched_vertices},
+            {"repeated_vertex_triangles", mesh.repeated_vertex_triangles},
+            {"collinear_triangles", mesh.collinear_triangles},
+            {"duplicate_triangles", mesh.duplicate_triangles},
+            {"closed", mesh.is_closed()},
+            {"watertight", mesh.is_watertight()},
+            {"inside_out", mesh.is_inside_out()},
+            {"looks_like_meters", mesh.looks_like_meters()},
+            {"looks_like_micrometers", mesh.looks_like_micrometers()},
+            {"euler_characteristic", mesh.euler_characteristic},
+            {"genus", or_null(mesh.genus)},
+            {"area", mesh.area},
+            // The volume of an open surface would depend on the position of the origin.
+            {"signed_volume", mesh.is_watertight() ? Json(mesh.signed_volume) : nullptr},
+            {"bounds", {{"low", json_of(mesh.bounds.low)}, {"high", json_of(mesh.bounds.high)}}},
+            {"self_intersections", crossings ? Json(crossings->pairs) : Json(nullptr)},
+            {"scale", inspection.loaded.scale},
+            {"flipped", inspection.loaded.flipped},
+            {"warnings", inspection.loaded.warnings},
+            {"notices", inspection.loaded.notices},
+            {"most_places", most_places},
+            {"findings", Json::array()}};
   for (const UnitGuess& guess : other_units(mesh.bounds.size().maxCoeff())) {
     json["other_units"].push_back({{"unit", guess.unit}, {"scale", guess.millimetres}});
   }

@@ -109,7 +109,7 @@ constexpr std::size_t fewest_ranked = 20;  // steps of a row, for its median to 
 Ranking ranking_of(const Benchmark& benchmark) {
   Rows rows;
   for (const BenchmarkRow& row : benchmark.rows) {
-    const bool has_few_steps = row.contains("queries") && row["queries"] < fewest_ranked;
+    const bool has_few_steps = row["queries"] < fewest_ranked;
     if (!row["step_us"].is_null() && median(&row) > 0.0 && row["remark"] == "" && !has_few_steps) {
       rows.push_back(&row);
     }

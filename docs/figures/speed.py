@@ -15,7 +15,7 @@ def side(measured):
     return f"{measured['name']} {' / '.join(texts)}{' ms' if in_ms else ''}"
 
 
-# Figures that pages print alone, and the rows of the README, by the start of `work` and `compared`.
+# Figures that pages print alone, by the start of `work` and `compared`.
 NAMED = {
     "step_5": ("whole step, paper's rule, r = 5 mm", ""),
     "step_1": ("whole step, paper's rule, r = 1 mm", ""),
@@ -34,16 +34,6 @@ NAMED = {
     "largest": ("file to index, 2 cores", ""),
     "largest_memory": ("file to index, 100 M triangles", "peak of memory"),
     "largest_contact": ("certified in contact, margin .2 mm", "100 M"),
-}
-SUMMARY = {
-    "step_5": "whole step, Li et al.'s rule, 5 mm, in contact: FCL's tree and NLopt's SLSQP",
-    "step_1": "the same, 1 mm",
-    "contact": "**certified step in contact**, motions of 0.05 to 0.2 mm, margin 0.2 mm; beside the first row's libraries",
-    "free": "certified step in free space; beside the first row's libraries",
-    "query_fcl": "which triangles are within 5 mm: FCL's tree",
-    "query_embree": "the same: Embree",
-    "build_fcl": "building the index: FCL's tree",
-    "first_step": "binary STL of 1.02 M triangles to the first step, two cores: assimp and FCL's tree",
 }
 
 
@@ -90,9 +80,6 @@ def speed(record):
             for p in ("p50", "p99", "p999"):
                 yield f"{name}.{side_name}.{p}", time_of(row["sides"][k], p)
     yield "cold", next(time_of(row["sides"][0]) for row in record["rows"] if "caches emptied" in row["work"])
-    yield "summary", table(["", "libraries", "keepout", "ratio"], [
-        [words, time_of(rows[name]["sides"][0]), time_of(rows[name]["sides"][1]),
-         with_unit(rows[name]["figure"], rows[name]["unit"])] for name, words in SUMMARY.items() if name in rows])
     histogram = record["histogram"]
     points = ["p50", "p99", "p999", "p9999", "p99999"]
     yield "cycles", table(

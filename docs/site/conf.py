@@ -53,8 +53,6 @@ if (document.body.dataset.theme === "auto" && matchMedia("(prefers-color-scheme:
 
 def adapt(app, docname, source):
     """Adds to the pages what only the site has."""
-    # The marks of measured figures: a comment at the beginning of a line would end the paragraph.
-    source[0] = re.sub(r"<!--[a-z0-9_./]+-->", "", source[0])
     if docname == root_doc:  # the navigation: its tables
         parts = re.split(r"^## +(.+)$", source[0], flags=re.M)
         for kind, text in zip(parts[1::2], parts[2::2]):

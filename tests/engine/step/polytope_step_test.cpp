@@ -85,6 +85,37 @@ TEST(MotionConstraintPolytope, OfATipOnTheForbiddenSideAllowsNoMotion) {
   EXPECT_TRUE(open.free_polytope(Vec3(0, 0, -5), 2.0).ok());
 }
 
+TEST(MotionConstraintPolytope, IsInsideWhereTheOracleSaysSo) {
+  const auto mesh = mesh_of("cortex");
+  auto guard = make_motion_constraint(mesh, {.options = {.tool_radius = 0.2, .margin = 0.1}});
+  auto as_is = make_motion_constraint(
+      mesh, {.options = {.tool_radius = 0.2, .margin = 0.1}, .inside = Inside::taken_as_is});
+  oracle::SafetyOracle oracle(mesh);
+  Random random(3);
+  std::size_t inside = 0;
+  for (const Vec3& tip : surface_points(*mesh, 200, 0.5, random)) {
+    const Polytope polytope = guard.free_polytope(tip, 2.0);
+    const bool is_inside = oracle.inside(tip).value();
+    inside += is_inside ? 1 : 0;
+    ASSERT_EQ(polytope.status, is_inside ? Status::inside : Status::free) << tip.transpose();
+    if (is_inside) continue;
+    EXPECT_EQ(polytope.planes.size(), as_is.free_polytope(tip, 2.0).planes.size());
+  }
+  EXPECT_GT(inside, 0u);
+  EXPECT_LT(inside, 200u);
+}
+
+TEST(MotionConstraintPolytope, OfATipInsideIsNeverFreeHoweverSmallTheBudget) {
+  const auto mesh = mesh_of("cortex");
+  const Vec3 tip = mesh->bounds().center();
+  for (std::size_t units = 1; units < 3000; units = units * 5 / 4 + 1) {
+    auto guard = make_motion_constraint(mesh, {.capacity = {.work_units = units}});
+    const Polytope polytope = guard.free_polytope(tip, 1.0);
+    EXPECT_FALSE(polytope.ok()) << units << " units";
+    EXPECT_FALSE(allows(polytope, Vec3(1e-9, 0, 0))) << units << " units";
+  }
+}
+
 TEST(MotionConstraintPolytope, IsUnsupportedWithGuides) {
   const auto mesh = mesh_of("cube");
   auto guard = make_motion_constraint(mesh, {});
