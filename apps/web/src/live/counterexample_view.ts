@@ -15,17 +15,17 @@ const words: Readonly<Record<string, readonly [title: string, why: string]>> = {
   CE2_boundary: [
     "At a rim",
     "The tip is just beside the rim of an open surface. The edge that it is nearest to has no " +
-      "neighbour, so none of the paper’s conditions holds: no plane is posed, and the motion goes through.",
+      "neighbor, so none of the conditions of Li et al. holds. Their rule adds no plane, and the motion goes through.",
   ],
   CE5_closed_octahedron: [
     "In a closed solid",
-    "The nearest point of the triangle in the way lies on a ridge. The paper’s rule hands the triangle over to its " +
-      "neighbour there, whose plane does not cover it: the tool ends inside.",
+    "The nearest point of the triangle ahead lies on a ridge. Li et al.’s rule leaves the triangle to its " +
+      "neighbor there. The neighbor’s plane does not cover it: the tool ends inside.",
   ],
   CE6c_larger_saddle: [
     "Over a saddle",
-    "The motion asked for is free, and the certified rule lets it pass as it is. The paper’s rule poses a " +
-      "plane of a triangle that is not in the way, and sliding along it leads into another one.",
+    "The commanded motion is free, and the certified rule returns it unchanged. Li et al.’s rule adds the " +
+      "plane of a triangle that is not in the way. The motion along that plane meets another triangle.",
   ],
 };
 
@@ -84,8 +84,8 @@ export class CounterexampleView {
       caption.textContent = stage.goesThrough ? "goes through the surface" : "stays out";
     });
     element("why", HTMLElement).textContent =
-      `${words[chosen.example.name]?.[1] ?? ""} Both are to keep a margin of ${this.margin}; the ` +
-      `way asked for is ${Math.hypot(...chosen.example.desired).toFixed(2)} long.`;
+      `${words[chosen.example.name]?.[1] ?? ""} The margin is ${this.margin}, and ` +
+      `the commanded motion is ${Math.hypot(...chosen.example.desired).toFixed(2)} long.`;
     this.begun = performance.now();
   }
 

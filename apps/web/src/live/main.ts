@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The page of `keepout live`, for the ball of a tip or for an instrument: connects its parts. */
-import type { Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
+import type { Findings, Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
 import { grouped, saveFile } from "../page/elements.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
@@ -9,7 +9,16 @@ import { showFindings } from "./findings.ts";
 import { type GuideKind, GuidePanel } from "./guide_panel.ts";
 import { HandInput } from "./hand_input.ts";
 import { type Choice, MeshList, meshOf, nameOf } from "./mesh_list.ts";
-import { element, embeddedText, isTip, made, page, roomBetweenCards, toast } from "./page.ts";
+import {
+  element,
+  embeddedText,
+  isTip,
+  made,
+  page,
+  reportGraphics,
+  roomBetweenCards,
+  toast,
+} from "./page.ts";
 import {
   instrumentPathText,
   type PathHeader,
@@ -21,7 +30,15 @@ import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
 import { SettingsPanel } from "./settings_panel.ts";
+import type { StartLine } from "./start_place.ts";
 import { ToolScene } from "./tool_scene.ts";
+
+/** The largest initial tool radius, as a fraction of the anatomy's diagonal. */
+const largestTool = 0.03;
+/** Below this extent a mesh may be in meters: MeshFindings::meters_below. [mm] */
+const metersBelow = 3;
+/** The rules of the keys 1 to 4. */
+const rules: readonly Rule[] = ["none", "all_faces", "paper", "certified"];
 
 // The page has the elements for both tools.
 for (const part of document.querySelectorAll<HTMLElement>("[data-tool]")) {
@@ -37,6 +54,8 @@ let settings: ToolSettings = {
   maxStep: page.max_step,
   guides: page.guides,
 };
+/** The tool radius that the command or the user has chosen. [mm] */
+let chosenRadius = settings.toolRadius;
 let shown: Choice | null = null;
 /** The choice that is loading, until it is loaded or has failed. */
 let awaited: Choice | null = null;
@@ -67,6 +86,9 @@ meshes.choose();
 const view = element("view", HTMLElement);
 const room = () => roomBetweenCards(view);
 const scene = made(() => new ToolScene(view, room, placeGrip, isTip));
+reportGraphics(element("picture", HTMLCanvasElement));
+const find = element("find", HTMLButtonElement);
+find.onclick = () => state !== null && scene.lookAt(state.hand.place);
 const chart = new ClearanceChart(element("chart", HTMLElement));
 const input = new HandInput(scene, view, !isTip, (hand) => {
   grip.classList.remove("new");
@@ -94,8 +116,12 @@ const handlers: Handlers<FromWorker> = {
     if (shown !== null) meshes.select(shown);
     document.title = `${surface.name} – keepout live`;
     triangles = surface.corners.length / 3;
+    if (isTip && pendingPath === null) fitTool();
   },
-  findings: ({ findings }) => showFindings(findings, triangles, meshOf(shown)?.warnings ?? []),
+  findings({ findings }) {
+    showFindings(findings, triangles, meshOf(shown)?.warnings ?? []);
+    offerMeters(findings);
+  },
   guarded() {
     endLoading();
     begin();
@@ -118,7 +144,6 @@ const handlers: Handlers<FromWorker> = {
   },
   counterexamples: (message) => failures?.open(message),
   settings(message) {
-    input.drop();
     settings = message.settings;
     showSettings();
   },
@@ -139,9 +164,41 @@ function endLoading(): void {
 
 /** Places an instrument where the command has placed it, and a tip beside the anatomy. */
 function begin(): void {
-  const start = meshOf(shown)?.start?.positions;
-  const positions = start ?? scene.placeBeside(settings.toolRadius + settings.margin);
-  tell({ kind: "place", positions });
+  const positions = meshOf(shown)?.start?.positions;
+  if (positions !== undefined) tell({ kind: "place", positions });
+  else startOn(scene.linesBeside());
+}
+
+/** Places a tip on one of these lines, at its usual distance from the anatomy. */
+function startOn(lines: readonly StartLine[]): void {
+  const least = settings.toolRadius + settings.margin;
+  tell({ kind: "place on a line", lines, wanted: least + scene.beginning(), least });
+}
+
+/** Makes the tool small beside a small anatomy; else as large as the user has chosen. */
+function fitTool(): void {
+  const most = Number((largestTool * scene.diagonal).toPrecision(1));
+  const toolRadius = Math.min(chosenRadius, most);
+  if (toolRadius === settings.toolRadius) return;
+  settings = { ...settings, toolRadius };
+  showSettings();
+  tell({ kind: "settings", settings });
+}
+
+/** Offers to scale an opened mesh that seems to be in meters. */
+function offerMeters({ size }: Findings): void {
+  const source = shown?.source;
+  const extent = Math.max(...size);
+  if (shown === null || source?.kind !== "file" || source.scale !== 1) return;
+  if (extent >= metersBelow || extent < metersBelow / 1000) return;
+  const { command } = shown;
+  const act = () =>
+    load({
+      source: { ...source, name: `${source.name} × 1000`, scale: 1000 },
+      command: `${command} --scale 1000`,
+    });
+  const text = `This mesh is ${Number(extent.toPrecision(2))} mm across. Is it in meters?`;
+  toast(text, { name: "Scale by 1000", act });
 }
 
 function show(now: State): void {
@@ -159,7 +216,12 @@ function show(now: State): void {
 
 /** Puts the ring around the hand. */
 function placeGrip(): void {
-  if (state !== null) grip.style.transform = scene.shift(state.hand.place);
+  if (state === null) return;
+  const { place } = state.hand;
+  grip.style.transform = scene.shift(place);
+  const at = scene.project(place);
+  const open = scene.openView();
+  find.hidden = grip.hidden || (at.z < 1 && Math.abs(at.x) <= open.x + 0.02 && Math.abs(at.y) <= 1);
 }
 
 // Settings.
@@ -204,7 +266,12 @@ async function openFile(file: File): Promise<void> {
   }
   pendingPath = null;
   load({
-    source: { kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) },
+    source: {
+      kind: "file",
+      name: file.name,
+      bytes: new Uint8Array(await file.arrayBuffer()),
+      scale: 1,
+    },
     command: /^[\w.-]+$/.test(file.name) ? file.name : `'${file.name.replaceAll("'", "'\\''")}'`,
   });
 }
@@ -291,7 +358,7 @@ function showSettings(): void {
 }
 
 function change(part: Partial<ToolSettings>): void {
-  input.drop();
+  chosenRadius = part.toolRadius ?? chosenRadius;
   settings = { ...settings, ...part };
   showSettings();
   tell({ kind: "settings", settings });
@@ -324,10 +391,18 @@ function addTipControls(): CounterexampleView {
   // A double-click on the anatomy places the tool there.
   view.addEventListener("dblclick", (event) => {
     const { x, y } = input.inView(event);
-    const place = scene.placeBefore(x, y, settings.toolRadius + settings.margin);
-    if (place === null) return;
+    const line = scene.lineBefore(x, y);
+    if (line === null) return;
     input.drop();
-    tell({ kind: "place", positions: place });
+    startOn([line]);
+  });
+
+  // The keys choose a rule, also while the pointer drags the hand.
+  document.addEventListener("keydown", (event) => {
+    const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
+    const rule = rules[Number(event.key) - 1];
+    if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
+    change({ rule });
   });
 
   return new CounterexampleView();
