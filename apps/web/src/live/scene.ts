@@ -171,6 +171,9 @@ export abstract class Scene {
     });
   }
 
+  /** Moves the view back until a point is in its open part. */
+  protected abstract keepInSight(point: three.Vector3): void;
+
   /** Positions the moving parts. */
   protected abstract arrange(moment: State): void;
 
@@ -212,6 +215,7 @@ export abstract class Scene {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (this.moment !== null) this.keepInSight(this.inside(this.moment.flange.place));
     this.outdate();
   }
 

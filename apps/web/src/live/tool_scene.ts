@@ -180,16 +180,18 @@ export class ToolScene extends Scene {
     return this.size;
   }
 
-  /** Moves the view back until a point is within it. */
-  private keepInSight(point: three.Vector3): void {
-    for (let i = 0; i < 40 && Math.abs(point.clone().project(this.camera).x) > this.room(); ++i) {
-      this.camera.position.multiplyScalar(1.1);
-      this.controls.maxDistance = Math.max(
-        this.controls.maxDistance,
-        this.camera.position.length(),
-      );
-      this.controls.update();
-      this.camera.updateMatrixWorld();
+  /** Moves the view back until a point is in its open part. */
+  protected keepInSight(point: three.Vector3): void {
+    const { camera, controls } = this;
+    for (let i = 0; i < 40; ++i) {
+      camera.updateMatrixWorld();
+      const { x, y } = point.clone().project(camera);
+      const open = this.openView();
+      if (Math.abs(x) <= open.x && Math.abs(y) <= open.y) return;
+      const away = camera.position.clone().sub(controls.target).multiplyScalar(1.1);
+      controls.maxDistance = Math.max(controls.maxDistance, away.length());
+      camera.position.copy(controls.target).add(away);
+      controls.update();
     }
   }
 
