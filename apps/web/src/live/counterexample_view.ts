@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
 import type { Counterexample, Vec3 } from "../engine/keepout.ts";
+import { colorOf } from "../page/color_of.ts";
 import { make } from "../page/elements.ts";
 import { colors } from "./markers.ts";
 import { element } from "./page.ts";
@@ -76,7 +77,8 @@ export class CounterexampleView {
     for (const [i, button] of buttons.entries()) {
       button.setAttribute("aria-pressed", String(i === number));
     }
-    this.stages = chosen.ends.map((end) => new Stage(chosen.example, end));
+    const tools = ["--rule-paper", "--rule-certified"].map(colorOf);
+    this.stages = chosen.ends.map((end, i) => new Stage(chosen.example, end, tools[i] as string));
     this.stages.forEach((stage, i) => {
       const caption = this.figures[i]?.querySelector("span");
       if (!caption) return;
@@ -124,7 +126,7 @@ class Stage {
   private readonly end: three.Vector3;
   private readonly reach: number;
 
-  constructor(example: Counterexample, end: Vec3) {
+  constructor(example: Counterexample, end: Vec3, tool: string) {
     this.begin = vector(example.tip);
     this.end = vector(end);
     const wanted = this.begin.clone().add(vector(example.desired));
@@ -153,7 +155,7 @@ class Stage {
     const ball = this.reach * 0.035;
     this.tip = new three.Mesh(
       new three.SphereGeometry(ball, 32, 16),
-      new three.MeshStandardMaterial({ color: colors.tool, roughness: 0.35 }),
+      new three.MeshStandardMaterial({ color: tool, roughness: 0.35 }),
     );
     const asked = new three.Line(
       new three.BufferGeometry().setFromPoints([this.begin, wanted]),
@@ -162,7 +164,7 @@ class Stage {
     asked.computeLineDistances();
     const gone = new three.Line(
       new three.BufferGeometry().setFromPoints([this.begin, this.end]),
-      new three.LineBasicMaterial({ color: colors.tool }),
+      new three.LineBasicMaterial({ color: tool }),
     );
     for (const line of [asked, gone]) {
       line.material.depthTest = false;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The page of `keepout live`, for the ball of a tip or for an instrument: connects its parts. */
-import type { Findings, Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
+import type { Findings, Frame, Rule, ToolFacts, ToolSettings, Vec3 } from "../engine/keepout.ts";
+import { colorOf } from "../page/color_of.ts";
 import { grouped, saveFile } from "../page/elements.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
+import { type Course, Demonstration } from "./demonstration.ts";
 import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
 import { type GuideKind, GuidePanel } from "./guide_panel.ts";
@@ -17,6 +19,7 @@ import {
   page,
   reportGraphics,
   roomBetweenCards,
+  set,
   toast,
 } from "./page.ts";
 import {
@@ -115,6 +118,7 @@ const handlers: Handlers<FromWorker> = {
     shown = awaited;
     if (shown !== null) meshes.select(shown);
     document.title = `${surface.name} – keepout live`;
+    set("hint", `drag me into ${wordFor(surface.name)}`);
     triangles = surface.corners.length / 3;
     if (isTip && pendingPath === null) fitTool();
   },
@@ -208,10 +212,76 @@ function show(now: State): void {
     placeGrip();
     grip.hidden = false;
   }
+  demonstrate(now);
   input.rest(now.hand);
   scene.update(now);
   chart.add(now.time, now.handClearance, Math.min(...now.clearances));
   readings?.show(now, settings, facts, scene.frames);
+}
+
+// The first seconds.
+
+/** "due" until the first tool is placed; "over" after its demonstration, or if the visitor does not want it. */
+let demonstration: Demonstration | "due" | "over" = matchMedia("(prefers-reduced-motion: reduce)")
+  .matches
+  ? "over"
+  : "due";
+const lesson = element("lesson", HTMLElement);
+for (const kind of ["pointerdown", "keydown", "wheel", "drop"]) {
+  document.addEventListener(kind, endDemonstration, { capture: true, passive: true });
+}
+
+function demonstrate(now: State): void {
+  if (demonstration === "over" || awaited !== null) return;
+  if (demonstration === "due") {
+    const hold = (hand: Frame | null) => tell({ kind: "hand", hand });
+    demonstration = new Demonstration(now.hand, courseOf(now), hold, showLesson);
+    grip.classList.remove("new");
+  }
+  if (!demonstration.advance(now)) demonstration = "over";
+}
+
+/** Returns the motion of the hand: a tip moves across the view, an instrument along its shaft. */
+function courseOf({ flange, cores, clearances }: State): Course {
+  const back = cores.slice(0, 3).map((value, i) => value - (flange.place[i] as number));
+  const length = Math.hypot(...back);
+  const along = back.map((value) => -value / length) as unknown as Vec3;
+  const most = 0.06 * scene.diagonal;
+  return {
+    towards: isTip ? scene.across(-1, 0, 0) : along,
+    across: isTip ? scene.across(0, 1, 0) : scene.across(1, 0, 0),
+    distance: Math.max(2 * Math.min(...clearances), 10),
+    depth: Math.min(6, most),
+    width: Math.min(10, most),
+  };
+}
+
+function showLesson(phase: Parameters<ConstructorParameters<typeof Demonstration>[3]>[0]): void {
+  const word = wordFor(shown === null ? "" : nameOf(shown));
+  const words = {
+    approach: "The hand (red) moves, and the tool follows it.",
+    press: `The hand goes into ${word}. The tool stops ${settings.margin} mm before it.`,
+    slide: "The tool slides along the surface.",
+    back: "The hand comes out again.",
+  };
+  const yours = isTip ? `drag the red ring into ${word}.` : "drag the jaw.";
+  set(lesson, phase === null ? `Your turn: ${yours}` : words[phase]);
+  lesson.hidden = false;
+  if (phase === null) grip.classList.add("new");
+}
+
+/** The visitor takes over. */
+function endDemonstration(): void {
+  if (demonstration instanceof Demonstration) demonstration.end(false);
+  demonstration = "over";
+  lesson.hidden = true;
+}
+
+/** Returns what the visitor drags the tool into. */
+function wordFor(mesh: string): string {
+  const [, word] = /(brain|liver|aneurysm|airway)/.exec(mesh) ?? [];
+  if (word !== undefined) return `the ${word}`;
+  return /skull|femur|bone/.test(mesh) ? "the bone" : "it";
 }
 
 /** Puts the ring around the hand. */
@@ -355,6 +425,16 @@ function showSettings(): void {
   panel.show(settings);
   guides.show(settings);
   chart.setMargin(settings.margin);
+  showColors();
+}
+
+/** Shows the tool in the color of its rule. */
+function showColors(): void {
+  document.documentElement.style.setProperty(
+    "--tool",
+    `var(--rule-${settings.rule.replaceAll("_", "-")})`,
+  );
+  scene.paintTool(colorOf("--tool"));
 }
 
 function change(part: Partial<ToolSettings>): void {
@@ -371,6 +451,7 @@ element("again", HTMLButtonElement).onclick = () => {
 for (const use of ["save", "replay"] as const) {
   element(use, HTMLButtonElement).onclick = () => tell({ kind: "ask for path", use });
 }
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showColors);
 document.addEventListener("visibilitychange", () => {
   tell({ kind: "pause", paused: document.hidden });
 });

@@ -17,7 +17,7 @@ export abstract class Scene {
   protected readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   protected readonly moving = new three.Scene();
   protected readonly spring = new Spring();
-  private readonly trail = new Trail(colors.tool);
+  protected readonly trail = new Trail();
   /** The displayed state; null: no tool yet. */
   private moment: State | null = null;
   private readonly lit: three.Group[] = [];

@@ -9,6 +9,8 @@ export interface StartLine {
 
 /** The most distances that are measured on a line. */
 const mostSteps = 200;
+/** The intervals in which a line is sampled, if its beginning is not outside. */
+const samples = 40;
 
 /**
  * Returns the first place on one of these lines, from its beginning, where the distance from the
@@ -33,11 +35,15 @@ export function startPlace(
       const place = placeAt(along);
       const here = distance(...place);
       if (Number.isNaN(here) || here < 0) break;
-      if (here >= least && here > (best?.distance ?? 0)) best = { place, distance: here };
       const excess = here - wanted;
       if (step > 0 && excess < 0.01 * wanted) return place;
       if (excess < 0) break;
       along += Math.max(excess, 0.002 * wanted);
+    }
+    for (let sample = 0; sample <= samples; ++sample) {
+      const place = placeAt((sample / samples) * length);
+      const here = distance(...place);
+      if (here >= least && here > (best?.distance ?? 0)) best = { place, distance: here };
     }
   }
   return best?.place ?? null;

@@ -42,6 +42,7 @@ export class ToolScene extends Scene {
     new three.TorusGeometry(9, 1.6, 12, 40),
     new three.MeshStandardMaterial({ color: colors.steel, roughness: 0.5 }),
   );
+  private toolColor = "";
   /** True until the view is turned to the jaw of an instrument. */
   private isNew = true;
 
@@ -61,6 +62,13 @@ export class ToolScene extends Scene {
   override show(surface: CenteredSurface): void {
     this.isNew = true;
     super.show(surface);
+  }
+
+  /** Gives tool and trail the color of a rule. */
+  paintTool(color: string): void {
+    this.toolColor = color;
+    this.trail.paint(color);
+    this.redraw();
   }
 
   /** Shows another tool, which has these properties. */
@@ -158,6 +166,8 @@ export class ToolScene extends Scene {
     );
     const beside = right.clone().multiplyScalar(this.size);
     others.push({ from: this.outside(beside), to: this.outside(vertex) });
+    // Through a cavity whose outside is forbidden.
+    others.push({ from: this.outside(beside), to: this.outside(beside.clone().negate()) });
     return [...good, ...others];
   }
 
@@ -248,7 +258,7 @@ export class ToolScene extends Scene {
       Math.max(this.radii[body] ?? 0, this.isBall ? smallestBall * seen : 0);
     this.bodies.forEach((body, i) => {
       body.place(this.pointOf(cores, 2 * i), this.pointOf(cores, 2 * i + 1), radiusOf(i));
-      body.paint(i === held ? colors.plane : i === last ? colors.tool : colors.steel);
+      body.paint(i === held ? colors.plane : i === last ? this.toolColor : colors.steel);
     });
 
     // The last body is fixed in the frame of the flange, and in that of the hand.
