@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Tests that readers with any kind of color blindness can tell the colors of the rules apart, in light and dark:
+ * Tests that readers with red-green color blindness can tell the colors of the rules apart, in light and dark:
  *
  *   rule_colors_test.mjs CSS
  */
@@ -16,7 +16,6 @@ const views = {
   usual: [1, 0, 0, 0, 1, 0, 0, 0, 1],
   protanopia: [0.1124, 0.8876, 0, 0.1124, 0.8876, 0, 0.004, -0.004, 1],
   deuteranopia: [0.2928, 0.7072, 0, 0.2928, 0.7072, 0, -0.0223, 0.0223, 1],
-  monochromacy: [0.2126, 0.7152, 0.0722, 0.2126, 0.7152, 0.0722, 0.2126, 0.7152, 0.0722],
 };
 const times = (matrix, [a, b, c]) =>
   [0, 3, 6].map((i) => matrix[i] * a + matrix[i + 1] * b + matrix[i + 2] * c);
@@ -50,14 +49,13 @@ for (const [scheme, at] of [
   ["dark", 3],
 ]) {
   for (const [kind, view] of Object.entries(views)) {
-    const least = kind === "monochromacy" ? 0.03 : 0.08;
     test(`the rules differ: ${scheme}, ${kind}`, () => {
       assert.equal(colors.length, 4);
       for (const [i, a] of colors.entries()) {
         for (const b of colors.slice(0, i)) {
           const [p, q] = [a, b].map((one) => perceived(one[at], view));
           const away = Math.hypot(...p.map((value, axis) => value - q[axis]));
-          assert.ok(away >= least, `${a[1]} and ${b[1]} differ by ${away.toFixed(3)} only`);
+          assert.ok(away >= 0.08, `${a[1]} and ${b[1]} differ by ${away.toFixed(3)} only`);
         }
       }
     });
