@@ -16,6 +16,8 @@ export const small = { width: 390, height: 844, hasTouch: true, isMobile: true }
 export const note = (text) => console.log(`# ${text}`);
 export const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
 
+export const textOf = (tab, selector) => tab.$eval(selector, (element) => element.textContent);
+
 /** True if `./test --long` runs the tests. */
 export const isLong = Boolean(process.env.KEEPOUT_ALL_TRIALS);
 
@@ -38,7 +40,10 @@ export const launched = (browserPath = "/usr/bin/chromium") =>
     ],
   });
 
-/** Opens a page after `prepare` has set up its tab. Returns the tab, with a list of faults. */
+/**
+ * Opens a page after `prepare` has set up its tab. Returns the tab, with a list of faults. The page moves nothing
+ * by itself, unless `prepare` allows it.
+ */
 export async function opened(browser, file, viewport, prepare = () => {}) {
   const tab = await browser.newPage();
   tab.faults = [];
@@ -49,6 +54,7 @@ export async function opened(browser, file, viewport, prepare = () => {}) {
   tab.on("request", (request) => {
     if (!/^(file|data|blob):/.test(request.url())) tab.faults.push(`asks for ${request.url()}`);
   });
+  await tab.emulateMediaFeatures([{ name: "prefers-reduced-motion", value: "reduce" }]);
   await tab.setViewport(viewport);
   await prepare(tab);
   await tab.goto(pathToFileURL(file).href);

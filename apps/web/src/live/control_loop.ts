@@ -42,16 +42,24 @@ export class ControlLoop {
     return this.settings_;
   }
 
-  /** Continues with other settings. If the engine rejects them, throws and changes nothing. */
+  /**
+   * Continues with other settings, and starts a new path. The hand stays where it is. If the engine
+   * rejects the settings, throws and changes nothing.
+   */
   use(settings: ToolSettings): void {
     const tool = this.make(settings);
     this.discard();
     this.tool = tool;
     this.settings_ = settings;
-    const { replay } = this;
+    const { replay, hand, pointer } = this;
     this.place(this.last.positions);
     // A replay restarts with the new settings.
-    if (replay !== null) this.startReplay(replay.lines);
+    if (replay !== null) {
+      this.startReplay(replay.lines);
+      return;
+    }
+    this.hand = hand;
+    this.pointer = pointer;
   }
 
   /** Places tool and hand; starts a new path. */

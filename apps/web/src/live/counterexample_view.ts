@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
 import type { Counterexample, Vec3 } from "../engine/keepout.ts";
+import { colorOf } from "../page/color_of.ts";
 import { make } from "../page/elements.ts";
 import { colors } from "./markers.ts";
 import { element } from "./page.ts";
@@ -15,17 +16,17 @@ const words: Readonly<Record<string, readonly [title: string, why: string]>> = {
   CE2_boundary: [
     "At a rim",
     "The tip is just beside the rim of an open surface. The edge that it is nearest to has no " +
-      "neighbour, so none of the paper’s conditions holds: no plane is posed, and the motion goes through.",
+      "neighbor, so none of the conditions of Li et al. holds. Their rule adds no plane, and the motion goes through.",
   ],
   CE5_closed_octahedron: [
     "In a closed solid",
-    "The nearest point of the triangle in the way lies on a ridge. The paper’s rule hands the triangle over to its " +
-      "neighbour there, whose plane does not cover it: the tool ends inside.",
+    "The nearest point of the triangle ahead lies on a ridge. Li et al.’s rule leaves the triangle to its " +
+      "neighbor there. The neighbor’s plane does not cover it: the tool ends inside.",
   ],
   CE6c_larger_saddle: [
     "Over a saddle",
-    "The motion asked for is free, and the certified rule lets it pass as it is. The paper’s rule poses a " +
-      "plane of a triangle that is not in the way, and sliding along it leads into another one.",
+    "The commanded motion is free, and the certified rule returns it unchanged. Li et al.’s rule adds the " +
+      "plane of a triangle that is not in the way. The motion along that plane meets another triangle.",
   ],
 };
 
@@ -76,7 +77,8 @@ export class CounterexampleView {
     for (const [i, button] of buttons.entries()) {
       button.setAttribute("aria-pressed", String(i === number));
     }
-    this.stages = chosen.ends.map((end) => new Stage(chosen.example, end));
+    const tools = ["--rule-paper", "--rule-certified"].map(colorOf);
+    this.stages = chosen.ends.map((end, i) => new Stage(chosen.example, end, tools[i] as string));
     this.stages.forEach((stage, i) => {
       const caption = this.figures[i]?.querySelector("span");
       if (!caption) return;
@@ -84,8 +86,8 @@ export class CounterexampleView {
       caption.textContent = stage.goesThrough ? "goes through the surface" : "stays out";
     });
     element("why", HTMLElement).textContent =
-      `${words[chosen.example.name]?.[1] ?? ""} Both are to keep a margin of ${this.margin}; the ` +
-      `way asked for is ${Math.hypot(...chosen.example.desired).toFixed(2)} long.`;
+      `${words[chosen.example.name]?.[1] ?? ""} The margin is ${this.margin}, and ` +
+      `the commanded motion is ${Math.hypot(...chosen.example.desired).toFixed(2)} long.`;
     this.begun = performance.now();
   }
 
@@ -124,7 +126,7 @@ class Stage {
   private readonly end: three.Vector3;
   private readonly reach: number;
 
-  constructor(example: Counterexample, end: Vec3) {
+  constructor(example: Counterexample, end: Vec3, tool: string) {
     this.begin = vector(example.tip);
     this.end = vector(end);
     const wanted = this.begin.clone().add(vector(example.desired));
@@ -153,7 +155,7 @@ class Stage {
     const ball = this.reach * 0.035;
     this.tip = new three.Mesh(
       new three.SphereGeometry(ball, 32, 16),
-      new three.MeshStandardMaterial({ color: colors.tool, roughness: 0.35 }),
+      new three.MeshStandardMaterial({ color: tool, roughness: 0.35 }),
     );
     const asked = new three.Line(
       new three.BufferGeometry().setFromPoints([this.begin, wanted]),
@@ -162,7 +164,7 @@ class Stage {
     asked.computeLineDistances();
     const gone = new three.Line(
       new three.BufferGeometry().setFromPoints([this.begin, this.end]),
-      new three.LineBasicMaterial({ color: colors.tool }),
+      new three.LineBasicMaterial({ color: tool }),
     );
     for (const line of [asked, gone]) {
       line.material.depthTest = false;

@@ -39,7 +39,7 @@ const turns: Readonly<Record<string, Vec3>> = {
 
 /**
  * Moves the hand by mouse, touch or keys. A pointer that grabs the hand moves it across the view at
- * constant depth, and the wheel moves it deeper. Elsewhere a pointer turns the view. A released
+ * constant depth, within the open part of the view, and the wheel moves it deeper. Elsewhere a pointer turns the view. A released
  * hand follows the tool; keys hold it until Escape. If the hand can be rotated, letters, Shift and
  * the wheel, or a second finger rotate it.
  */
@@ -196,8 +196,10 @@ export class HandInput {
     this.go({ turn: turn.toArray() as Frame["turn"] });
   }
 
+  /** Moves the hand, but not to where cards cover it or out of the view. */
   private go(part: Partial<Frame>): void {
-    this.hand = { ...this.hand, ...part };
+    const wanted = { ...this.hand, ...part };
+    this.hand = { ...wanted, place: this.scene.inOpenView(wanted.place, this.hand.place) };
     this.isHeld = true;
     this.hold(this.hand);
   }

@@ -1,15 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The page of `keepout live`, for the ball of a tip or for an instrument: connects its parts. */
-import type { Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
+import type { Findings, Frame, Rule, ToolFacts, ToolSettings, Vec3 } from "../engine/keepout.ts";
+import { colorOf } from "../page/color_of.ts";
 import { grouped, saveFile } from "../page/elements.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
+import { type Course, Demonstration } from "./demonstration.ts";
 import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
 import { type GuideKind, GuidePanel } from "./guide_panel.ts";
 import { HandInput } from "./hand_input.ts";
 import { type Choice, MeshList, meshOf, nameOf } from "./mesh_list.ts";
-import { element, embeddedText, isTip, made, page, roomBetweenCards, toast } from "./page.ts";
+import {
+  element,
+  embeddedText,
+  isTip,
+  made,
+  page,
+  reportGraphics,
+  roomBetweenCards,
+  set,
+  toast,
+} from "./page.ts";
 import {
   instrumentPathText,
   type PathHeader,
@@ -21,7 +33,15 @@ import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
 import { SettingsPanel } from "./settings_panel.ts";
+import type { StartLine } from "./start_place.ts";
 import { ToolScene } from "./tool_scene.ts";
+
+/** The largest initial tool radius, as a fraction of the anatomy's diagonal. */
+const largestTool = 0.03;
+/** Below this extent a mesh may be in meters: MeshFindings::meters_below. [mm] */
+const metersBelow = 3;
+/** The rules of the keys 1 to 4. */
+const rules: readonly Rule[] = ["none", "all_faces", "paper", "certified"];
 
 // The page has the elements for both tools.
 for (const part of document.querySelectorAll<HTMLElement>("[data-tool]")) {
@@ -37,6 +57,8 @@ let settings: ToolSettings = {
   maxStep: page.max_step,
   guides: page.guides,
 };
+/** The tool radius that the command or the user has chosen. [mm] */
+let chosenRadius = settings.toolRadius;
 let shown: Choice | null = null;
 /** The choice that is loading, until it is loaded or has failed. */
 let awaited: Choice | null = null;
@@ -67,6 +89,9 @@ meshes.choose();
 const view = element("view", HTMLElement);
 const room = () => roomBetweenCards(view);
 const scene = made(() => new ToolScene(view, room, placeGrip, isTip));
+reportGraphics(element("picture", HTMLCanvasElement));
+const find = element("find", HTMLButtonElement);
+find.onclick = () => state !== null && scene.lookAt(state.hand.place);
 const chart = new ClearanceChart(element("chart", HTMLElement));
 const input = new HandInput(scene, view, !isTip, (hand) => {
   grip.classList.remove("new");
@@ -93,9 +118,14 @@ const handlers: Handlers<FromWorker> = {
     shown = awaited;
     if (shown !== null) meshes.select(shown);
     document.title = `${surface.name} – keepout live`;
+    set("hint", `drag me into ${wordFor(surface.name)}`);
     triangles = surface.corners.length / 3;
+    if (isTip && pendingPath === null) fitTool();
   },
-  findings: ({ findings }) => showFindings(findings, triangles, meshOf(shown)?.warnings ?? []),
+  findings({ findings }) {
+    showFindings(findings, triangles, meshOf(shown)?.warnings ?? []);
+    offerMeters(findings);
+  },
   guarded() {
     endLoading();
     begin();
@@ -118,7 +148,6 @@ const handlers: Handlers<FromWorker> = {
   },
   counterexamples: (message) => failures?.open(message),
   settings(message) {
-    input.drop();
     settings = message.settings;
     showSettings();
   },
@@ -139,9 +168,41 @@ function endLoading(): void {
 
 /** Places an instrument where the command has placed it, and a tip beside the anatomy. */
 function begin(): void {
-  const start = meshOf(shown)?.start?.positions;
-  const positions = start ?? scene.placeBeside(settings.toolRadius + settings.margin);
-  tell({ kind: "place", positions });
+  const positions = meshOf(shown)?.start?.positions;
+  if (positions !== undefined) tell({ kind: "place", positions });
+  else startOn(scene.linesBeside());
+}
+
+/** Places a tip on one of these lines, at its usual distance from the anatomy. */
+function startOn(lines: readonly StartLine[]): void {
+  const least = settings.toolRadius + settings.margin;
+  tell({ kind: "place on a line", lines, wanted: least + scene.beginning(), least });
+}
+
+/** Makes the tool small beside a small anatomy; else as large as the user has chosen. */
+function fitTool(): void {
+  const most = Number((largestTool * scene.diagonal).toPrecision(1));
+  const toolRadius = Math.min(chosenRadius, most);
+  if (toolRadius === settings.toolRadius) return;
+  settings = { ...settings, toolRadius };
+  showSettings();
+  tell({ kind: "settings", settings });
+}
+
+/** Offers to scale an opened mesh that seems to be in meters. */
+function offerMeters({ size }: Findings): void {
+  const source = shown?.source;
+  const extent = Math.max(...size);
+  if (shown === null || source?.kind !== "file" || source.scale !== 1) return;
+  if (extent >= metersBelow || extent < metersBelow / 1000) return;
+  const { command } = shown;
+  const act = () =>
+    load({
+      source: { ...source, name: `${source.name} × 1000`, scale: 1000 },
+      command: `${command} --scale 1000`,
+    });
+  const text = `This mesh is ${Number(extent.toPrecision(2))} mm across. Is it in meters?`;
+  toast(text, { name: "Scale by 1000", act });
 }
 
 function show(now: State): void {
@@ -151,15 +212,86 @@ function show(now: State): void {
     placeGrip();
     grip.hidden = false;
   }
+  demonstrate(now);
   input.rest(now.hand);
   scene.update(now);
   chart.add(now.time, now.handClearance, Math.min(...now.clearances));
   readings?.show(now, settings, facts, scene.frames);
 }
 
+// The first seconds.
+
+/** "due" until the first tool is placed; "over" after its demonstration, or if the visitor does not want it. */
+let demonstration: Demonstration | "due" | "over" = matchMedia("(prefers-reduced-motion: reduce)")
+  .matches
+  ? "over"
+  : "due";
+const lesson = element("lesson", HTMLElement);
+for (const kind of ["pointerdown", "keydown", "wheel", "drop"]) {
+  document.addEventListener(kind, endDemonstration, { capture: true, passive: true });
+}
+
+function demonstrate(now: State): void {
+  if (demonstration === "over" || awaited !== null) return;
+  if (demonstration === "due") {
+    const hold = (hand: Frame | null) => tell({ kind: "hand", hand });
+    demonstration = new Demonstration(now.hand, courseOf(now), hold, showLesson);
+    grip.classList.remove("new");
+  }
+  if (!demonstration.advance(now)) demonstration = "over";
+}
+
+/** Returns the motion of the hand: a tip moves across the view, an instrument along its shaft. */
+function courseOf({ flange, cores, clearances }: State): Course {
+  const back = cores.slice(0, 3).map((value, i) => value - (flange.place[i] as number));
+  const length = Math.hypot(...back);
+  const along = back.map((value) => -value / length) as unknown as Vec3;
+  const most = 0.06 * scene.diagonal;
+  return {
+    towards: isTip ? scene.across(-1, 0, 0) : along,
+    across: isTip ? scene.across(0, 1, 0) : scene.across(1, 0, 0),
+    distance: Math.max(2 * Math.min(...clearances), 10),
+    depth: Math.min(6, most),
+    width: Math.min(10, most),
+  };
+}
+
+function showLesson(phase: Parameters<ConstructorParameters<typeof Demonstration>[3]>[0]): void {
+  const word = wordFor(shown === null ? "" : nameOf(shown));
+  const words = {
+    approach: "The hand (red) moves, and the tool follows it.",
+    press: `The hand goes into ${word}. The tool stops ${settings.margin} mm before it.`,
+    slide: "The tool slides along the surface.",
+    back: "The hand comes out again.",
+  };
+  const yours = isTip ? `drag the red ring into ${word}.` : "drag the jaw.";
+  set(lesson, phase === null ? `Your turn: ${yours}` : words[phase]);
+  lesson.hidden = false;
+  if (phase === null) grip.classList.add("new");
+}
+
+/** The visitor takes over. */
+function endDemonstration(): void {
+  if (demonstration instanceof Demonstration) demonstration.end(false);
+  demonstration = "over";
+  lesson.hidden = true;
+}
+
+/** Returns what the visitor drags the tool into. */
+function wordFor(mesh: string): string {
+  const [, word] = /(brain|liver|aneurysm|airway)/.exec(mesh) ?? [];
+  if (word !== undefined) return `the ${word}`;
+  return /skull|femur|bone/.test(mesh) ? "the bone" : "it";
+}
+
 /** Puts the ring around the hand. */
 function placeGrip(): void {
-  if (state !== null) grip.style.transform = scene.shift(state.hand.place);
+  if (state === null) return;
+  const { place } = state.hand;
+  grip.style.transform = scene.shift(place);
+  const at = scene.project(place);
+  const open = scene.openView();
+  find.hidden = grip.hidden || (at.z < 1 && Math.abs(at.x) <= open.x + 0.02 && Math.abs(at.y) <= 1);
 }
 
 // Settings.
@@ -204,7 +336,12 @@ async function openFile(file: File): Promise<void> {
   }
   pendingPath = null;
   load({
-    source: { kind: "file", name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) },
+    source: {
+      kind: "file",
+      name: file.name,
+      bytes: new Uint8Array(await file.arrayBuffer()),
+      scale: 1,
+    },
     command: /^[\w.-]+$/.test(file.name) ? file.name : `'${file.name.replaceAll("'", "'\\''")}'`,
   });
 }
@@ -288,10 +425,20 @@ function showSettings(): void {
   panel.show(settings);
   guides.show(settings);
   chart.setMargin(settings.margin);
+  showColors();
+}
+
+/** Shows the tool in the color of its rule. */
+function showColors(): void {
+  document.documentElement.style.setProperty(
+    "--tool",
+    `var(--rule-${settings.rule.replaceAll("_", "-")})`,
+  );
+  scene.paintTool(colorOf("--tool"));
 }
 
 function change(part: Partial<ToolSettings>): void {
-  input.drop();
+  chosenRadius = part.toolRadius ?? chosenRadius;
   settings = { ...settings, ...part };
   showSettings();
   tell({ kind: "settings", settings });
@@ -304,6 +451,7 @@ element("again", HTMLButtonElement).onclick = () => {
 for (const use of ["save", "replay"] as const) {
   element(use, HTMLButtonElement).onclick = () => tell({ kind: "ask for path", use });
 }
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showColors);
 document.addEventListener("visibilitychange", () => {
   tell({ kind: "pause", paused: document.hidden });
 });
@@ -324,10 +472,18 @@ function addTipControls(): CounterexampleView {
   // A double-click on the anatomy places the tool there.
   view.addEventListener("dblclick", (event) => {
     const { x, y } = input.inView(event);
-    const place = scene.placeBefore(x, y, settings.toolRadius + settings.margin);
-    if (place === null) return;
+    const line = scene.lineBefore(x, y);
+    if (line === null) return;
     input.drop();
-    tell({ kind: "place", positions: place });
+    startOn([line]);
+  });
+
+  // The keys choose a rule, also while the pointer drags the hand.
+  document.addEventListener("keydown", (event) => {
+    const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
+    const rule = rules[Number(event.key) - 1];
+    if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
+    change({ rule });
   });
 
   return new CounterexampleView();

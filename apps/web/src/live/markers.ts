@@ -4,8 +4,7 @@ import * as three from "three";
 
 export const colors = {
   hand: "#e5484d",
-  tool: "#2f7df6",
-  plane: "#0fb5a3",
+  plane: "#e8a90c",
   guide: "#9a5cf0",
   bone: "#e9dfce",
   steel: "#8d9db5",
@@ -16,15 +15,18 @@ const trailLength = 240;
 
 /** The last positions of a point. */
 export class Trail {
-  readonly line: three.Line;
+  readonly line = new three.Line(
+    new three.BufferGeometry(),
+    new three.LineBasicMaterial({ transparent: true, opacity: 0.8, depthTest: false }),
+  );
   private readonly points: three.Vector3[] = [];
 
-  constructor(color: string) {
-    this.line = new three.Line(
-      new three.BufferGeometry(),
-      new three.LineBasicMaterial({ color, transparent: true, opacity: 0.8, depthTest: false }),
-    );
+  constructor() {
     this.line.frustumCulled = false;
+  }
+
+  paint(color: string): void {
+    this.line.material.color.set(color);
   }
 
   add(point: three.Vector3): void {

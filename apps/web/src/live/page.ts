@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+import { make } from "../page/elements.ts";
 import type { EmbeddedMesh } from "./protocol.ts";
 
 /** The settings that `keepout live` has put into the page, besides the meshes. */
@@ -41,7 +42,8 @@ export function set(where: string | Element | null, text: string): void {
   if (place && place.textContent !== text) place.textContent = text;
 }
 
-export const millimetres = (length: number): string => `${length.toFixed(2)} mm`;
+export const millimetres = (length: number): string =>
+  `${length.toFixed(2).replace("-", "\u2212")} mm`;
 
 /**
  * Returns the fraction of the view's width between the columns of cards; on a phone they are below
@@ -63,16 +65,41 @@ export function made<T>(makeScene: () => T): T {
   }
 }
 
+/** Reports a lost WebGL context. The browser gives it back, or the user must reload the page. */
+export function reportGraphics(canvas: HTMLCanvasElement): void {
+  const line = element("loading", HTMLElement);
+  let patience: ReturnType<typeof setTimeout> | undefined;
+  canvas.addEventListener("webglcontextlost", () => {
+    line.textContent = "The graphics stopped; the browser starts them again …";
+    line.hidden = false;
+    patience = setTimeout(() => {
+      line.textContent = "The graphics stopped: reload this page.";
+    }, 5000);
+  });
+  canvas.addEventListener("webglcontextrestored", () => {
+    clearTimeout(patience);
+    line.hidden = true;
+  });
+}
+
 let toastEnd: ReturnType<typeof setTimeout> | undefined;
 
-/** Shows a message to the user, long enough to read it. */
-export function toast(text: string): void {
+/** Shows a message to the user, long enough to read it, with a button if there is an answer. */
+export function toast(text: string, answer?: { name: string; act: () => void }): void {
   const line = element("toast", HTMLElement);
-  line.textContent = text;
+  line.replaceChildren(text);
+  if (answer !== undefined) {
+    const button = make("button", { type: "button" }, answer.name);
+    button.onclick = () => {
+      line.hidden = true;
+      answer.act();
+    };
+    line.append(" ", button);
+  }
   line.hidden = false;
   clearTimeout(toastEnd);
   const end = () => {
     line.hidden = true;
   };
-  toastEnd = setTimeout(end, 3000 + 55 * text.length);
+  toastEnd = setTimeout(end, 3000 + 55 * text.length + (answer === undefined ? 0 : 20_000));
 }

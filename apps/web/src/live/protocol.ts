@@ -16,6 +16,7 @@ import type {
 import type { CenteredSurface } from "../page/centered_surface.ts";
 import type { PackedSurface } from "../page/embedded_surface.ts";
 import type { CycleClock } from "./cycle_clock.ts";
+import type { StartLine } from "./start_place.ts";
 
 /** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
 export interface EmbeddedMesh extends PackedSurface {
@@ -33,7 +34,13 @@ export interface EmbeddedMesh extends PackedSurface {
 export type Source =
   | { readonly kind: "embedded"; readonly mesh: EmbeddedMesh; readonly data: string }
   | { readonly kind: "shape"; readonly name: string }
-  | { readonly kind: "file"; readonly name: string; readonly bytes: Uint8Array };
+  | {
+      readonly kind: "file";
+      readonly name: string;
+      readonly bytes: Uint8Array;
+      /** Multiplies all coordinates: 1000 for a file in meters. */
+      readonly scale: number;
+    };
 
 export type ToWorker =
   /** The engine in the page: base64 of gzip. */
@@ -47,6 +54,13 @@ export type ToWorker =
   | { readonly kind: "settings"; readonly settings: ToolSettings }
   /** Places the tip or the joints; starts a new path. */
   | { readonly kind: "place"; readonly positions: readonly number[] }
+  /** Places a tip on one of these lines, at a distance from the anatomy: see startPlace(). [mm] */
+  | {
+      readonly kind: "place on a line";
+      readonly lines: readonly StartLine[];
+      readonly wanted: number;
+      readonly least: number;
+    }
   /** The hand; null: it is released, and the spring pulls it to the tool. */
   | { readonly kind: "hand"; readonly hand: Frame | null }
   /** Repeats a recorded path: see path_record.ts. */

@@ -4,15 +4,7 @@ import { type StatusWords, spring, type ToolFacts, type ToolSettings } from "../
 import { grouped, make } from "../page/elements.ts";
 import { element, isTip, millimetres, set } from "./page.ts";
 import type { State } from "./protocol.ts";
-
-/** The color of each status chip. */
-const moods: Readonly<Record<string, "free" | "limited">> = {
-  free: "free",
-  limited: "limited",
-  recovering: "limited",
-  truncated: "limited",
-  degraded: "limited",
-};
+import { statusShown } from "./status_words.ts";
 
 /**
  * The number of the limited body: the nearest to the surface while one of its rows is active; else
@@ -59,15 +51,16 @@ export class Readings {
   }
 
   /** Shows the outcome of the last cycle, in a chip and in words. */
-  private showStatus({ status, time }: State, isGuarded: boolean): void {
-    const { name, reason } = this.statuses[status] ?? { name: "unknown", reason: "" };
-    this.status.className = moods[name] ?? "stopped";
-    set(this.status.querySelector("b"), isGuarded ? name.replaceAll("_", " ") : "no fixture");
-    set(this.status.querySelector("span"), isGuarded ? reason : "nothing holds the tool back");
+  private showStatus(state: State, isGuarded: boolean): void {
+    const name = this.statuses[state.status]?.name ?? "unknown";
+    const { chip, sentence, mood } = statusShown(name, state, isGuarded);
+    this.status.className = mood;
+    set(this.status.querySelector("b"), chip);
+    set(this.status.querySelector("span"), sentence);
     // A screen reader finishes a sentence before the text changes.
-    if (time - this.spokenAt <= 2000) return;
-    this.spokenAt = time;
-    set("spoken", isGuarded ? `${name}: ${reason}` : "no fixture");
+    if (state.time - this.spokenAt <= 2000) return;
+    this.spokenAt = state.time;
+    set("spoken", `${chip}: ${sentence}`);
   }
 
   /** Shows the guides that limit the tool, or how far outside of a guide it is. */
@@ -87,7 +80,7 @@ export class Readings {
     this.figure.parentElement?.classList.toggle("inside", least < 0);
     set(this.figure, Number.isNaN(least) ? "–" : millimetres(least));
     if (isTip) {
-      set("clearance-words", least < 0 ? "the tool is in" : "from tool to surface");
+      set("clearance-words", least < 0 ? "inside the surface" : "from tool to surface");
       return;
     }
     set("clearance-words", `from the ${bodies[clearances.indexOf(least)]?.name} to the surface`);

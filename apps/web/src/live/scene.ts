@@ -17,7 +17,7 @@ export abstract class Scene {
   protected readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   protected readonly moving = new three.Scene();
   protected readonly spring = new Spring();
-  private readonly trail = new Trail(colors.tool);
+  protected readonly trail = new Trail();
   /** The displayed state; null: no tool yet. */
   private moment: State | null = null;
   private readonly lit: three.Group[] = [];
@@ -43,6 +43,7 @@ export abstract class Scene {
     const { renderer, isSlow } = makeGraphics(false);
     this.renderer = renderer;
     this.finest = isSlow ? 0.6 : 1;
+    this.renderer.domElement.id = "picture";
     container.prepend(this.renderer.domElement);
     this.camera.up.set(0, 0, 1);
 
@@ -75,8 +76,6 @@ export abstract class Scene {
     this.corners = corners;
     this.origin.set(...origin);
     this.size = size;
-    this.camera.near = 0.002 * this.size;
-    this.camera.far = 10 * this.size;
     this.controls.minDistance = 0.02 * this.size;
     this.controls.maxDistance = 4 * this.size;
     this.controls.target.set(0, 0, 0);
@@ -98,6 +97,35 @@ export abstract class Scene {
     this.moment = moment;
     this.moving.visible = true;
     this.redraw();
+  }
+
+  /**
+   * Returns the place at the same depth that is in the open part of the view, which no card covers.
+   * A place outside of it goes no farther out than `from`.
+   */
+  inOpenView(place: Vec3, from: Vec3): Vec3 {
+    const wanted = this.project(place);
+    const begin = this.project(from);
+    const open = this.openView();
+    const within = (value: number, most: number, now: number) =>
+      Math.min(Math.max(value, Math.min(-most, now)), Math.max(most, now));
+    const x = within(wanted.x, open.x, begin.x);
+    const y = within(wanted.y, open.y, begin.y);
+    if (x === wanted.x && y === wanted.y) return place;
+    return this.outside(new three.Vector3(x, y, wanted.z).unproject(this.camera));
+  }
+
+  /** Returns half the width and height of the open part, in those of the view. */
+  openView(): { x: number; y: number } {
+    return { x: this.room(), y: Math.max(1 - 60 / this.container.clientHeight, 0.3) };
+  }
+
+  /** Turns the camera to a place without turning the view. */
+  lookAt(place: Vec3): void {
+    const way = this.inside(place).sub(this.controls.target);
+    this.controls.target.add(way);
+    this.camera.position.add(way);
+    this.controls.update();
   }
 
   /** Returns the radius of the tool's ball in the view. [px] */
@@ -143,6 +171,9 @@ export abstract class Scene {
     });
   }
 
+  /** Moves the view back until a point is in its open part. */
+  protected abstract keepInSight(point: three.Vector3): void;
+
   /** Positions the moving parts. */
   protected abstract arrange(moment: State): void;
 
@@ -154,12 +185,25 @@ export abstract class Scene {
   }
 
   private draw(): void {
+    this.fitDepths();
     for (const lights of this.lit) lights.quaternion.copy(this.camera.quaternion);
     if (this.moment !== null) this.arrange(this.moment);
     this.still.draw(this.renderer);
     this.renderer.render(this.moving, this.camera);
     ++this.drawn;
     this.onDraw();
+  }
+
+  /** Sets the range of visible depths, so that it holds the anatomy and a tool beside it. */
+  private fitDepths(): void {
+    const away = this.camera.position.length() + this.size;
+    const near = 0.002 * Math.min(this.size, away);
+    const far = 2 * away + 10 * this.size;
+    if (this.camera.near === near && this.camera.far === far) return;
+    this.camera.near = near;
+    this.camera.far = far;
+    this.camera.updateProjectionMatrix();
+    this.still.outdate();
   }
 
   private resize(): void {
@@ -171,6 +215,7 @@ export abstract class Scene {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (this.moment !== null) this.keepInSight(this.inside(this.moment.flange.place));
     this.outdate();
   }
 

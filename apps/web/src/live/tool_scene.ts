@@ -9,6 +9,7 @@ import { colors, sheet } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { heldBody } from "./readings.ts";
 import { Scene } from "./scene.ts";
+import type { StartLine } from "./start_place.ts";
 
 /** The largest number of drawn active planes. */
 const mostPlanes = 8;
@@ -41,6 +42,7 @@ export class ToolScene extends Scene {
     new three.TorusGeometry(9, 1.6, 12, 40),
     new three.MeshStandardMaterial({ color: colors.steel, roughness: 0.5 }),
   );
+  private toolColor = "";
   /** True until the view is turned to the jaw of an instrument. */
   private isNew = true;
 
@@ -60,6 +62,13 @@ export class ToolScene extends Scene {
   override show(surface: CenteredSurface): void {
     this.isNew = true;
     super.show(surface);
+  }
+
+  /** Gives tool and trail the color of a rule. */
+  paintTool(color: string): void {
+    this.toolColor = color;
+    this.trail.paint(color);
+    this.redraw();
   }
 
   /** Shows another tool, which has these properties. */
@@ -114,24 +123,25 @@ export class ToolScene extends Scene {
   }
 
   override update(moment: State): void {
-    if (this.isNew && !this.isBall) this.lookAtJaw(moment);
+    if (this.isNew && this.isBall) this.keepInSight(this.inside(moment.flange.place));
+    else if (this.isNew) this.lookAtJaw(moment);
     this.isNew = false;
     super.update(moment);
   }
 
   /**
-   * Returns a start position for a tip: beside the visible half of the anatomy, where a motion
-   * across the view enters it and stays visible. `kept`: the required clearance. [mm]
+   * Returns lines on which a tip may start, the best first. They come across the view from the
+   * right, and the first ones meet the anatomy where it is visible.
    */
-  placeBeside(kept: number): Vec3 {
-    const distance = kept + this.beginning();
+  linesBeside(): StartLine[] {
     this.camera.updateMatrixWorld();
     const [right, up, near] = [0, 1, 2].map((axis) =>
       new three.Vector3().setFromMatrixColumn(this.camera.matrixWorld, axis),
     ) as [three.Vector3, three.Vector3, three.Vector3];
     const caster = new three.Raycaster();
     const toCamera = new three.Vector3();
-    let place: three.Vector3 | null = null;
+    const good: StartLine[] = [];
+    const others: StartLine[] = [];
     for (const [height, depth] of placesToBegin) {
       const from = new three.Vector3()
         .addScaledVector(up, height * this.size)
@@ -141,49 +151,57 @@ export class ToolScene extends Scene {
       const hit = caster.intersectObject(this.anatomy)[0];
       if (!hit?.face) continue;
       const contact = hit.point.clone();
-      place ??= contact.clone().addScaledVector(right, distance);
+      const line = { from: this.outside(from), to: this.outside(contact) };
+      others.push(line);
       // Skips places that the view shows at a steep angle or that something hides.
       if (Math.abs(hit.face.normal.dot(near)) < 0.4) continue;
       toCamera.copy(this.camera.position).sub(contact).normalize();
       caster.set(contact.clone().addScaledVector(toCamera, 0.01 * this.size), toCamera);
-      if (caster.intersectObject(this.anatomy).length > 0) continue;
-      place = contact.addScaledVector(right, distance);
-      break;
+      if (caster.intersectObject(this.anatomy).length === 0) good.push(line);
     }
-    place ??= right.clone().multiplyScalar(0.3 * this.size);
-    this.keepInSight(place);
-    return this.outside(place);
+    // A vertex, for a surface that no line across the view meets.
+    const vertex = new three.Vector3().fromBufferAttribute(
+      this.anatomy.geometry.getAttribute("position"),
+      0,
+    );
+    const beside = right.clone().multiplyScalar(this.size);
+    others.push({ from: this.outside(beside), to: this.outside(vertex) });
+    // Through a cavity whose outside is forbidden.
+    others.push({ from: this.outside(beside), to: this.outside(beside.clone().negate()) });
+    return [...good, ...others];
   }
 
-  /**
-   * Returns a start position before the point where a ray of the view meets the anatomy; null if it
-   * meets none.
-   */
-  placeBefore(x: number, y: number, kept: number): Vec3 | null {
+  /** Returns the line from the eye to the anatomy in a direction of the view; null if it misses. */
+  lineBefore(x: number, y: number): StartLine | null {
     const caster = new three.Raycaster();
     caster.setFromCamera(new three.Vector2(x, y), this.camera);
     const hit = caster.intersectObject(this.anatomy)[0];
-    if (!hit?.face) return null;
-    const { normal } = hit.face;
-    if (normal.dot(caster.ray.direction) > 0) normal.negate();
-    return this.outside(hit.point.addScaledVector(normal, kept + this.beginning()));
+    if (hit === undefined) return null;
+    return { from: this.outside(this.camera.position), to: this.outside(hit.point) };
   }
 
   /** Returns the initial distance of a tip from its required clearance. [mm] */
-  private beginning(): number {
+  beginning(): number {
     return Math.min(10, 0.06 * this.size);
   }
 
-  /** Moves the view back until a point is within it. */
-  private keepInSight(point: three.Vector3): void {
-    for (let i = 0; i < 40 && Math.abs(point.clone().project(this.camera).x) > this.room(); ++i) {
-      this.camera.position.multiplyScalar(1.1);
-      this.controls.maxDistance = Math.max(
-        this.controls.maxDistance,
-        this.camera.position.length(),
-      );
-      this.controls.update();
-      this.camera.updateMatrixWorld();
+  /** The diagonal of the anatomy's box. [mm] */
+  get diagonal(): number {
+    return this.size;
+  }
+
+  /** Moves the view back until a point is in its open part. */
+  protected keepInSight(point: three.Vector3): void {
+    const { camera, controls } = this;
+    for (let i = 0; i < 40; ++i) {
+      camera.updateMatrixWorld();
+      const { x, y } = point.clone().project(camera);
+      const open = this.openView();
+      if (Math.abs(x) <= open.x && Math.abs(y) <= open.y) return;
+      const away = camera.position.clone().sub(controls.target).multiplyScalar(1.1);
+      controls.maxDistance = Math.max(controls.maxDistance, away.length());
+      camera.position.copy(controls.target).add(away);
+      controls.update();
     }
   }
 
@@ -240,7 +258,7 @@ export class ToolScene extends Scene {
       Math.max(this.radii[body] ?? 0, this.isBall ? smallestBall * seen : 0);
     this.bodies.forEach((body, i) => {
       body.place(this.pointOf(cores, 2 * i), this.pointOf(cores, 2 * i + 1), radiusOf(i));
-      body.paint(i === held ? colors.plane : i === last ? colors.tool : colors.steel);
+      body.paint(i === held ? colors.plane : i === last ? this.toolColor : colors.steel);
     });
 
     // The last body is fixed in the frame of the flange, and in that of the hand.

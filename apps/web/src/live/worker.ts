@@ -16,6 +16,7 @@ import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
 import { type FromWorker, type Handlers, handled, type Source, type ToWorker } from "./protocol.ts";
+import { startPlace } from "./start_place.ts";
 
 let keepout: Keepout;
 let anatomy: { of: Anatomy; settings: ToolSettings; port: Port | null } | null = null;
@@ -87,7 +88,7 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
     made =
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
-        : keepout.anatomyOfFile(source.name, source.bytes);
+        : scaled(keepout.anatomyOfFile(source.name, source.bytes), source.scale);
     tellSurface(name, made.surface());
   }
   letGo();
@@ -95,6 +96,23 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
   clock.lost = 0;
   tell({ kind: "findings", findings: made.findings() });
   tell({ kind: "guarded" });
+}
+
+/** Returns an anatomy with all coordinates multiplied; deletes the given one if it makes another. */
+function scaled(made: Anatomy, scale: number): Anatomy {
+  if (scale === 1) return made;
+  const { vertices, corners } = made.surface();
+  const larger = Float64Array.from(vertices, (value) => scale * value);
+  const copied = corners.slice();
+  made.delete();
+  return keepout.anatomyOfSurface(larger, copied);
+}
+
+/** Places tip or joints, and starts the tool if it has not started. */
+function placeAt(positions: readonly number[]): void {
+  place = positions;
+  loop?.place(place);
+  begin();
 }
 
 async function start(engine: string, subject: Subject): Promise<void> {
@@ -134,10 +152,13 @@ const handlers: Handlers<ToWorker> = {
     if (anatomy !== null) anatomy.settings = settings;
     begin();
   },
-  place({ positions }) {
-    place = positions;
-    loop?.place(place);
-    begin();
+  place: ({ positions }) => placeAt(positions),
+  "place on a line"({ lines, wanted, least }) {
+    const { of } = anatomy ?? {};
+    if (of === undefined) return;
+    const found = startPlace(lines, (...at) => of.clearance(...at), wanted, least);
+    if (found === null) throw new Error("there is no room for the tool there");
+    placeAt(found);
   },
   hand: ({ hand }) => loop?.hold(hand),
   replay: ({ lines }) => loop?.startReplay(lines),
