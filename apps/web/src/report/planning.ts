@@ -6,7 +6,7 @@ import { lookAtAll, unpackedAnatomy, verticesOf } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import { coloured, ends, widths } from "./paths.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
-import { pictureGrid, runColor } from "./runs.ts";
+import { pictureGrid, ruleColor } from "./runs.ts";
 import { rounded, shown } from "./shown.ts";
 import type { PlanRecord } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
@@ -55,13 +55,13 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
   const [toward, up] = [new three.Vector3(0.9, -0.5, 0.35), new three.Vector3(0, 0, 1)];
   const outlook = lookAtAll(verticesOf(anatomy), toward, up, anatomy);
   const view = new AnatomyView(group, anatomy, anatomy.corners, outlook);
-  rows.forEach((row, place) => {
+  rows.forEach((row) => {
     const checker = plan.summaries[row]?.checker as string;
     const runs = plan.runs.filter((run) => run.mesh === mesh.name && run.checker === checker);
     const good = runs.flatMap(({ path }) => ends((path ?? []).map(anatomy.placed)));
     const tooNear = runs.flatMap(({ too_near }) => too_near ?? []);
     const bad = tooNear.flatMap((length) => ends(length.map(anatomy.placed)));
-    const lengths = coloured(good, bad, runColor(place + 1), widths.many, mesh.inside);
+    const lengths = coloured(good, bad, ruleColor(checker), widths.many, mesh.inside);
     const from = `/summaries/${row}`;
     view.add(
       `All paths found under the checker ${checker}.`,

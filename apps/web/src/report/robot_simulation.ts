@@ -8,7 +8,7 @@ import { AnatomyView, hint } from "./anatomy_view.ts";
 import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
-import { pictureGrid, runColor, runName } from "./runs.ts";
+import { pictureGrid, ruleColor, swatched } from "./runs.ts";
 import { deep, millimetres, rounded, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
@@ -117,7 +117,7 @@ function strokeView(
   const followed = stroke.runs.map((run, number) => {
     const layer: Layer = { lengths: [], cut: null };
     const now = make("span", { class: "now" });
-    const name = runName(number, `${from}/runs/${number}/mode`);
+    const name = swatched(ruleColor(run.mode), shown(`${from}/runs/${number}/mode`));
     view.add(`The instrument beside the anatomy, ${run.mode}.`, layer, [], name, now);
     return (cycle: number) => {
       const clearances = (run.clearance_mm[cycle] ?? []).map(
@@ -132,7 +132,7 @@ function strokeView(
           from: places[body] as three.Vector3,
           to: places[body + 1] as three.Vector3,
           radius: radius_mm,
-          color: isDeepest ? "--alarm" : runColor(number),
+          color: isDeepest ? "--alarm" : ruleColor(run.mode),
           hidden: isDeepest ? 0.6 : 0.25,
         };
       });

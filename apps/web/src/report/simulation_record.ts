@@ -84,6 +84,12 @@ export function trespass(
   });
 }
 
+/** Returns the number of the run under the certified rule, or else of the last run. */
+export function bestRun(runs: readonly Run[]): number {
+  const certified = runs.findIndex(({ rule }) => rule === "certified");
+  return certified < 0 ? runs.length - 1 : certified;
+}
+
 /** Returns the deepest cycle of a stroke, or else its first crossing, or else its nearest cycle. */
 export function worstCycle(run: Run, stroke: number): number {
   const { clearance_mm } = run.strokes[stroke] as Stroke;
