@@ -9,7 +9,7 @@ import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { pictureGrid, ruleColor, swatched } from "./runs.ts";
-import { deep, millimetres, rounded, show, shown } from "./shown.ts";
+import { deep, millimetres, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
@@ -35,8 +35,17 @@ export async function robotSimulationSections(
   record: ReportRecord,
 ): Promise<void> {
   const simulation = record as RobotSimulationRecord;
-  main.append(figures(simulation));
   for (const mesh of simulation.meshes.keys()) main.append(await meshSection(simulation, mesh));
+  main.append(figures(simulation));
+}
+
+/** True if a depth is all that a body of this radius can have: the real depth may be larger. */
+const isAll = (depth: number, radius: number): boolean => depth >= radius - 1e-5;
+
+/** Returns the content of a cell with a depth. */
+function depthOf(from: string, radius: number): (Node | string)[] {
+  const depth = Number(valueAt(from));
+  return [...(isAll(depth, radius) ? ["at least "] : []), shown(from, millimetres)];
 }
 
 function figures({ bodies }: RobotSimulationRecord): HTMLElement {
@@ -46,10 +55,13 @@ function figures({ bodies }: RobotSimulationRecord): HTMLElement {
     named("mode", "/mode"),
     column("cycles", "/cycles"),
     ...(valueAt("/rows/0/guides_left") === undefined ? [] : [harm("guides left", "/guides_left")]),
-    ...bodies.flatMap(({ name }) => [
+    ...bodies.flatMap(({ name, radius_mm }) => [
       harm(`${name}: too close`, `/${name}_below`),
       harm("in the mesh", `/${name}_in_mesh`),
-      harm("deepest [mm]", `/${name}_deepest_mm`, rounded),
+      {
+        ...harm("deepest", `/${name}_deepest_mm`),
+        content: (row: string) => depthOf(`${row}/${name}_deepest_mm`, radius_mm),
+      },
     ]),
   ];
   return tableSection(
@@ -133,13 +145,15 @@ function strokeView(
           to: places[body + 1] as three.Vector3,
           radius: radius_mm,
           color: isDeepest ? "--alarm" : ruleColor(run.mode),
-          hidden: isDeepest ? 0.6 : 0.25,
+          hidden: isDeepest ? 0.6 : 0.1,
         };
       });
       const at = `${from}/runs/${number}/clearance_mm/${cycle}/${nearest}`;
       const how = (mm: number) => (mm < 0 ? deep(mm) : millimetres(mm));
       if (Number.isFinite(least)) {
-        now.replaceChildren(shown(`/bodies/${nearest}/name`), " ", shown(at, how));
+        const radius = bodies[nearest]?.radius_mm ?? Number.POSITIVE_INFINITY;
+        const extent = isAll(-least, radius) ? " at least " : " ";
+        now.replaceChildren(shown(`/bodies/${nearest}/name`), extent, shown(at, how));
       } else now.replaceChildren("clear");
     };
   });

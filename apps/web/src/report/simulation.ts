@@ -18,7 +18,7 @@ import { coloured, parted, widths } from "./paths.ts";
 import { entries, lastKey, type ReportRecord, valueAt } from "./record.ts";
 import { lead, method, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
-import { millimetres, rounded, show, shown } from "./shown.ts";
+import { microseconds, millimetres, rounded, show, shown } from "./shown.ts";
 import { stepTimes } from "./simulation_charts.ts";
 import { simulationDifferences, simulationNumbers } from "./simulation_findings.ts";
 import { type Run, type SimulationRecord, trespass, worstCycle } from "./simulation_record.ts";
@@ -200,10 +200,10 @@ const figures = ({ has_convex_tool, guides }: SimulationRecord): HTMLElement =>
       column("cycles limited", "/summary/limited"),
       column("cycles stopped", "/summary/stopped"),
       column("rate [kHz]", "/summary/rate_khz", rounded),
-      column("median step [µs]", "/summary/p50_us", rounded),
-      column("99 % [µs]", "/summary/p99_us", rounded),
-      column("99.9 % [µs]", "/summary/p999_us", rounded),
-      column("slowest [µs]", "/summary/max_us", rounded),
+      column("median step", "/summary/p50_us", microseconds),
+      column("99 %", "/summary/p99_us", microseconds),
+      column("99.9 %", "/summary/p999_us", microseconds),
+      column("slowest", "/summary/max_us", microseconds),
     ],
   );
 

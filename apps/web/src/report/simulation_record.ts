@@ -52,7 +52,6 @@ export interface SimulationRecord extends ReportRecord {
 
 export interface PlanRecord extends ReportRecord {
   readonly meshes: readonly (RecordedMesh & { readonly inside: boolean })[];
-  readonly summaries: readonly { readonly mesh: string; readonly checker: string }[];
   readonly runs: readonly {
     readonly mesh: string;
     readonly checker: string;
