@@ -86,14 +86,16 @@ export function comparisonSections(from: string): HTMLElement[] {
     return [section(title, words, ...more(rows), all)];
   };
   if (!valueAt(from)) return [];
-  const extent = valueAt(`${from}/complete`)
-    ? ""
-    : "It was stopped. In the rows that were finished, ";
+  const extent = valueAt(`${from}/complete`) ? "" : "It was stopped: some rows are missing. ";
   const finding = valueAt(`${from}/agree`)
-    ? "No index differs in any bit, and no solver is wrong."
+    ? ""
     : "An index differs, or a solver is wrong: please report it.";
   return [
-    ...differences([extent, finding], mostContradicted(from), slowestSolver(from)),
+    ...differences(
+      extent + finding === "" ? [] : [extent, finding],
+      mostContradicted(from),
+      slowestSolver(from),
+    ),
     ...part(
       "narrow_phases",
       "Do the narrow phases agree?",

@@ -6,8 +6,7 @@ import { AnatomyView } from "./anatomy_view.ts";
 import { closeUp, hang, markedCycle } from "./cut.ts";
 import { extremes } from "./extremes.ts";
 import { type Mark, mark } from "./marks.ts";
-import type { Lengths } from "./painting.ts";
-import { coloured, ends, parted, widths } from "./paths.ts";
+import { coloured, parted, widths } from "./paths.ts";
 import { ordinal, runColor, runName, swatched } from "./runs.ts";
 import { shownClearance } from "./simulation_charts.ts";
 import { bestRun, type Run, type SimulationRecord, trespass } from "./simulation_record.ts";
@@ -30,13 +29,16 @@ export function heroFigure(record: SimulationRecord, anatomy: Anatomy): HTMLElem
   );
   const failed = runs[moment.run]?.rule === "none" ? [] : [moment.run];
   const shownRuns = [...new Set([...failed, bestRun(runs)])];
-  const commanded: Lengths = {
-    ends: new Float32Array(ends(hand, 1e-3 * frame.height)),
-    color: "--commanded",
-    isAlarming: false,
-    isSeenThrough: true,
-    width: widths.many,
-  };
+  const free = runs.findIndex(({ rule }) => rule === "none");
+  const isInside = free < 0 ? [] : trespass(runs[free] as Run, stroke, record);
+  const ways = parted(hand, isInside, 1e-3 * frame.height);
+  const commanded = coloured(ways.good, ways.bad, "--commanded", widths.many, true);
+  const handMarks = [mark("hand", hand[moment.cycle] ?? frame.target, 6)];
+  if (free >= 0 && failed.length === 0) {
+    const worst = markedCycle(record, free, moment, frame, anatomy);
+    const label = distance(record, clearanceAt(free, stroke, worst), isInside[worst] === true);
+    handMarks.push(mark("hand bad", hand[worst] ?? frame.target, 0, label));
+  }
   const now = shownRuns.map(() => make("span", { class: "now" }));
   const drawnRuns = shownRuns.map((number, place) => {
     const run = runs[number] as Run;
@@ -65,9 +67,8 @@ export function heroFigure(record: SimulationRecord, anatomy: Anatomy): HTMLElem
       },
     };
   });
-  const handMark = mark("hand", hand[moment.cycle] ?? frame.target, 6);
-  const marks: Mark[] = [...drawnRuns.flatMap((run) => run.marks), handMark];
-  const lengths = [commanded, ...drawnRuns.flatMap((run) => run.lengths)];
+  const marks: Mark[] = [...drawnRuns.flatMap((run) => run.marks), ...handMarks];
+  const lengths = [...commanded, ...drawnRuns.flatMap((run) => run.lengths)];
   const isClosed = record.mesh.surface === "closed";
   const group = make("div", { class: "hero" });
   const view = new AnatomyView(group, anatomy, near, frame, true);
@@ -85,10 +86,10 @@ export function heroFigure(record: SimulationRecord, anatomy: Anatomy): HTMLElem
       " ",
       make("b", {}, "Red"),
       record.has_convex_tool
-        ? " is where the tool touches the surface."
+        ? " is where the tool touches the surface, or would touch it without a fixture."
         : isClosed
-          ? " is where the tip is inside."
-          : " is where the tip has passed through the surface.",
+          ? " is where the tip is inside, or would be without a fixture."
+          : " is where the tip has passed through the surface, or would have without a fixture.",
     ),
     make("p", {}, swatched("--commanded", "commanded path")),
     ...shownRuns.map((number, place) =>
@@ -97,7 +98,8 @@ export function heroFigure(record: SimulationRecord, anatomy: Anatomy): HTMLElem
   );
   const time = timeSlider(view, `/runs/0/strokes/${stroke}/tip`, hand.length, (cycle) => {
     for (const { follow } of drawnRuns) follow(cycle);
-    handMark.place = hand[cycle] ?? handMark.place;
+    const [ball] = handMarks as [Mark];
+    ball.place = hand[cycle] ?? ball.place;
     view.placeMarks();
   });
   time.go(moment.cycle);

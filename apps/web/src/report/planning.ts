@@ -48,22 +48,24 @@ const times = (rows: readonly string[]): (Node | string)[] => {
 };
 
 /** Plots the least clearance of each path, with a row for each checker. */
-function leastClearances(rows: readonly string[], required: string): HTMLElement {
+function leastClearances(rows: readonly string[], required: string): HTMLElement[] {
   const runs = entries("/runs");
   const of = (run: string, key: string) => valueAt(`${run}/${key}`);
   const isValid = (run: string) => of(run, "valid") ?? of(run, "too_close") === 0;
   const several = new Set(rows.map((row) => valueAt(`${row}/mesh`))).size > 1;
-  return clearanceRows({
+  const dotted = rows.map((from) => ({
+    from,
+    color: `var(${ruleColor(String(valueAt(`${from}/checker`)))})`,
+    dots: runs
+      .filter((run) => ["mesh", "checker"].every((key) => of(run, key) === of(from, key)))
+      .flatMap((run) => dotAt(`${run}/clearance_mm`, () => !isValid(run))),
+  }));
+  if (dotted.every(({ dots }) => dots.length === 0)) return [];
+  const plot = clearanceRows({
     title: "The nearest place of each path",
     description: "Least clearance of each path that was found, for each checker",
     label: "clearance [mm]",
-    rows: rows.map((from) => ({
-      from,
-      color: `var(${ruleColor(String(valueAt(`${from}/checker`)))})`,
-      dots: runs
-        .filter((run) => ["mesh", "checker"].every((key) => of(run, key) === of(from, key)))
-        .flatMap((run) => dotAt(`${run}/clearance_mm`, () => !isValid(run))),
-    })),
+    rows: dotted,
     levels: [[Number(valueAt(required)), "to be kept"]],
     name: ({ from }) => [
       ...(several ? [{ from: `${from}/mesh` }, ", "] : []),
@@ -72,6 +74,7 @@ function leastClearances(rows: readonly string[], required: string): HTMLElement
     value: ({ from }) => [{ from: `${from}/valid` }, " of ", { from: `${from}/solved` }, " valid"],
     tip: ({ from }) => tipOfColumns([shown(`${from}/checker`)], from, cost),
   });
+  return [panels(plot)];
 }
 
 /** The results under a checker: the runs that have a path. */
@@ -144,7 +147,7 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     ),
     group,
     hint(drawnRows.length),
-    panels(leastClearances(rows, "/clearance_mm")),
+    ...leastClearances(rows, "/clearance_mm"),
     scrolled(table(rows, columns)),
   );
 }
@@ -162,7 +165,7 @@ export function robotPlanningSections(): HTMLElement[] {
   const first = rows.filter((row) => valueAt(`${row}/mesh`) === valueAt(`${rows[0]}/mesh`));
   return [
     ...differences(times(first)),
-    panels(leastClearances(rows, "/margin_mm")),
+    ...leastClearances(rows, "/margin_mm"),
     tableSection(
       "Under each checker",
       [

@@ -7,9 +7,9 @@ import { type Anatomy, lookAtAll, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
-import { lead, section } from "./report_page.ts";
+import { differences, lead, section } from "./report_page.ts";
 import { pictureGrid, ruleColor, swatched } from "./runs.ts";
-import { deep, millimetres, show, shown } from "./shown.ts";
+import { counted, deep, listed, millimetres, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
@@ -35,8 +35,29 @@ export async function robotSimulationSections(
   record: ReportRecord,
 ): Promise<void> {
   const simulation = record as RobotSimulationRecord;
+  main.append(...differences(...reached(simulation)));
   for (const mesh of simulation.meshes.keys()) main.append(await meshSection(simulation, mesh));
   main.append(figures(simulation));
+}
+
+/** Returns for each body in how many cycles the mesh reached into it, on the first mesh. */
+function reached({ bodies }: RobotSimulationRecord): (Node | string)[][] {
+  const key = (row: string) => `${valueAt(`${row}/mesh`)} ${valueAt(`${row}/speed`)}`;
+  const rows = entries("/rows").filter((row) => key(row) === key("/rows/0"));
+  return bodies.map(({ name }, body) => {
+    const parts = rows.map((row) => [
+      ...counted(`${row}/${name}_in_mesh`, "cycle"),
+      " in mode ",
+      shown(`${row}/mode`),
+    ]);
+    return [
+      "The mesh reached into the ",
+      shown(`/bodies/${body}/name`),
+      " in ",
+      ...listed(parts),
+      ".",
+    ];
+  });
 }
 
 /** True if a depth is all that a body of this radius can have: the real depth may be larger. */
@@ -183,5 +204,5 @@ function outlook(anatomy: Anatomy, stroke: Stroke) {
   const axis = port.clone().sub(wrist).normalize();
   const side = axis.clone().cross(up).normalize();
   const toward = axis.addScaledVector(side, 1.2).normalize();
-  return lookAtAll(places, toward, up, anatomy, 1.25);
+  return lookAtAll(places, toward, up, anatomy, 1.9);
 }

@@ -30,7 +30,10 @@ export const microseconds: Format = (us) =>
 export const nanoseconds: Format = (ns) => microseconds(ns / 1e3);
 
 /** Returns a time, in s in the record, in a suitable unit. */
-export const seconds: Format = (s) => (s < 1 ? microseconds(1e6 * s) : `${mean(s)}\u00a0s`);
+export const seconds: Format = (s) => {
+  if (s >= 1) return `${mean(s)}\u00a0s`;
+  return s >= 1e-3 ? `${rounded(1e3 * s)}\u00a0ms` : `${rounded(1e6 * s)}\u00a0µs`;
+};
 
 /** Returns a length in a suitable unit: mm, µm or nm. */
 export function millimetres(mm: number): string {

@@ -8,6 +8,7 @@ import { lead, numbersLine, panels, section } from "./report_page.ts";
 import { type Inscribed, rowChart, spans } from "./row_chart.ts";
 import {
   error,
+  inUnit,
   mean,
   microseconds,
   percent,
@@ -31,6 +32,8 @@ const membersOf = (rows: readonly string[], key: string, kind: typeof column): C
     .filter((from) => kind === harm || rows.some((row) => valueAt<number>(row + from) !== 0))
     .map((from) => kind(lastKey(from).replaceAll("_", " "), from));
 
+/** Returns a length in tolerances of the certificate. */
+const tolerances = inUnit("τ", error);
 /** The distance beyond which a shortfall is a breach. [tolerances] */
 const breach = -3;
 
@@ -55,7 +58,7 @@ const clearanceLeft = (
       [0, "promised"],
     ],
     name: ({ from }) => name(from),
-    value: ({ from }) => [{ from: `${from}/${key}`, format: (tau) => `${rounded(tau)}\u00a0τ` }],
+    value: ({ from }) => [{ from: `${from}/${key}`, format: tolerances }],
     tip: ({ from }) => tipOfColumns([shown(`${from}/mesh`)], from, columns),
   });
 
@@ -100,7 +103,7 @@ export function verificationSections(): HTMLElement[] {
     column("steps out of the mesh", "/led_out"),
     ...membersOf(["/total"], "breaches", harm),
     column("clearance minus the promised one [mm]", "/least_beyond_margin", error),
-    column("the same [τ]", "/least_beyond_margin_in_tau", rounded),
+    column("the same [τ]", "/least_beyond_margin_in_tau", error),
     column("time", "/seconds", seconds),
   ];
   const statuses = [mesh, column("steps", "/steps"), ...membersOf(["/total"], "statuses", column)];
@@ -119,7 +122,7 @@ export function verificationSections(): HTMLElement[] {
       ["steps out of the mesh", shown("/total/led_out", grouped)],
       [
         "least clearance minus the promised one",
-        shown("/total/least_beyond_margin_in_tau", (tau) => `${rounded(tau)}\u00a0τ`),
+        shown("/total/least_beyond_margin_in_tau", tolerances),
       ],
     ),
     section(
