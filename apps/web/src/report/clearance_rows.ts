@@ -40,10 +40,15 @@ export function clearanceRows(wanted: {
   const at = levels.map(([level]) => level);
   const [low, high] = extremes([...at, ...rows.flatMap(({ dots }) => dots.map(({ x }) => x))]);
   const room = 0.04 * (high - low) || 1;
+  // Values of several powers of ten on both sides of zero.
+  const ticks = [...at, ...[10, 1e2, 1e3, 1e4, 1e5, 1e6].filter((tick) => tick <= high)];
+  const isWide = high - low > 100;
+  const scale = isWide ? { type: "symlog" as const, constant: 2, ticks } : {};
+  const domain = isWide ? [low - 1, 1.5 * high] : [low - room, high + room];
   return rowChart({
     ...wanted,
     data: () => rows,
-    x: () => ({ label, domain: [low - room, high + room], grid: true, tickFormat: tickText }),
+    x: () => ({ label, domain, grid: true, tickFormat: tickText, ...scale }),
     marks: (seen) => [
       ...levels.flatMap(([level, name]) =>
         levelMarks("x", level, name, { frameAnchor: "bottom", dx: 5, dy: 4, textAnchor: "start" }),

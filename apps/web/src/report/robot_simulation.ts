@@ -40,23 +40,21 @@ export async function robotSimulationSections(
   main.append(figures(simulation));
 }
 
-/** Returns for each body in how many cycles the mesh reached into it, on the first mesh. */
+/** Returns for each body the modes in which the mesh reached into it, on the first mesh. */
 function reached({ bodies }: RobotSimulationRecord): (Node | string)[][] {
   const key = (row: string) => `${valueAt(`${row}/mesh`)} ${valueAt(`${row}/speed`)}`;
   const rows = entries("/rows").filter((row) => key(row) === key("/rows/0"));
   return bodies.map(({ name }, body) => {
-    const parts = rows.map((row) => [
-      ...counted(`${row}/${name}_in_mesh`, "cycle"),
-      " in mode ",
-      shown(`${row}/mode`),
-    ]);
-    return [
-      "The mesh reached into the ",
-      shown(`/bodies/${body}/name`),
-      " in ",
-      ...listed(parts),
-      ".",
-    ];
+    const parts = rows
+      .filter((row) => Number(valueAt(`${row}/${name}_in_mesh`)) > 0)
+      .map((row) => [
+        ...counted(`${row}/${name}_in_mesh`, "cycle"),
+        " in mode ",
+        shown(`${row}/mode`),
+      ]);
+    if (parts.length === 0) return [];
+    const begin = ["The mesh reached into the ", shown(`/bodies/${body}/name`), " in "];
+    return [...begin, ...listed(parts), "."];
   });
 }
 

@@ -33,7 +33,7 @@ const membersOf = (rows: readonly string[], key: string, kind: typeof column): C
     .map((from) => kind(lastKey(from).replaceAll("_", " "), from));
 
 /** Returns a length in tolerances of the certificate. */
-const tolerances = inUnit("τ", error);
+const tolerances = inUnit("τ", (tau) => (Math.abs(tau) < 1e3 ? error(tau) : grouped(tau)));
 /** The distance beyond which a shortfall is a breach. [tolerances] */
 const breach = -3;
 
