@@ -394,7 +394,8 @@ for (const { file, name, record } of pages) {
       await until(allTurned, "a picture has not turned with the others");
     }
     if (record.keepout_record.startsWith("simulate")) {
-      const now = () => tab.$$eval(".now, .cycle", (all) => all.map((one) => one.textContent).join());
+      const now = () =>
+        tab.$$eval(".now, .cycle", (all) => all.map((one) => one.textContent).join());
       const before = await now();
       await tab.focus("input[type=range]");
       for (let i = 0; i < 20; ++i) await tab.keyboard.press("ArrowLeft");

@@ -43,7 +43,7 @@ export function clearanceRows(wanted: {
   // Values of several powers of ten on both sides of zero.
   const ticks = [...at, ...[10, 1e2, 1e3, 1e4, 1e5, 1e6].filter((tick) => tick <= high)];
   const isWide = high - low > 100;
-  const scale = isWide ? { type: "symlog" as const, constant: 2, ticks } : {};
+  const scale = isWide ? { type: "symlog" as const, constant: 0.4, ticks } : {};
   const domain = isWide ? [low - 1, 1.5 * high] : [low - room, high + room];
   return rowChart({
     ...wanted,
