@@ -17,6 +17,7 @@ import {
   microseconds,
   paragraphs,
   rounded,
+  seconds,
   show,
   shown,
   shownName,
@@ -511,7 +512,7 @@ class BenchmarkPlots {
         tip,
         name: ({ from }) => [{ from: `${from}/index` }],
         value: ({ from }) => [
-          { from: `${from}/${cost}`, format: inUnit(unit) },
+          { from: `${from}/${cost}`, format: cost === "build_s" ? seconds : inUnit(unit) },
           ...(cost === "build_s" ? [", ", { from: `${from}/build_cores`, format: cores }] : []),
         ],
         x: () => ({ label: `${title} [${unit}]`, grid: true, tickFormat: tickText }),
