@@ -8,7 +8,7 @@
  */
 import { readFile, writeFile } from "node:fs/promises";
 import { join, resolve } from "node:path";
-import { fileURLToPath } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 import { gzipSync } from "node:zlib";
 import { build } from "esbuild";
 
@@ -18,6 +18,25 @@ if (!pages) {
   process.exit(2);
 }
 const here = fileURLToPath(new URL(".", import.meta.url));
+
+/**
+ * Replaces packages of the plots by empty functions of the same names: no plot is a map, and all
+ * colors are those of the page's style.
+ */
+const withoutMaps = {
+  name: "without maps",
+  setup(bundler) {
+    bundler.onLoad(
+      { filter: /d3-(geo|scale-chromatic)[\\/]dist[\\/].*\.mjs$/ },
+      async ({ path }) => {
+        const names = Object.keys(await import(pathToFileURL(path)));
+        return {
+          contents: names.map((name) => `export const ${name} = () => undefined;`).join("\n"),
+        };
+      },
+    );
+  },
+};
 
 /** Returns the text of esbuild's bundle of an entry, and the packages in it. */
 async function bundle(entry, modules = {}) {
@@ -32,6 +51,7 @@ async function bundle(entry, modules = {}) {
     format: "iife",
     legalComments: "inline",
     alias: modules,
+    plugins: [withoutMaps],
     define: { "import.meta.url": '""' },
     external: ["module", "fs", "path", "url"],
     logOverride: { "empty-import-meta": "silent" },

@@ -133,13 +133,16 @@ const millimetres = { mm: 1, µm: 1e3, nm: 1e6 };
 /** Returns the factor that converts a number of the record to the displayed unit. */
 function scaleOf(keys, unit) {
   const kind = keys
-    .map((key) => (key === "bins" ? "ns" : key.match(/(?:^|_)(us|ns|s|mm|share)$/)?.[1]))
+    .map((key) => {
+      if (key === "bins") return "ns";
+      return key.replace(/seconds$/, "s").match(/(?:^|_)(us|ns|s|mm|share)$/)?.[1];
+    })
     .findLast((one) => one !== undefined);
   if (kind === "us") return microseconds[unit] ?? 1;
   if (kind === "ns") return unit === "" || unit === "ns" ? 1 : microseconds[unit] / 1e3;
   if (kind === "share") return 100;
   if (unit === "%") return 100;
-  if (kind === "s" && unit === "ms") return 1e3;
+  if (kind === "s") return 1e6 * (microseconds[unit] ?? 1e-6);
   return millimetres[unit] ?? 1;
 }
 
@@ -333,6 +336,34 @@ async function until(holds, otherwise) {
   assert.ok(await holds(), otherwise);
 }
 
+/**
+ * Asserts that a page begins with what was done, the headline, and what differs. Date and machine
+ * come last. Durations have a suitable unit.
+ */
+async function assertOrder(tab, record) {
+  const { begin, late, words } = await tab.$eval("main", (main) => {
+    const places = [...main.querySelectorAll('[data-from="/date"], [data-from^="/machine/"]')];
+    return {
+      begin: [...main.children].slice(0, 2).map((one) => [one.localName, one.textContent]),
+      // The time that reading the clock adds belongs to the method of a benchmark.
+      late: places
+        .filter(({ dataset }) => dataset.from !== "/machine/clock_ns")
+        .every((one) => main.lastElementChild.contains(one)),
+      words: main.innerText,
+    };
+  });
+  assert.deepEqual(begin, [
+    ["p", record.subject],
+    ["h1", record.headline],
+  ]);
+  assert.ok(late, "a date or a machine is not at the end of the page");
+  assert.doesNotMatch(words, /\b0\.0\d*\s(s|mm deep)\b/, "a value has an unsuitable unit");
+  assert.equal(
+    /was stopped/.test(words),
+    !record.complete && record.keepout_record !== "experiments",
+  );
+}
+
 for (const { file, name, record } of pages) {
   const hasAnatomy = showsAnatomy({ record });
   // Pages share their code for anatomy and for small screens, so a short test checks a few of them.
@@ -363,7 +394,8 @@ for (const { file, name, record } of pages) {
       await until(allTurned, "a picture has not turned with the others");
     }
     if (record.keepout_record.startsWith("simulate")) {
-      const now = () => tab.$$eval(".now", (all) => all.map((one) => one.textContent).join());
+      const now = () =>
+        tab.$$eval(".now, .cycle", (all) => all.map((one) => one.textContent).join());
       const before = await now();
       await tab.focus("input[type=range]");
       for (let i = 0; i < 20; ++i) await tab.keyboard.press("ArrowLeft");
@@ -393,8 +425,11 @@ for (const { file, name, record } of pages) {
     await assertSorts(tab, record);
     const tips = await assertTips(tab, record);
     note(`${tips} plots told`);
-    const hasPlots = ["simulate", "bench", "speed", "compare"].includes(record.keepout_record);
-    assert.equal(tips > 0, hasPlots);
+    const plotted = ["simulate", "bench", "speed", "compare", "plan", "verify", "verify_robot"];
+    if (record.keepout_record !== "plan_robot") {
+      assert.equal(tips > 0, plotted.includes(record.keepout_record));
+    }
+    await assertOrder(tab, record);
     // After a change of legends and choices, numbers are still from the record.
     for (const list of await tab.$$(".selection select")) {
       const values = await list.$$eval("option", (all) => all.map(({ value }) => value));
@@ -447,6 +482,99 @@ for (const { file, name, record } of pages) {
     await tab.close();
   });
 }
+
+for (const { file, name, record } of pages) {
+  if (record.keepout_record !== "simulate") continue;
+  test(`${name}: what differs, one section and one line of numbers come first`, async () => {
+    const tab = await opened(file, large);
+    const kinds = await tab.$$eval("main > *", (all) =>
+      all.slice(2, 5).map(({ className }) => className),
+    );
+    assert.deepEqual(kinds, ["differences", "hero", "numbers"]);
+    const sources = (selector) =>
+      tab.$$eval(`${selector} [data-from]`, (all) => all.map(({ dataset }) => dataset.from));
+    const told = await sources(".differences");
+    record.runs.forEach(({ rule, summary }, run) => {
+      const from = `/runs/${run}/summary`;
+      if (rule !== "none") assert.ok(told.includes(`${from}/p50_us`));
+      if (summary.deepest_mm > 0) assert.ok(told.includes(`${from}/deepest_mm`));
+    });
+    const best = Math.max(
+      record.runs.findIndex(({ rule }) => rule === "certified"),
+      0,
+    );
+    if (best > 0) assert.ok((await sources(".numbers")).includes(`/runs/${best}/summary/cycles`));
+    // The first figure has the commanded path and the path of the tool.
+    const paths = await tab.$$eval(".hero .name", (all) => all.map((one) => one.textContent));
+    assert.equal(paths[0], "commanded path");
+    assert.ok(paths.length > 1);
+    assert.deepEqual(tab.faults, []);
+    await tab.close();
+  });
+}
+
+test("a rule has the same color on all pages", async () => {
+  const colors = new Map();
+  for (const { file, record } of pages.filter(showsAnatomy)) {
+    if (record.keepout_record === "inspect") continue;
+    const tab = await opened(file, large);
+    const seen = await tab.$$eval(".name", (all) =>
+      all
+        .filter((one) => one.querySelector(".swatch"))
+        .map((one) => [
+          one.textContent,
+          getComputedStyle(one.querySelector(".swatch")).backgroundColor,
+        ]),
+    );
+    for (const [name, color] of seen) {
+      assert.equal(colors.get(name) ?? color, color, name);
+      colors.set(name, color);
+    }
+    await tab.close();
+  }
+  assert.ok(colors.size > 2);
+  const own = ["certified", "no fixture", "paper"].map((name) => colors.get(name)).filter(Boolean);
+  assert.equal(new Set(own).size, own.length);
+});
+
+test("no plot has a single value of x", { skip: given }, async () => {
+  const { file, record } = pages.find(({ name }) => name === "bench");
+  const sizes = new Map(record.benchmark.rows.map(({ mesh, triangles }) => [mesh, triangles]));
+  assert.ok(record.benchmark.rows.every((row) => sizes.get(row.mesh) === row.triangles));
+  const tab = await opened(file, large);
+  const plots = await tab.$$eval(".plot", (all) => all.map((one) => one.ariaLabel));
+  assert.deepEqual(
+    plots.filter((label) => label.includes("against the number of")),
+    [],
+  );
+  assert.ok(plots[0].startsWith("Median time of a step with each index"), plots[0]);
+  await tab.close();
+});
+
+test("a plan has at most two pictures of a mesh", { skip: given }, async () => {
+  const { file, record } = pages.find(({ name }) => name === "plan");
+  const tab = await opened(file, large);
+  const names = await tab.$$eval("figcaption .name", (all) => all.map((one) => one.textContent));
+  assert.equal((await tab.$$(".picture")).length, 2 * record.meshes.length);
+  assert.ok(names.includes("certified"));
+  await tab.close();
+});
+
+test("a depth that reaches the radius of a body is a lower bound", async () => {
+  for (const { file, record } of pages) {
+    if (record.keepout_record !== "simulate_robot") continue;
+    const tab = await opened(file, large);
+    const cells = await tab.$$eval('td[class] [data-from$="_deepest_mm"]', (all) =>
+      all.map((one) => [one.dataset.from, one.parentElement.textContent]),
+    );
+    for (const [from, text] of cells) {
+      const { radius_mm } = record.bodies.find(({ name }) => from.endsWith(`/${name}_deepest_mm`));
+      const isAll = valueAt(record, from) >= radius_mm - 1e-5;
+      assert.equal(text.startsWith("at least "), isAll, text);
+    }
+    await tab.close();
+  }
+});
 
 const experiments = pages.find(({ record }) => record.experiments);
 test("claims come first; pictures of a record do nothing", { skip: given }, async () => {

@@ -9,7 +9,7 @@ import { Legend, logarithmic, looksOf, plotSection, tickText, tipOfColumns } fro
 import { comparisonSections } from "./comparison.ts";
 import { curves } from "./curves.ts";
 import { entries, type Timing, valueAt } from "./record.ts";
-import { lead } from "./report_page.ts";
+import { lead, panels, section } from "./report_page.ts";
 import { barInRow, inRow, rowChart, spans } from "./row_chart.ts";
 import { type Question, Selection } from "./selection.ts";
 import {
@@ -17,6 +17,7 @@ import {
   microseconds,
   paragraphs,
   rounded,
+  seconds,
   show,
   shown,
   shownName,
@@ -67,13 +68,71 @@ export function benchmarkSections(from: string, comparisonFrom: string): HTMLEle
   return [
     ...(isPart ? [show(make("h2", { class: "part" }), `${from}/headline`)] : []),
     ...(isPart ? paragraphs(`${from}/account`, "account") : []), // of older records
-    ...conditions(from),
+    ...stepBars(from, rows),
     ...new BenchmarkPlots(from, rows).sections(),
     ...comparison,
     benchmarkTable(from, rows),
+    ...conditions(from),
     benchmarkMethod(from, rows),
   ];
 }
+
+/**
+ * Plots the median step of each index with its fastest solver, among the rows that the headline
+ * compares. Older records do not say which.
+ */
+function stepBars(from: string, rows: Rows): HTMLElement[] {
+  const fastest = rows[valueAt<number>(`${from}/fastest`) ?? -1];
+  if (!fastest) return [];
+  const isAlike = (row: BenchmarkRow) =>
+    ["mesh", "triangles", "radius", "activation"].every(
+      (key) => row[key as keyof BenchmarkRow] === fastest[key as keyof BenchmarkRow],
+    );
+  const timed = rows
+    .filter((row) => row.step_us && isAlike(row) && answers(row) && !valueAt(`${row.from}/remark`))
+    .sort((a, b) => median(a.step_us) - median(b.step_us));
+  const data = distinct(timed, ({ index }) => index);
+  if (data.length < 2) return [];
+  const isOwn = ({ index }: BenchmarkRow) => index === fastest.index;
+  return [
+    section(
+      "The time of a step with each index",
+      lead(
+        "Median of the whole step, for each index with its fastest solver, on ",
+        shown(`${fastest.from}/mesh`),
+        " with ",
+        shown(`${fastest.from}/triangles`, grouped),
+        " triangles, rule ",
+        shown(`${fastest.from}/activation`),
+        ". Shorter is better.",
+      ),
+      panels(
+        rowChart({
+          description: "Median time of a step with each index, the fastest first",
+          data: () => data,
+          tip,
+          name: ({ from }) => [{ from: `${from}/index` }, " with ", { from: `${from}/solver` }],
+          value: ({ from }) => [{ from: `${from}/step_us/p50`, format: microseconds }],
+          x: () => ({ label: "median step [µs]", grid: true, tickFormat: tickText }),
+          marks: (seen, { y }) => [
+            Plot.barX(seen, {
+              x: (row: BenchmarkRow) => median(row.step_us),
+              y,
+              fill: (row: BenchmarkRow) => (isOwn(row) ? "var(--rule-certified)" : "var(--soft)"),
+              ...barInRow,
+            }),
+          ],
+        }),
+      ),
+    ),
+  ];
+}
+
+/** True if a mesh has rows of several sizes; else a plot over the size has one value of x. */
+const haveSizes = (rows: Rows): boolean =>
+  rows.some((row) =>
+    rows.some((other) => other.mesh === row.mesh && other.triangles !== row.triangles),
+  );
 
 /** Returns the conditions of the headline. Older records have them in their account. */
 function conditions(from: string): HTMLElement[] {
@@ -84,8 +143,8 @@ function conditions(from: string): HTMLElement[] {
   return [
     make(
       "p",
-      { class: "account" },
-      "Median of ",
+      { class: "lead" },
+      "The headline compares medians of ",
       shown(`${row("fastest")}/queries`, grouped),
       " steps of the fastest combination, ",
       shown(`${row("slowest")}/queries`, grouped),
@@ -250,13 +309,14 @@ class BenchmarkPlots {
       plotSection(
         "Which index finds the triangles fastest",
         [
-          "The same work for every index, apart from the step: all triangles where the rule looks, by the exact test, with their closest points, sorted. Candidates only is what the index proposes, before that. The flatter a line, the less a finer mesh costs.",
+          "The same work for every index, apart from the step: all triangles where the rule looks, by the exact test, with their closest points, sorted. Candidates only is what the index proposes, before that. The flatter a line, if lines are drawn, the less a finer mesh costs.",
           ...remarks,
         ],
         legend,
-        over("Query", "query", middle),
-        over("Candidates only", "candidates", first),
-        ...(this.rows.some(({ exact_us }) => exact_us)
+        ...(haveSizes(this.rows)
+          ? [over("Query", "query", middle), over("Candidates only", "candidates", first)]
+          : []),
+        ...(haveSizes(this.rows) && this.rows.some(({ exact_us }) => exact_us)
           ? [over("Exact test", "exact test", ({ exact_us }) => median(exact_us))]
           : []),
         rowChart({
@@ -296,7 +356,8 @@ class BenchmarkPlots {
       pairs.some(([one, other]) => index === one && solver === other);
     const told = this.rows.filter(({ rate_khz }) => rate_khz !== null);
     const shownRows = told.some(isPair) ? told.filter(isPair) : told;
-    if (shownRows.length === 0) return [];
+    // Rates of one size have no slope to compare with that of the published ones.
+    if (!haveSizes(shownRows)) return [];
     const stars = entries(`${this.from}/published`).map((from): Rate => {
       return { ...(valueAt(from) as Rate), from, series: published };
     });
@@ -451,7 +512,7 @@ class BenchmarkPlots {
         tip,
         name: ({ from }) => [{ from: `${from}/index` }],
         value: ({ from }) => [
-          { from: `${from}/${cost}`, format: inUnit(unit) },
+          { from: `${from}/${cost}`, format: cost === "build_s" ? seconds : inUnit(unit) },
           ...(cost === "build_s" ? [", ", { from: `${from}/build_cores`, format: cores }] : []),
         ],
         x: () => ({ label: `${title} [${unit}]`, grid: true, tickFormat: tickText }),

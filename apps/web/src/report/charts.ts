@@ -189,8 +189,9 @@ export function logarithmic(label: string | null, values: readonly number[]): Pl
   return { type: "log", domain: [low, high], label, grid: true, ticks: seen, tickFormat: tickText };
 }
 
-/** Returns the text of a tick: 0.5, 200, 50k, 1M, 10⁻⁶. */
+/** Returns the text of a tick: −0.5, 200, 50k, 1M, 10⁻⁶. */
 export function tickText(value: number): string {
+  if (value < 0) return `−${tickText(-value)}`;
   if (value >= 1e6) return `${Number((value / 1e6).toPrecision(6))}M`;
   if (value >= 1e4) return `${Number((value / 1e3).toPrecision(6))}k`;
   if (value >= 0.9e-3 || value === 0) return String(Number(value.toPrecision(6)));

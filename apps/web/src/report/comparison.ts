@@ -6,10 +6,10 @@
 import { grouped, make } from "../page/elements.ts";
 import { Legend, logarithmic, looksOf, tipOfColumns } from "./charts.ts";
 import { entries, valueAt } from "./record.ts";
-import { lead, panels, section } from "./report_page.ts";
+import { differences, lead, panels, section } from "./report_page.ts";
 import { rowChart, spans } from "./row_chart.ts";
-import { error, rounded, shown, shownName } from "./shown.ts";
-import { type Column, column, harm, named, tableSection } from "./table.ts";
+import { error, listed, microseconds, rounded, shown, shownName } from "./shown.ts";
+import { type Column, column, harm, named, scrolled, table } from "./table.ts";
 
 const size = (heading: string, from: string): Column => column(heading, from, error);
 const times: readonly Column[] = [
@@ -81,22 +81,27 @@ export function comparisonSections(from: string): HTMLElement[] {
   ) => {
     const rows = entries(`${from}/${key}/rows`);
     if (rows.length === 0) return [];
-    return [tableSection(title, [...faults(rows, columns), note], rows, columns, ...more(rows))];
+    const words = lead(...faults(rows, columns), note);
+    const all = scrolled(table(rows, columns), rows.length > 12 ? "scroll windowed" : "scroll");
+    return [section(title, words, ...more(rows), all)];
   };
   if (!valueAt(from)) return [];
-  const extent = valueAt(`${from}/complete`)
-    ? ""
-    : "It was stopped. In the rows that were finished, ";
+  const extent = valueAt(`${from}/complete`) ? "" : "It was stopped: some rows are missing. ";
   const finding = valueAt(`${from}/agree`)
-    ? "No index differs in any bit, and no solver is wrong."
+    ? ""
     : "An index differs, or a solver is wrong: please report it.";
   return [
-    section("Do the parts agree?", lead(extent, finding)),
+    ...differences(
+      extent + finding === "" ? [] : [extent, finding],
+      mostContradicted(from),
+      slowestSolver(from),
+    ),
     ...part(
-      "indices",
-      "Do the indices agree?",
-      indexColumns,
-      "Held to brute force on the same poses. The exact kernel decides whichever index proposes: only a triangle missed or given twice can change a step, unless the rule searches the index itself.",
+      "narrow_phases",
+      "Do the narrow phases agree?",
+      narrowPhaseColumns,
+      "Distances are held to the exact kernel. Contradicted is apart called overlapping, or the reverse. It is expected within 0.000001 mm of a touch, which is finer than the tolerance of most libraries: the names above do not count it there.",
+      errors,
     ),
     ...part(
       "solvers",
@@ -106,13 +111,52 @@ export function comparisonSections(from: string): HTMLElement[] {
       outcomes,
     ),
     ...part(
-      "narrow_phases",
-      "Do the narrow phases agree?",
-      narrowPhaseColumns,
-      "Distances are held to the exact kernel. Contradicted is apart called overlapping, or the reverse. It is expected within 0.000001 mm of a touch, which is finer than the tolerance of most libraries: the names above do not count it there.",
-      errors,
+      "indices",
+      "Do the indices agree?",
+      indexColumns,
+      "Held to brute force on the same poses. The exact kernel decides whichever index proposes: only a triangle missed or given twice can change a step, unless the rule searches the index itself.",
     ),
   ];
+}
+
+/** Returns the row with the largest value of a column; undefined if no value is above zero. */
+function largest(rows: readonly string[], key: string): string | undefined {
+  const value = (row: string) => Number(valueAt(`${row}/${key}`));
+  const [first] = [...rows].sort((a, b) => value(b) - value(a));
+  return first !== undefined && value(first) > 0 ? first : undefined;
+}
+
+/** Returns a sentence on the narrow phase that contradicts the exact kernel most often. */
+function mostContradicted(from: string): (Node | string)[] {
+  const row = largest(entries(`${from}/narrow_phases/rows`), "contradicted");
+  if (row === undefined) return [];
+  const count = (key: string) => shown(`${row}/${key}`, grouped);
+  return [
+    "The narrow phases differ: ",
+    shown(`${row}/backend`),
+    " contradicts the exact kernel in ",
+    count("contradicted"),
+    " of ",
+    count("pairs"),
+    " pairs that are ",
+    shown(`${row}/relation`),
+    ".",
+  ];
+}
+
+/** Returns a sentence on the median times of the fastest and of the slowest solver. */
+function slowestSolver(from: string): (Node | string)[] {
+  const rows = entries(`${from}/solvers/rows`).filter((row) => valueAt(`${row}/p50_us`) !== null);
+  const slow = largest(rows, "p50_us");
+  if (slow === undefined || rows.length < 2) return [];
+  const time = (row: string) => Number(valueAt(`${row}/p50_us`));
+  const fast = [...rows].sort((a, b) => time(a) - time(b))[0] as string;
+  const parts = [fast, slow].map((row) => [
+    shown(`${row}/p50_us`, microseconds),
+    " with ",
+    shown(`${row}/solver`),
+  ]);
+  return ["The median problem took ", ...listed(parts), "."];
 }
 
 /** Returns the statuses of the libraries, in their own words, with a line for each solver. */

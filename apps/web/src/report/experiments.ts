@@ -13,7 +13,22 @@ import { type Column, named, scrolled, table } from "./table.ts";
  */
 export function experimentSections(): HTMLElement[] {
   const all = entries("/experiments");
-  return [...claims(all), ...all.map(found)];
+  return [...findings(all), ...claims(all), ...all.map(found)];
+}
+
+/** Returns the result of each experiment in a sentence, for the place under the headline. */
+function findings(all: readonly string[]): HTMLElement[] {
+  const lines = all
+    .filter((experiment) => valueAt(`${experiment}/headline`))
+    .map((experiment) =>
+      make(
+        "li",
+        {},
+        make("span", { class: "of" }, shown(`${experiment}/title`)),
+        shown(`${experiment}/headline`),
+      ),
+    );
+  return lines.length > 0 ? [make("ul", { class: "differences" }, ...lines)] : [];
 }
 
 /** Returns the pointer to the experiment of a claim. */

@@ -46,6 +46,7 @@ export class Line {
       middle: new three.Vector2(width / 2, height / 2),
       radius: radius * scale,
       depth: radius * pixel,
+      opacity: this.lengths.opacity ?? 1,
     });
   }
 }
@@ -74,7 +75,9 @@ const tubeMaterial = (): three.ShaderMaterial =>
       middle: { value: new three.Vector2() },
       radius: { value: 1 },
       depth: { value: 0 },
+      opacity: { value: 1 },
     },
+    transparent: true,
     vertexShader: `
       attribute vec3 other;
       attribute vec2 corner;
@@ -95,7 +98,7 @@ const tubeMaterial = (): three.ShaderMaterial =>
       }`,
     fragmentShader: `
       uniform vec3 color;
-      uniform float depth;
+      uniform float depth, opacity;
       varying vec2 across;
       varying vec3 place;
       void main() {
@@ -105,7 +108,7 @@ const tubeMaterial = (): three.ShaderMaterial =>
         vec3 normal = vec3(across * place.x, sqrt(1.0 - place.x * place.x));
         float light = 0.72 + 0.38 * max(0.0, dot(normal, normalize(vec3(-0.40, 0.55, 0.73))));
         if (rest < 0.3) light *= 0.4;
-        gl_FragColor = vec4(light * color, 1.0);
+        gl_FragColor = vec4(light * color, opacity);
         // It lies before the surface that it touches.
         gl_FragDepth = gl_FragCoord.z - depth * (1.0 + sqrt(rest));
         #include <colorspace_fragment>

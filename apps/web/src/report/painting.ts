@@ -19,6 +19,8 @@ export interface Lengths {
   readonly isSeenThrough: boolean;
   /** [px of the page] */
   readonly width: number;
+  /** From 0 to 1; 1 if missing. */
+  readonly opacity?: number;
 }
 
 /** A body of an instrument: a capsule between two places. */

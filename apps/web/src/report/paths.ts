@@ -3,7 +3,7 @@ import type * as three from "three";
 import type { Lengths } from "./painting.ts";
 
 /** The widths of paths in a picture. [px] */
-export const widths = { many: 1.7, whole: 2.2, near: 3.4 } as const;
+export const widths = { faint: 1, many: 1.7, whole: 2.2, near: 3.4 } as const;
 
 /**
  * Returns the segments between neighbors of a path, as pairs of ends. Places nearer than `least`

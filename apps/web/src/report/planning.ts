@@ -4,17 +4,77 @@ import * as three from "three";
 import { grouped, make } from "../page/elements.ts";
 import { lookAtAll, unpackedAnatomy, verticesOf } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
+import { tipOfColumns } from "./charts.ts";
+import { clearanceRows, dotAt } from "./clearance_rows.ts";
 import { coloured, ends, widths } from "./paths.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
-import { pictureGrid, runColor } from "./runs.ts";
-import { rounded, shown } from "./shown.ts";
+import { differences, lead, panels, section } from "./report_page.ts";
+import { pictureGrid, ruleColor, swatched } from "./runs.ts";
+import { listed, rounded, seconds, shown } from "./shown.ts";
 import type { PlanRecord } from "./simulation_record.ts";
-import { type Column, column, harm, named, tableSection } from "./table.ts";
+import { type Column, column, harm, named, scrolled, table, tableSection } from "./table.ts";
 
 /** Shows the page of `plan`. */
 export async function planningSections(main: HTMLElement, record: ReportRecord): Promise<void> {
   const plan = record as PlanRecord;
+  const first = entries("/summaries").filter(
+    (row) => valueAt(`${row}/mesh`) === plan.meshes[0]?.name,
+  );
+  main.append(...differences(times(first)));
   for (const mesh of plan.meshes.keys()) main.append(await meshSection(plan, mesh));
+}
+
+const isCertified = (row: string): boolean => valueAt(`${row}/checker`) === "certified";
+
+/** Returns the checker by samples with the most invalid paths, and the certified checker. */
+function telling(rows: readonly string[]): string[] {
+  const invalid = (row: string) =>
+    Number(valueAt(`${row}/solved`)) - Number(valueAt(`${row}/valid`));
+  const others = rows.filter((row) => !isCertified(row));
+  others.sort((a, b) => invalid(b) - invalid(a));
+  return [...others.slice(0, 1), ...rows.filter(isCertified)];
+}
+
+/** Returns a sentence on the time of a search with the checkers that tell most. */
+const times = (rows: readonly string[]): (Node | string)[] => {
+  const parts = telling(rows).map((row) => [
+    shown(`${row}/median_seconds`, seconds),
+    " with ",
+    shown(`${row}/checker`),
+  ]);
+  return parts.length > 0
+    ? ["The median search in ", shown(`${rows[0]}/mesh`), " took ", ...listed(parts), "."]
+    : [];
+};
+
+/** Plots the least clearance of each path, with a row for each checker. */
+function leastClearances(rows: readonly string[], required: string): HTMLElement[] {
+  const runs = entries("/runs");
+  const of = (run: string, key: string) => valueAt(`${run}/${key}`);
+  const isValid = (run: string) => of(run, "valid") ?? of(run, "too_close") === 0;
+  const several = new Set(rows.map((row) => valueAt(`${row}/mesh`))).size > 1;
+  const dotted = rows.map((from) => ({
+    from,
+    color: `var(${ruleColor(String(valueAt(`${from}/checker`)))})`,
+    dots: runs
+      .filter((run) => ["mesh", "checker"].every((key) => of(run, key) === of(from, key)))
+      .flatMap((run) => dotAt(`${run}/clearance_mm`, () => !isValid(run))),
+  }));
+  if (dotted.every(({ dots }) => dots.length === 0)) return [];
+  const plot = clearanceRows({
+    title: "The nearest place of each path",
+    description: "Least clearance of each path that was found, for each checker",
+    label: "clearance [mm]",
+    rows: dotted,
+    levels: [[Number(valueAt(required)), "to be kept"]],
+    name: ({ from }) => [
+      ...(several ? [{ from: `${from}/mesh` }, ", "] : []),
+      { from: `${from}/checker` },
+    ],
+    value: ({ from }) => [{ from: `${from}/valid` }, " of ", { from: `${from}/solved` }, " valid"],
+    tip: ({ from }) => tipOfColumns([shown(`${from}/checker`)], from, cost),
+  });
+  return [panels(plot)];
 }
 
 /** The results under a checker: the runs that have a path. */
@@ -25,8 +85,8 @@ const solved: readonly Column[] = [
 ];
 /** The cost of its paths. */
 const cost: readonly Column[] = [
-  column("median [s]", "/median_seconds", rounded),
-  column("checking [s]", "/median_checking_seconds", rounded),
+  column("median time", "/median_seconds", seconds),
+  column("of it checking", "/median_checking_seconds", seconds),
   column("motions asked", "/median_checks"),
   column("length [mm]", "/median_length_mm", rounded),
 ];
@@ -49,43 +109,46 @@ const columns: readonly Column[] = [
 async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElement> {
   const mesh = plan.meshes[number] as PlanRecord["meshes"][number];
   const anatomy = await unpackedAnatomy(mesh);
-  const rows = [...plan.summaries.keys()].filter((row) => plan.summaries[row]?.mesh === mesh.name);
-  const group = pictureGrid(2);
+  const rows = entries("/summaries").filter((row) => valueAt(`${row}/mesh`) === mesh.name);
+  const drawnRows = telling(rows);
+  const group = pictureGrid(drawnRows.length);
   // From the side and slightly above, with z upward, as the sample meshes are oriented.
   const [toward, up] = [new three.Vector3(0.9, -0.5, 0.35), new three.Vector3(0, 0, 1)];
-  const outlook = lookAtAll(verticesOf(anatomy), toward, up, anatomy);
+  const places = plan.runs
+    .filter((run) => run.mesh === mesh.name)
+    .flatMap(({ path }) => (path ?? []).map(anatomy.placed));
+  const outlook = lookAtAll([...verticesOf(anatomy), ...places], toward, up, anatomy);
   const view = new AnatomyView(group, anatomy, anatomy.corners, outlook);
-  rows.forEach((row, place) => {
-    const checker = plan.summaries[row]?.checker as string;
+  for (const from of drawnRows) {
+    const checker = valueAt<string>(`${from}/checker`) as string;
     const runs = plan.runs.filter((run) => run.mesh === mesh.name && run.checker === checker);
     const good = runs.flatMap(({ path }) => ends((path ?? []).map(anatomy.placed)));
     const tooNear = runs.flatMap(({ too_near }) => too_near ?? []);
     const bad = tooNear.flatMap((length) => ends(length.map(anatomy.placed)));
-    const lengths = coloured(good, bad, runColor(place + 1), widths.many, mesh.inside);
-    const from = `/summaries/${row}`;
+    const lengths = coloured(good, bad, ruleColor(checker), widths.whole, mesh.inside);
     view.add(
       `All paths found under the checker ${checker}.`,
       { lengths, cut: null },
       [],
-      make("span", { class: "name" }, shown(`${from}/checker`)),
+      swatched(ruleColor(checker), shown(`${from}/checker`)),
       make("br"),
       shown(`${from}/solved`, grouped),
       " solved, of these ",
       shown(`${from}/valid`, grouped),
       " valid",
     );
-  });
-  return tableSection(
+  }
+  return section(
     shown(`/meshes/${number}/name`),
-    [
-      "All paths found under each checker. ",
+    lead(
+      "All paths that two of the checkers found. ",
       make("b", {}, "Red"),
       ": nearer to the mesh than allowed, or through it. A path is valid if all of it keeps the clearance. The sliding checker has a planner of its own, SlidingConnect.",
-    ],
-    rows.map((row) => `/summaries/${row}`),
-    columns,
+    ),
     group,
-    hint(rows.length),
+    hint(drawnRows.length),
+    ...leastClearances(rows, "/clearance_mm"),
+    scrolled(table(rows, columns)),
   );
 }
 
@@ -98,7 +161,11 @@ export function robotPlanningSections(): HTMLElement[] {
     harm("in the mesh", "/entering"),
     harm("unproven", "/unproven"),
   ];
+  const rows = entries("/summaries");
+  const first = rows.filter((row) => valueAt(`${row}/mesh`) === valueAt(`${rows[0]}/mesh`));
   return [
+    ...differences(times(first)),
+    ...leastClearances(rows, "/margin_mm"),
     tableSection(
       "Under each checker",
       [
@@ -123,7 +190,7 @@ export function robotPlanningSections(): HTMLElement[] {
         named("checker", "/checker"),
         column("problem", "/problem"),
         column("seed", "/seed"),
-        column("time [s]", "/seconds", rounded),
+        column("time", "/seconds", seconds),
         column("motions asked", "/checks"),
         ...judged,
         column("least clearance [mm]", "/clearance_mm", (mm) => rounded(mm, 4)),

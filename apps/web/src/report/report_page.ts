@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { make, saveFile } from "../page/elements.ts";
-import { type ReportRecord, readRecord, recordText, valueAt } from "./record.ts";
+import { entries, type ReportRecord, readRecord, recordText, valueAt } from "./record.ts";
 import { paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
 
 /** The content of a page between its headline and its machine. */
@@ -15,26 +15,11 @@ export async function showReport(kinds: Readonly<Record<string, Sections>>): Pro
     if (!sections) throw new Error(`this page does not show '${record.keepout_record}'`);
     document.title = `${record.headline} – keepout ${record.keepout_record}`;
     main.replaceChildren(
-      make(
-        "p",
-        { class: "eyebrow" },
-        shown("/subject"),
-        ...(record.machine ? ["; ", make("strong", {}, shown("/machine/processor"))] : []),
-        ", ",
-        shown("/date"),
-      ),
+      show(make("p", { class: "eyebrow" }), "/subject"),
       show(make("h1"), "/headline"),
       ...paragraphs("/account", "account"),
     );
-    if (!record.complete) {
-      main.append(
-        make(
-          "p",
-          { class: "account bad" },
-          "The command was stopped: this page shows the finished part.",
-        ),
-      );
-    }
+    if (!record.complete) main.append(extent(record));
     try {
       await sections(main, record);
     } finally {
@@ -46,6 +31,18 @@ export async function showReport(kinds: Readonly<Record<string, Sections>>): Pro
   }
 }
 
+/** Explains why a record does not have all results. */
+function extent({ keepout_record }: ReportRecord): HTMLElement {
+  // Experiments that were stopped write no record.
+  return keepout_record === "experiments"
+    ? make("p", { class: "account" }, "This run made a selection of the experiments.")
+    : make(
+        "p",
+        { class: "account bad" },
+        "The command was stopped: this page shows the finished part.",
+      );
+}
+
 /** Returns a section under a heading. */
 export function section(title: Node | string, ...content: readonly (Node | string)[]): HTMLElement {
   return make("section", {}, make("h2", {}, title), ...content);
@@ -54,6 +51,26 @@ export function section(title: Node | string, ...content: readonly (Node | strin
 /** Returns a paragraph of the page's own text under a heading. */
 export const lead = (...content: readonly (Node | string)[]): HTMLElement =>
   make("p", { class: "lead" }, ...content);
+
+/** Returns the sentences that say what differs, for the place under the headline. */
+export const differences = (
+  ...sentences: readonly (readonly (Node | string)[])[]
+): HTMLElement[] => {
+  const words = sentences.filter((sentence) => sentence.length > 0);
+  if (words.length === 0) return [];
+  const content = words.flatMap((sentence, i) => [...(i > 0 ? [" "] : []), ...sentence]);
+  return [make("p", { class: "differences" }, ...content)];
+};
+
+/** Returns the line of the most important numbers, each with its name. */
+export const numbersLine = (
+  ...numbers: readonly (readonly [Node | string, Node | string])[]
+): HTMLElement =>
+  make(
+    "dl",
+    { class: "numbers" },
+    ...numbers.map(([name, value]) => make("div", {}, make("dt", {}, name), make("dd", {}, value))),
+  );
 
 /** Returns a paragraph on how something was measured. */
 export const method = (...words: readonly (Node | string)[]): HTMLElement =>
@@ -88,6 +105,12 @@ function machineFacts(pointer: string): HTMLElement[] {
   });
 }
 
+/** Returns the machine of a campaign with one shard, which has no other machine. */
+const onlyShard = (): HTMLElement[] =>
+  entries("/shards").length === 1
+    ? [make("dt", {}, "machine"), show(make("dd"), "/shards/0/machine")]
+    : [];
+
 /** Returns how the record was made, and how to repeat or save it. */
 function circumstances(record: ReportRecord): HTMLElement {
   const copy = make("button", { type: "button" }, "Copy");
@@ -100,7 +123,12 @@ function circumstances(record: ReportRecord): HTMLElement {
     const date = record.date.replaceAll(":", "");
     saveFile(`keepout-${record.keepout_record}-${date}.json`, recordText(), "application/json");
   });
-  const facts = [make("dt", {}, "date"), show(make("dd"), "/date"), ...machineFacts("/machine")];
+  const facts = [
+    make("dt", {}, "date"),
+    show(make("dd"), "/date"),
+    ...machineFacts("/machine"),
+    ...onlyShard(),
+  ];
   const lists = [facts, shownMembers("/settings")].filter((list) => list.length > 0);
   return section(
     "Where it was done, and how to do it again",

@@ -7,9 +7,9 @@ import { type Anatomy, lookAtAll, unpackedAnatomy } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
-import { lead, section } from "./report_page.ts";
-import { pictureGrid, runColor, runName } from "./runs.ts";
-import { deep, millimetres, rounded, show, shown } from "./shown.ts";
+import { differences, lead, section } from "./report_page.ts";
+import { pictureGrid, ruleColor, swatched } from "./runs.ts";
+import { counted, deep, listed, millimetres, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
@@ -35,8 +35,36 @@ export async function robotSimulationSections(
   record: ReportRecord,
 ): Promise<void> {
   const simulation = record as RobotSimulationRecord;
-  main.append(figures(simulation));
+  main.append(...differences(...reached(simulation)));
   for (const mesh of simulation.meshes.keys()) main.append(await meshSection(simulation, mesh));
+  main.append(figures(simulation));
+}
+
+/** Returns for each body the modes in which the mesh reached into it, on the first mesh. */
+function reached({ bodies }: RobotSimulationRecord): (Node | string)[][] {
+  const key = (row: string) => `${valueAt(`${row}/mesh`)} ${valueAt(`${row}/speed`)}`;
+  const rows = entries("/rows").filter((row) => key(row) === key("/rows/0"));
+  return bodies.map(({ name }, body) => {
+    const parts = rows
+      .filter((row) => Number(valueAt(`${row}/${name}_in_mesh`)) > 0)
+      .map((row) => [
+        ...counted(`${row}/${name}_in_mesh`, "cycle"),
+        " in mode ",
+        shown(`${row}/mode`),
+      ]);
+    if (parts.length === 0) return [];
+    const begin = ["The mesh reached into the ", shown(`/bodies/${body}/name`), " in "];
+    return [...begin, ...listed(parts), "."];
+  });
+}
+
+/** True if a depth is all that a body of this radius can have: the real depth may be larger. */
+const isAll = (depth: number, radius: number): boolean => depth >= radius - 1e-5;
+
+/** Returns the content of a cell with a depth. */
+function depthOf(from: string, radius: number): (Node | string)[] {
+  const depth = Number(valueAt(from));
+  return [...(isAll(depth, radius) ? ["at least "] : []), shown(from, millimetres)];
 }
 
 function figures({ bodies }: RobotSimulationRecord): HTMLElement {
@@ -46,10 +74,13 @@ function figures({ bodies }: RobotSimulationRecord): HTMLElement {
     named("mode", "/mode"),
     column("cycles", "/cycles"),
     ...(valueAt("/rows/0/guides_left") === undefined ? [] : [harm("guides left", "/guides_left")]),
-    ...bodies.flatMap(({ name }) => [
+    ...bodies.flatMap(({ name, radius_mm }) => [
       harm(`${name}: too close`, `/${name}_below`),
       harm("in the mesh", `/${name}_in_mesh`),
-      harm("deepest [mm]", `/${name}_deepest_mm`, rounded),
+      {
+        ...harm("deepest", `/${name}_deepest_mm`),
+        content: (row: string) => depthOf(`${row}/${name}_deepest_mm`, radius_mm),
+      },
     ]),
   ];
   return tableSection(
@@ -117,7 +148,7 @@ function strokeView(
   const followed = stroke.runs.map((run, number) => {
     const layer: Layer = { lengths: [], cut: null };
     const now = make("span", { class: "now" });
-    const name = runName(number, `${from}/runs/${number}/mode`);
+    const name = swatched(ruleColor(run.mode), shown(`${from}/runs/${number}/mode`));
     view.add(`The instrument beside the anatomy, ${run.mode}.`, layer, [], name, now);
     return (cycle: number) => {
       const clearances = (run.clearance_mm[cycle] ?? []).map(
@@ -132,14 +163,16 @@ function strokeView(
           from: places[body] as three.Vector3,
           to: places[body + 1] as three.Vector3,
           radius: radius_mm,
-          color: isDeepest ? "--alarm" : runColor(number),
-          hidden: isDeepest ? 0.6 : 0.25,
+          color: isDeepest ? "--alarm" : ruleColor(run.mode),
+          hidden: isDeepest ? 0.6 : 0.1,
         };
       });
       const at = `${from}/runs/${number}/clearance_mm/${cycle}/${nearest}`;
       const how = (mm: number) => (mm < 0 ? deep(mm) : millimetres(mm));
       if (Number.isFinite(least)) {
-        now.replaceChildren(shown(`/bodies/${nearest}/name`), " ", shown(at, how));
+        const radius = bodies[nearest]?.radius_mm ?? Number.POSITIVE_INFINITY;
+        const extent = isAll(-least, radius) ? " at least " : " ";
+        now.replaceChildren(shown(`/bodies/${nearest}/name`), extent, shown(at, how));
       } else now.replaceChildren("clear");
     };
   });
@@ -169,5 +202,5 @@ function outlook(anatomy: Anatomy, stroke: Stroke) {
   const axis = port.clone().sub(wrist).normalize();
   const side = axis.clone().cross(up).normalize();
   const toward = axis.addScaledVector(side, 1.2).normalize();
-  return lookAtAll(places, toward, up, anatomy, 1.25);
+  return lookAtAll(places, toward, up, anatomy, 1.9);
 }

@@ -5,7 +5,7 @@ import { type Chart, chart } from "./charts.ts";
 import { type Format, show } from "./shown.ts";
 
 /** A value of the record within a text of a plot. */
-interface Inscribed {
+export interface Inscribed {
   readonly from: string;
   readonly format?: Format;
 }

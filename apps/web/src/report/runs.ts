@@ -1,20 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The appearance of runs on a page: their names, with a swatch of their colors. */
 import { make } from "../page/elements.ts";
-import { lastKey } from "./record.ts";
+import { lastKey, valueAt } from "./record.ts";
 import { shown } from "./shown.ts";
 
-/** Returns the variable of the page's style with the color of a run. */
-export const runColor = (run: number): string => `--rule-${run % 6}`;
+/** Rules, modes and checkers with a color of their own, which is the same on all pages. */
+const named = ["none", "all_faces", "paper", "certified", "linearized", "tip_only", "sliding"];
 
-/** Returns the name of a run, after a swatch of its color. `from`: the pointer to the name. */
-export const runName = (run: number, from = `/runs/${run}/name`): HTMLElement =>
+/**
+ * Returns the variable of the page's style with the color of a rule, a mode or a checker. Only
+ * checkers by samples have no color of their own.
+ */
+export function ruleColor(rule: string): string {
+  const key = rule.replaceAll(" ", "_").replace("linearised", "linearized");
+  return `--rule-${named.includes(key) ? key : "sampled"}`;
+}
+
+/** Returns a swatch of a color, before a name. */
+export const swatched = (color: string, ...name: readonly (Node | string)[]): HTMLElement =>
   make(
     "span",
-    { class: "name", style: `--color: var(${runColor(run)})` },
+    { class: "name", style: `--color: var(${color})` },
     make("span", { class: "swatch" }),
-    shown(from),
+    ...name,
   );
+
+/** Returns the color of a run of a simulation. */
+export const runColor = (run: number): string => ruleColor(valueAt(`/runs/${run}/rule`) ?? "");
+
+/** Returns the name of a run of a simulation, after a swatch of its color. */
+export const runName = (run: number): HTMLElement =>
+  swatched(runColor(run), shown(`/runs/${run}/name`));
 
 /** Returns the position in an array of the record, counted from one. */
 export const ordinal = (pointer: string): HTMLElement =>

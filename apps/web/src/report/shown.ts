@@ -29,6 +29,12 @@ export const microseconds: Format = (us) =>
 /** Returns a time, in ns in the record, in a suitable unit. */
 export const nanoseconds: Format = (ns) => microseconds(ns / 1e3);
 
+/** Returns a time, in s in the record, in a suitable unit. */
+export const seconds: Format = (s) => {
+  if (s >= 1) return `${mean(s)}\u00a0s`;
+  return s >= 1e-3 ? `${rounded(1e3 * s)}\u00a0ms` : `${rounded(1e6 * s)}\u00a0µs`;
+};
+
 /** Returns a length in a suitable unit: mm, µm or nm. */
 export function millimetres(mm: number): string {
   const size = Math.abs(mm);
@@ -84,6 +90,16 @@ export const shown = (pointer: string, format?: Format): HTMLSpanElement =>
 export function shownName(pointer: string): HTMLSpanElement {
   return make("span", { "data-from": pointer, "data-name": "" }, lastKey(pointer));
 }
+
+/** Returns a count of the record, and its noun: "1 cycle", "23 cycles". */
+export const counted = (pointer: string, noun: string): (Node | string)[] => [
+  shown(pointer, grouped),
+  ` ${noun}${valueAt(pointer) === 1 ? "" : "s"}`,
+];
+
+/** Returns a list in words: "A, B and C". */
+export const listed = (parts: readonly (readonly (Node | string)[])[]): (Node | string)[] =>
+  parts.flatMap((part, i) => [i === 0 ? "" : i + 1 === parts.length ? " and " : ", ", ...part]);
 
 /** Shows everything at a pointer in full: names and values, and lists of them. */
 export function shownWhole(pointer: string): Node[] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 import * as three from "three";
-import { drawn, make } from "../page/elements.ts";
+import { make } from "../page/elements.ts";
 import {
   type Anatomy,
   fitted,
@@ -12,16 +12,18 @@ import {
 } from "./anatomy.ts";
 import { AnatomyView, bestDirection, hint } from "./anatomy_view.ts";
 import { benchmarkSections } from "./benchmark.ts";
-import { mark } from "./marks.ts";
+import { heroFigure } from "./hero.ts";
+import { type Mark, mark } from "./marks.ts";
 import { coloured, parted, widths } from "./paths.ts";
 import { entries, lastKey, type ReportRecord, valueAt } from "./record.ts";
 import { lead, method, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
-import { millimetres, rounded, show, shown } from "./shown.ts";
+import { microseconds, millimetres, rounded, show, shown } from "./shown.ts";
 import { stepTimes } from "./simulation_charts.ts";
-import { type Run, type SimulationRecord, trespass } from "./simulation_record.ts";
+import { simulationDifferences, simulationNumbers } from "./simulation_findings.ts";
+import { type Run, type SimulationRecord, trespass, worstCycle } from "./simulation_record.ts";
 import { seen } from "./still.ts";
-import { strokeSection } from "./stroke.ts";
+import { clearanceAt, distance, strokeSection } from "./stroke.ts";
 import { column, harm, named, tableSection } from "./table.ts";
 
 /** Shows the page of `simulate`. */
@@ -29,9 +31,13 @@ export async function simulationSections(main: HTMLElement, record: ReportRecord
   const simulation = record as SimulationRecord;
   const anatomy = await unpackedAnatomy(simulation.mesh);
   main.append(
-    overview(simulation, anatomy),
+    ...simulationDifferences(simulation),
+    heroFigure(simulation, anatomy),
+    simulationNumbers(simulation),
+    hint(1),
     figures(simulation),
     strokeSection(simulation, anatomy),
+    overview(simulation, anatomy),
     ...speed(simulation),
     measurement(simulation),
     ...benchmarkSections("/benchmark", "/comparison"),
@@ -50,7 +56,7 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
     view.add(
       description,
       layer,
-      worstPlace(record, anatomy, run, number),
+      worstPlaces(record, anatomy, run, number),
       make("span", { class: `badge ${verdict}` }, words),
       runName(number),
       make("br"),
@@ -60,23 +66,34 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
         : []),
     );
   });
-  return make("section", {}, group, hint(record.runs.length));
+  return section("All strokes", group, hint(record.runs.length));
 }
 
+/** The most strokes with a ring in a picture. */
+const mostRings = 6;
+
 /**
- * Returns a ring around the worst place of a rule that let the tool in, which makes a small place
- * visible.
+ * Returns a ring around the worst place of each stroke in which a rule let the tool in, which makes
+ * a small place visible.
  */
-function worstPlace(record: SimulationRecord, anatomy: Anatomy, run: Run, number: number) {
+function worstPlaces(
+  record: SimulationRecord,
+  { placed }: Anatomy,
+  run: Run,
+  number: number,
+): Mark[] {
   if (run.kept_out || run.rule === "none") return [];
-  const { stroke, cycle } = run.worst;
-  const place = run.strokes[stroke]?.tip[cycle];
-  if (!place) return [];
-  const deepest = `/runs/${number}/summary/deepest_mm`;
-  const label = drawn("tspan", {});
-  if (Number(valueAt(deepest)) > 0) show(label, deepest, (mm) => `${millimetres(mm)} deep`);
-  else label.textContent = record.has_convex_tool ? "touched" : "passed through";
-  return [mark("ring bad", anatomy.placed(place), 15, label)];
+  const failed = [...run.strokes.keys()].filter((stroke) =>
+    trespass(run, stroke, record).includes(true),
+  );
+  const [worst] = [run.worst.stroke];
+  const strokes = [worst, ...failed.filter((stroke) => stroke !== worst)].slice(0, mostRings);
+  return strokes.flatMap((stroke) => {
+    const cycle = stroke === worst ? run.worst.cycle : worstCycle(run, stroke);
+    const place = run.strokes[stroke]?.tip[cycle];
+    const label = distance(record, clearanceAt(number, stroke, cycle), true);
+    return place ? [mark("ring bad", placed(place), 15, label)] : [];
+  });
 }
 
 function strokes(record: SimulationRecord, anatomy: Anatomy, run: Run, number: number) {
@@ -84,8 +101,23 @@ function strokes(record: SimulationRecord, anatomy: Anatomy, run: Run, number: n
     const isBad = trespass(run, stroke, record);
     return parted(tip.map(anatomy.placed), isBad, 1e-3 * anatomy.size);
   });
-  const [good, bad] = [parts.flatMap((part) => part.good), parts.flatMap((part) => part.bad)];
-  return coloured(good, bad, runColor(number), widths.whole);
+  // Many strokes that stayed out would hide those that did not.
+  const isFailed = ({ bad }: (typeof parts)[number]) => bad.length > 0;
+  const pale =
+    run.rule !== "none" && parts.length > 24 ? parts.filter((one) => !isFailed(one)) : [];
+  const full = parts.filter((one) => !pale.includes(one));
+  const goodOf = (some: typeof parts) => some.flatMap(({ good }) => good);
+  const color = runColor(number);
+  const faint = coloured(goodOf(pale), [], color, widths.faint).slice(0, 1);
+  return [
+    ...faint.map((lengths) => ({ ...lengths, opacity: 0.25 })),
+    ...coloured(
+      goodOf(full),
+      full.flatMap(({ bad }) => bad),
+      color,
+      widths.whole,
+    ),
+  ];
 }
 
 /** Upright, from a direction that shows most of the strokes of the last run. */
@@ -168,10 +200,10 @@ const figures = ({ has_convex_tool, guides }: SimulationRecord): HTMLElement =>
       column("cycles limited", "/summary/limited"),
       column("cycles stopped", "/summary/stopped"),
       column("rate [kHz]", "/summary/rate_khz", rounded),
-      column("median step [µs]", "/summary/p50_us", rounded),
-      column("99 % [µs]", "/summary/p99_us", rounded),
-      column("99.9 % [µs]", "/summary/p999_us", rounded),
-      column("slowest [µs]", "/summary/max_us", rounded),
+      column("median step", "/summary/p50_us", microseconds),
+      column("99 %", "/summary/p99_us", microseconds),
+      column("99.9 %", "/summary/p999_us", microseconds),
+      column("slowest", "/summary/max_us", microseconds),
     ],
   );
 

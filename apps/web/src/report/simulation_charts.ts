@@ -8,7 +8,13 @@ import { valueAt } from "./record.ts";
 import { panels } from "./report_page.ts";
 import { ordinal, runColor } from "./runs.ts";
 import { deep, microseconds, millimetres, show, shown } from "./shown.ts";
-import type { Moment, SimulationRecord, Stroke } from "./simulation_record.ts";
+import {
+  bestRun,
+  type Moment,
+  type Run,
+  type SimulationRecord,
+  type Stroke,
+} from "./simulation_record.ts";
 
 /** A cycle in a plot: the drawn values, and their pointer in the record. */
 interface Point extends Moment {
@@ -25,16 +31,25 @@ function legendOf(runs: Iterable<number>): Legend {
   return new Legend(new Map(looks), (run) => shown(`/runs/${run}/name`));
 }
 
-/** Lines of points, one for each run. Later runs are narrower, so that all remain visible. */
+/** The certified rule is a strong line, in front of wide and pale lines of the other runs. */
+const isStrong = (run: number): boolean => run === bestRun(valueAt<readonly Run[]>("/runs") ?? []);
+
+/** Lines of points, one for each run. */
 const lines = (points: readonly Point[]): Plot.Markish[] => [
-  Plot.line([...points], {
-    x: "x",
-    y: "y",
-    z: "run",
-    stroke: ({ run }: Point) => `var(${runColor(run)})`,
-    strokeWidth: ({ run }: Point) => Math.max(5 - 1.2 * run, 1.5),
-    clip: true,
-  }),
+  ...[false, true].map((strong) =>
+    Plot.line(
+      points.filter(({ run }) => isStrong(run) === strong),
+      {
+        x: "x",
+        y: "y",
+        z: "run",
+        stroke: ({ run }: Point) => `var(${runColor(run)})`,
+        strokeWidth: strong ? 2.5 : ({ run }: Point) => Math.max(6 - run, 3.5),
+        strokeOpacity: strong ? 1 : 0.45,
+        clip: true,
+      },
+    ),
+  ),
   Plot.dot([...points], {
     ...Plot.pointer({ x: "x", y: "y", maxRadius: 30 }),
     fill: ({ run }: Point) => `var(${runColor(run)})`,
@@ -109,6 +124,28 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
     };
   };
   const words = wordsOf(record);
+  /** The cycles that end a move through an open surface, which has no depth. */
+  const crossings = (points: readonly Point[]): Plot.Markish[] => {
+    if (record.has_convex_tool || record.mesh.surface === "closed") return [];
+    const seen = points.filter(({ run, cycle }) =>
+      record.runs[run]?.crossings.some((one) => one.stroke === stroke && one.cycle === cycle),
+    );
+    return [
+      Plot.dot(seen, {
+        x: "x",
+        y: "y",
+        symbol: "times",
+        r: 7,
+        stroke: "var(--alarm)",
+        strokeWidth: 3,
+      }),
+      Plot.text(seen.slice(-1), {
+        ...{ x: "x", y: "y", dx: 12, textAnchor: "start", fill: "var(--alarm)" },
+        text: () => "through the surface",
+        stroke: "var(--card)",
+      }),
+    ];
+  };
   const level = (y: number, text: string, dy = -8) =>
     levelMarks("y", y, text, { frameAnchor: "right", dy, textAnchor: "end" });
   const draw = (domain: readonly [number, number], kept: number) => (): Plot.PlotOptions => ({
@@ -135,6 +172,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
       ...level(0, "surface", kept > 0 ? 10 : -8),
       ...(kept > 0 ? level(kept, "to be kept") : []),
       ...lines(points.filter(({ run }) => legend.shows(String(run)))),
+      ...crossings(points.filter(({ run }) => legend.shows(String(run)))),
       timeRule(),
     ],
   });

@@ -52,7 +52,6 @@ export interface SimulationRecord extends ReportRecord {
 
 export interface PlanRecord extends ReportRecord {
   readonly meshes: readonly (RecordedMesh & { readonly inside: boolean })[];
-  readonly summaries: readonly { readonly mesh: string; readonly checker: string }[];
   readonly runs: readonly {
     readonly mesh: string;
     readonly checker: string;
@@ -82,6 +81,12 @@ export function trespass(
     if (crossed.has(cycle)) isPast = !isPast;
     return isPast;
   });
+}
+
+/** Returns the number of the run under the certified rule, or else of the last run. */
+export function bestRun(runs: readonly Run[]): number {
+  const certified = runs.findIndex(({ rule }) => rule === "certified");
+  return certified < 0 ? runs.length - 1 : certified;
 }
 
 /** Returns the deepest cycle of a stroke, or else its first crossing, or else its nearest cycle. */

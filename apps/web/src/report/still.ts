@@ -145,7 +145,7 @@ export class StillPainter implements Painter {
     const { width, height } = this.canvas;
     const { top, bottom, zoom, near, far } = this.camera;
     pen.lineCap = "round";
-    for (const { ends, color, isSeenThrough, width: wide } of lengths) {
+    for (const { ends, color, isSeenThrough, width: wide, opacity = 1 } of lengths) {
       const slack = (3 * wide * (top - bottom)) / (zoom * height * (far - near));
       const places = new three.Float32BufferAttribute(ends, 3)
         .applyMatrix4(this.camera.matrixWorldInverse)
@@ -165,6 +165,7 @@ export class StillPainter implements Painter {
         pen.moveTo(x, v);
         pen.lineTo(y, w);
       }
+      pen.globalAlpha = opacity;
       for (const [more, shade] of [
         [1.1, "#000a"],
         [0, colorOf(color)],
@@ -174,5 +175,6 @@ export class StillPainter implements Painter {
         pen.stroke();
       }
     }
+    pen.globalAlpha = 1;
   }
 }

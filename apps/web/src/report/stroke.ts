@@ -23,7 +23,7 @@ import { strokeChooser, timeSlider } from "./time_slider.ts";
 
 /** The distance up to which a tip touches. [mm] */
 const touching = 1e-6;
-const outcomes: Readonly<Record<string, string>> = {
+export const outcomes: Readonly<Record<string, string>> = {
   f: "moved freely",
   l: "limited",
   s: "stopped",
@@ -139,14 +139,15 @@ function strokeView(
   return time;
 }
 
-const clearanceAt = (run: number, stroke: number, cycle: number): string =>
+/** Returns the pointer to the clearance of a cycle. */
+export const clearanceAt = (run: number, stroke: number, cycle: number): string =>
   `/runs/${run}/strokes/${stroke}/clearance_mm/${cycle}`;
 
 /**
  * Returns the depth or distance of a tool. Beyond an open surface, the distance of a tip is not a
  * depth.
  */
-function distance(record: SimulationRecord, from: string, isBad: boolean): SVGTSpanElement {
+export function distance(record: SimulationRecord, from: string, isBad: boolean): SVGTSpanElement {
   const label = drawn("tspan", {});
   const clearance = Number(valueAt(from));
   if (isBad && clearance < 0) return showDepth(label, record, from);
