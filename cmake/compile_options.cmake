@@ -81,6 +81,9 @@ function(keepout_compile_options target)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
     # Vectors of SVE have no size at compile time, so they cannot be members. NEON remains.
     set(disabled "HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128")
+    # Highway's NEON contains AES, which keepout does not use. GCC 12 compiles implicit constructors
+    # without the target of the surrounding pragma, so NEON must be the target of the whole file.
+    target_compile_options(${target} PRIVATE -march=armv8-a+crypto)
   elseif(KEEPOUT_SANITIZE)
     set(disabled "HWY_SSSE3|HWY_SSE4")  # they have the vector length of SSE2, and so run the same lines
   endif()
