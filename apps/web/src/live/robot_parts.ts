@@ -165,6 +165,7 @@ function makeSkin(): three.Group {
   geometry.computeVertexNormals();
   const material = new three.MeshLambertMaterial({
     vertexColors: true,
+    emissive: "#5e3b2e",
     transparent: true,
     depthWrite: false,
     side: three.DoubleSide,

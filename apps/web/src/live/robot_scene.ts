@@ -13,7 +13,7 @@ import { ToolScene } from "./tool_scene.ts";
 /** The visible width of the close-up. [mm] */
 const closeWidth = 64;
 /** The length above the port that the first view contains. [mm] */
-const seenAbovePort = 90;
+const seenAbovePort = 45;
 /** The direction of the first view, which is that of a tip's page, and others that are tried: turns about z. */
 const firstTurns = [0, 0.6, -0.6, 1.2, -1.2, 1.9, -1.9, 2.6, -2.6] as const;
 /** The most that the hand can be pushed past the jaw, along the view. [mm] */
@@ -51,6 +51,7 @@ export class RobotScene extends ToolScene {
   override equip(facts: ToolFacts): void {
     super.equip(facts);
     this.wanted.show(false);
+    for (const [hidden] of this.bodies.map(({ parts }) => parts)) beforeAll(hidden);
     for (const wish of this.wishes) {
       this.moving.remove(...wish.parts);
       wish.dispose();
@@ -243,4 +244,12 @@ export class RobotScene extends ToolScene {
       controls.update();
     }
   }
+}
+
+/** Lets a translucent part be drawn first, so that only the anatomy counts as what hides it. */
+function beforeAll(part: Capsule["parts"][number] | undefined): void {
+  if (part === undefined) return;
+  part.material.transparent = false;
+  part.material.blending = three.CustomBlending;
+  part.renderOrder = -1;
 }

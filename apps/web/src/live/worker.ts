@@ -26,6 +26,8 @@ let loop: ControlLoop | null = null;
 let accepted: ToolSettings | null = null; // the settings of the last tool
 let place: readonly number[] | null = null; // the last start of the tool, in this anatomy
 const clock = new CycleClock();
+/** The accuracy of a clearance near the margin. [mm] */
+const accuracy = 0.05;
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
@@ -73,6 +75,18 @@ function makeTool(settings: ToolSettings): Tool {
   const tool = new Tool(keepout, of, settings, port);
   tell({ kind: "tool", facts: tool.facts });
   return tool;
+}
+
+/** Throws if the jaws of an instrument cannot open so far where they are. */
+function requireRoom(settings: ToolSettings, { last }: ControlLoop): void {
+  if (settings.rule !== "certified" || anatomy === null) return;
+  const tool = new Tool(keepout, anatomy.of, settings, anatomy.port);
+  tool.place(last.positions);
+  const least = Math.min(...tool.facts.bodies.map((_, i) => tool.made.clearance(i)));
+  tool.made.delete();
+  if (least < settings.margin - accuracy) {
+    throw new Error("There is no room here to open the jaws: move them back first.");
+  }
 }
 
 /** Deletes the anatomy and the tool. */
@@ -154,6 +168,7 @@ const handlers: Handlers<ToWorker> = {
   load: ({ source, settings, port }) => load(source, settings, port),
   settings({ settings }) {
     if (loop !== null) {
+      if ((settings.opening ?? 0) > (loop.settings.opening ?? 0)) requireRoom(settings, loop);
       loop.use(settings);
       accepted = settings;
     }
