@@ -188,7 +188,7 @@ function strokeView(
           to: places[body + 1] as three.Vector3,
           radius: radius_mm,
           color: isDeepest ? "--alarm" : ruleColor(run.mode),
-          hidden: isDeepest ? 0.6 : 0.1,
+          hidden: isDeepest ? 0.6 : 0.2,
         };
       });
       layer.bodies = [...layer.bodies, ...portMarks(places)];
@@ -237,7 +237,7 @@ function wholeView(anatomy: Anatomy, stroke: Stroke): Outlook {
   places.push(port, port.clone().sub(tip).setLength(abovePort).add(port), tip);
   const aside = tip.sub(middle).setZ(0);
   const toward = new three.Vector3(-0.15, 0.95, 0.28);
-  if (aside.lengthSq() > 0) toward.addScaledVector(aside.normalize(), 0.8);
+  if (aside.lengthSq() > 0) toward.addScaledVector(aside.normalize(), 0.35);
   return lookAtAll(places, toward.normalize(), up, anatomy);
 }
 
