@@ -437,10 +437,7 @@ function showSettings(): void {
 
 /** Shows the tool in the color of its rule. */
 function showColors(): void {
-  document.documentElement.style.setProperty(
-    "--tool",
-    `var(--rule-${settings.rule.replaceAll("_", "-")})`,
-  );
+  document.documentElement.style.setProperty("--tool", `var(--rule-${settings.rule})`);
   scene.paintTool(colorOf("--tool"));
 }
 
