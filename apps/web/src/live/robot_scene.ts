@@ -32,6 +32,8 @@ export class RobotScene extends ToolScene {
   private wishes: Capsule[] = [];
   private now: State | null = null;
   private isPortLaid = false;
+  /** The color of a body in the anatomy. */
+  private alarm = "";
 
   constructor(container: HTMLElement, room: () => number, onDraw: () => void) {
     super(container, room, onDraw, false);
@@ -45,6 +47,7 @@ export class RobotScene extends ToolScene {
 
   override paintTool(color: string): void {
     this.parts.paint(color);
+    this.alarm = colorOf("--alarm");
     super.paintTool(color);
   }
 
@@ -143,11 +146,11 @@ export class RobotScene extends ToolScene {
     this.isPortLaid = true;
 
     const contact = surroundings?.contact ?? null;
-    const [alarm, steel] = [colorOf("--alarm"), colors.steel];
+    const { alarm } = this;
     this.bodies.forEach((body, i) => {
       body.place(this.pointOf(cores, 2 * i), this.pointOf(cores, 2 * i + 1), this.radii[i] ?? 0);
       const isIn = (clearances[i] as number) < 0;
-      const usual = i < firstJaw ? steel : this.toolColor;
+      const usual = i < firstJaw ? colors.steel : this.toolColor;
       const isReached = i === contact?.body;
       body.paint(isIn ? alarm : isReached ? colors.plane : usual, isIn ? 0.6 : 0.3);
       const [, visible] = body.parts;
