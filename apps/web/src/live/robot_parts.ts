@@ -14,8 +14,8 @@ export const shaftLength = 416.2;
 const [jawLength, wristLength] = [10.2, 9.1];
 /** The radius of the drawn shaft; its guarded capsule has 4.5. */
 const shaftRadius = 4;
-/** The distance from the pitch axis at which the shaft ends in its clevis. */
-const clevis = 7;
+/** The distances from the pitch axis at which the shaft ends in a collar, and the collar in the clevis. */
+const [collar, clevis] = [10, 7];
 
 const metal = (color: string, roughness = 0.42) =>
   new three.MeshStandardMaterial({ color, roughness, metalness: 0.25, side: three.DoubleSide });
@@ -68,7 +68,7 @@ function makeShaft(): { group: three.Group; tube: three.Mesh } {
   const tube = rod(shaftRadius, [0, -1, 0], [0, 0, 0], dark);
   const group = new three.Group().add(
     tube,
-    rod(shaftRadius, [0, -clevis - 3, 0], [0, -clevis, 0]),
+    rod(shaftRadius, [0, -collar, 0], [0, -clevis, 0]),
     ...[-2.8, 2.8].flatMap((x) => ear(x, 1.4, -clevis, 0, 2.4)),
     rod(0.9, [-3.7, 0, 0], [3.7, 0, 0], bright),
   );
@@ -254,9 +254,9 @@ export class InstrumentParts {
     const along = yaw.clone().sub(pitch).normalize();
     const pitchAxis = along.clone().cross(axis).normalize();
     put(this.shaft.group, pitch, pitchAxis, down);
-    const length = Math.max(depth - clevis, 0);
+    const length = Math.max(depth - collar, 0);
     this.shaft.tube.scale.y = length;
-    this.shaft.tube.position.y = -clevis - length / 2;
+    this.shaft.tube.position.y = -collar - length / 2;
     put(this.wrist, pitch, pitchAxis, along);
     this.jaws.forEach((jaw, i) => {
       const way = (ends[i] ?? (ends[0] as three.Vector3)).clone().sub(yaw).normalize();
