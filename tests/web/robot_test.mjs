@@ -4,7 +4,7 @@
  *
  *   robot_test.mjs BUILD_WASM
  *
- * What is drawn in the body lies within the capsules that keepout guards, in 40 random poses and openings of the
+ * Each part drawn in the body lies within the capsules that keepout guards, in 40 random poses and openings of the
  * jaws. Without a fixture the instrument enters a box; if only the tip is guarded, the shaft does; certified, no
  * body does. A saved path is read and replayed with bitwise the same joints, and a path that is cut off is refused.
  */

@@ -7,7 +7,7 @@ export interface PathHeader {
   /** As for `keepout replay`: a file, or the name of a sample mesh. */
   readonly mesh: string;
   readonly settings: ToolSettings;
-  /** Of an instrument only: the digest of the mesh if it is known, and the port. */
+  /** The digest of the mesh if it is known, and the port; of an instrument only. */
   readonly digest?: string | undefined;
   readonly base?: readonly number[];
 }

@@ -98,7 +98,7 @@ export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "ra
    * surface is between an instrument and its hand. [mm]
    */
   readonly handClearance: number;
-  /** Of an instrument; null for a tip. */
+  /** The surroundings of an instrument; null for a tip. */
   readonly surroundings: Surroundings | null;
   /** The planes that limit the motion of a tip. */
   readonly planes: readonly Plane[];

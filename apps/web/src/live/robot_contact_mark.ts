@@ -2,7 +2,7 @@
 import * as three from "three";
 import { sheet } from "./markers.ts";
 
-/** Where a body meets the surface, in the scene. */
+/** The contact of a body with the surface, in the scene. */
 interface Contact {
   readonly core: three.Vector3;
   readonly surface: three.Vector3;

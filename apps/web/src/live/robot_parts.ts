@@ -3,8 +3,9 @@
  * The drawn parts of a da Vinci instrument. All guarded parts lie within the capsules that keepout
  * guards: tests/web/robot_test.mjs compares them. Lengths are in mm.
  *
- * Each group has its own frame. The y axis points to the tip; x is along the wrist's pitch axis for
- * shaft and wrist, and away from the other jaw for a jaw. z is along the yaw axis for wrist and jaws.
+ * Each group has its own frame, whose y axis points to the tip. The x axis of shaft and wrist is
+ * along the wrist's pitch axis, and that of a jaw points away from the other jaw. The z axis of
+ * wrist and jaws is along the yaw axis.
  */
 import * as three from "three";
 

@@ -68,7 +68,7 @@ export class RobotScene extends ToolScene {
     super.update(moment);
   }
 
-  /** As Scene, but keys and wheel do not push the hand far past the jaw, where nobody sees it. */
+  /** Like Scene.inOpenView, but keys and wheel push the hand only a little past the jaw. */
   override inOpenView(place: Vec3, from: Vec3): Vec3 {
     const open = super.inOpenView(place, from);
     if (this.now === null) return open;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { Anatomy, Cycle, Frame, Tool, Vec3 } from "../engine/keepout.ts";
 
-/** Where an instrument and its hand are, besides their distances from the surface. */
+/** The places of an instrument and its hand relative to the surface, besides distances. */
 export interface Surroundings {
   /**
    * The body that meets the surface or is in it, the point of its core there, and the nearest point
@@ -70,8 +70,8 @@ export class SurroundingsFinder {
 }
 
 /**
- * Returns the body that is deepest in the surface, or else the one whose clearance limits the
- * motion; -1 if there is none.
+ * Returns the body that is deepest in the surface. If all are outside, returns the body whose
+ * clearance limits the motion, or -1.
  */
 export function reachedBody(
   { byMesh, held, nearest }: Pick<Cycle, "byMesh" | "held" | "nearest">,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What the page of an instrument says about a cycle. The names of statuses are those of docs/safety.md. */
+/** The sentences of the page of an instrument about a cycle. The names of statuses are those of docs/safety.md. */
 import type { Rule, ToolFacts } from "../engine/keepout.ts";
 import type { AnatomyWords } from "./anatomy_words.ts";
 import { millimetres } from "./page.ts";
