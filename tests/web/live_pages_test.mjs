@@ -419,8 +419,12 @@ test("the jaw dragged into the skull: held back, and all bodies clear, says the 
   desk = await openInstrument(large);
   await leadIn();
   assert.equal(await textOf(desk, "#status b"), "limited");
-  assert.match(await textOf(desk, "#status span"), /the surface is in the way/);
+  assert.match(
+    await textOf(desk, "#status span"),
+    /^The (shaft|wrist|jaw) touches the bone and stops: 0\.2\d mm of clearance remains\.$/,
+  );
   assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
+  assert.match(await textOf(desk, "#contact"), /^(shaft|wrist|jaw) 0\.2\d mm$/);
   assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
   await desk.screenshot({ path: join(folder, "dragged.png") });
   await desk.mouse.up();
@@ -436,6 +440,47 @@ test("the jaw dragged into the skull: held back, and all bodies clear, says the 
   const stricter = path.text.replace(`"margin":${margin}`, `"margin":${margin + 0.3}`);
   writeFileSync(join(folder, "stricter.txt"), stricter);
   assert.ok(judged("stricter.txt").below > 0, "the judge sees nothing");
+
+  // The page opens the path again.
+  await (await desk.$("#file")).uploadFile(join(folder, path.file));
+  await assertReplayed();
+  writeFileSync(join(folder, "cut.txt"), path.text.slice(0, -30));
+  await (await desk.$("#file")).uploadFile(join(folder, "cut.txt"));
+  await says(desk, "#toast", "cut off");
+});
+
+test("keys choose the mode while the hand pushes: none goes in, certified does not", async () => {
+  await desk.click("#again");
+  await sleep(500);
+  await leadIn(1.5);
+  await desk.keyboard.press("1");
+  await desk.waitForFunction(() => document.querySelector("#status b").textContent === "inside");
+  assert.match(await textOf(desk, "#status span"), /deep in the bone: nothing stops it/);
+  assert.equal(await desk.$eval("#contact", ({ className }) => className), "inside");
+  await desk.screenshot({ path: join(folder, "unguarded.png") });
+  await desk.mouse.up();
+  await desk.click("#again");
+  await desk.keyboard.press("2");
+  await leadIn(1.5);
+  await desk.waitForFunction(() => document.querySelector("#held").textContent === "by the jaw");
+  assert.match(await textOf(desk, "#status span"), /only the tip is guarded/);
+  await desk.mouse.up();
+  await desk.keyboard.press("3");
+  assert.ok(await desk.$eval("#rules input[value=certified]", (radio) => radio.checked));
+});
+
+test("the wheel pushes the hand only a little past the jaw, and the page says so", async () => {
+  await desk.click("#again");
+  await sleep(500);
+  const { x, y } = await handAt(desk);
+  await desk.mouse.move(x, y);
+  await desk.mouse.down();
+  for (let i = 0; i < 40; ++i) await desk.mouse.wheel({ deltaY: -200 });
+  await sleep(2500);
+  const ahead = Number.parseFloat(await textOf(desk, "#hand-off"));
+  assert.ok(ahead < 25, `the hand is ${ahead} mm ahead of the jaw`);
+  if (ahead > 5) assert.match(await textOf(desk, "#whereabouts"), /The hand is behind the bone/);
+  await desk.mouse.up();
 });
 
 test("a ball about the jaw's end holds it, and bodies stay clear", async () => {

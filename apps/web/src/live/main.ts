@@ -3,6 +3,7 @@
 import type { Findings, Frame, Rule, ToolFacts, ToolSettings, Vec3 } from "../engine/keepout.ts";
 import { colorOf } from "../page/color_of.ts";
 import { grouped, saveFile } from "../page/elements.ts";
+import { anatomyWords } from "./anatomy_words.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
 import { type Course, Demonstration } from "./demonstration.ts";
@@ -22,16 +23,13 @@ import {
   set,
   toast,
 } from "./page.ts";
-import {
-  instrumentPathText,
-  type PathHeader,
-  parsePath,
-  pathText,
-  replayCommand,
-} from "./path_file.ts";
+import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file.ts";
 import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
+import { addRobotControls, labelContact } from "./robot_controls.ts";
+import { firstPositions, parseRobotPath, robotPathText } from "./robot_path.ts";
+import { RobotScene } from "./robot_scene.ts";
 import { SettingsPanel } from "./settings_panel.ts";
 import type { StartLine } from "./start_place.ts";
 import { ToolScene } from "./tool_scene.ts";
@@ -40,8 +38,10 @@ import { ToolScene } from "./tool_scene.ts";
 const largestTool = 0.03;
 /** Below this extent a mesh may be in meters: MeshFindings::meters_below. [mm] */
 const metersBelow = 3;
-/** The rules of the keys 1 to 4. */
-const rules: readonly Rule[] = ["none", "all_faces", "paper", "certified"];
+/** The rules of the keys 1, 2, 3 and 4. */
+const rules: readonly Rule[] = isTip
+  ? ["none", "all_faces", "paper", "certified"]
+  : ["none", "tip_only", "certified"];
 
 // The page has the elements for both tools.
 for (const part of document.querySelectorAll<HTMLElement>("[data-tool]")) {
@@ -56,6 +56,7 @@ let settings: ToolSettings = {
   margin: page.margin,
   maxStep: page.max_step,
   guides: page.guides,
+  ...(isTip ? {} : { opening: 30 }),
 };
 /** The tool radius that the command or the user has chosen. [mm] */
 let chosenRadius = settings.toolRadius;
@@ -68,6 +69,8 @@ let state: State | null = null;
 let readings: Readings | null = null;
 /** A path to replay once its mesh is loaded. */
 let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = null;
+/** The port of an instrument: that of the page, or that of an opened path. */
+let portBase: readonly number[] | null = null;
 
 // The worker starts before the scene exists.
 const worker = new Worker(
@@ -88,7 +91,8 @@ meshes.choose();
 
 const view = element("view", HTMLElement);
 const room = () => roomBetweenCards(view);
-const scene = made(() => new ToolScene(view, room, placeGrip, isTip));
+const robotScene = isTip ? null : made(() => new RobotScene(view, room, placeGrip));
+const scene = robotScene ?? made(() => new ToolScene(view, room, placeGrip, true));
 reportGraphics(element("picture", HTMLCanvasElement));
 const find = element("find", HTMLButtonElement);
 find.onclick = () => state !== null && scene.lookAt(state.hand.place);
@@ -118,8 +122,9 @@ const handlers: Handlers<FromWorker> = {
     shown = awaited;
     if (shown !== null) meshes.select(shown);
     document.title = `${surface.name} – keepout live`;
-    set("hint", `drag me into ${wordFor(surface.name)}`);
+    set("hint", `drag me into ${anatomyWords(surface.name).surface}`);
     triangles = surface.corners.length / 3;
+    readings?.name(surface.name);
     if (isTip && pendingPath === null) fitTool();
   },
   findings({ findings }) {
@@ -168,8 +173,11 @@ function endLoading(): void {
 
 /** Places an instrument where the command has placed it, and a tip beside the anatomy. */
 function begin(): void {
-  const positions = meshOf(shown)?.start?.positions;
-  if (positions !== undefined) tell({ kind: "place", positions });
+  const start = meshOf(shown)?.start;
+  const isOpened = start?.base.join() !== portBase?.join();
+  if (isOpened && pendingPath !== null && facts !== null) {
+    tell({ kind: "place", positions: firstPositions(pendingPath.lines, facts) });
+  } else if (start !== undefined) tell({ kind: "place", positions: start.positions });
   else startOn(scene.linesBeside());
 }
 
@@ -257,14 +265,14 @@ function courseOf({ flange, cores, clearances }: State): Course {
 }
 
 function showLesson(phase: Parameters<ConstructorParameters<typeof Demonstration>[3]>[0]): void {
-  const word = wordFor(shown === null ? "" : nameOf(shown));
+  const word = anatomyWords(shown === null ? "" : nameOf(shown)).surface;
   const words = {
     approach: "The hand (red) moves, and the tool follows it.",
     press: `The hand goes into ${word}. The tool stops ${settings.margin} mm before it.`,
     slide: "The tool slides along the surface.",
     back: "The hand comes out again.",
   };
-  const yours = isTip ? `drag the red ring into ${word}.` : "drag the jaw.";
+  const yours = isTip ? `drag the red ring into ${word}.` : "drag the jaws.";
   set(lesson, phase === null ? `Your turn: ${yours}` : words[phase]);
   lesson.hidden = false;
   if (phase === null) grip.classList.add("new");
@@ -277,18 +285,12 @@ function endDemonstration(): void {
   lesson.hidden = true;
 }
 
-/** Returns what the visitor drags the tool into. */
-function wordFor(mesh: string): string {
-  const [, word] = /(brain|liver|aneurysm|airway)/.exec(mesh) ?? [];
-  if (word !== undefined) return `the ${word}`;
-  return /skull|femur|bone/.test(mesh) ? "the bone" : "it";
-}
-
 /** Puts the ring around the hand. */
 function placeGrip(): void {
   if (state === null) return;
   const { place } = state.hand;
   grip.style.transform = scene.shift(place);
+  if (robotScene !== null && facts !== null) labelContact(robotScene, state, facts);
   const at = scene.project(place);
   const open = scene.openView();
   find.hidden = grip.hidden || (at.z < 1 && Math.abs(at.x) <= open.x + 0.02 && Math.abs(at.y) <= 1);
@@ -317,8 +319,8 @@ function load(choice: Choice): void {
     settings = { ...settings, guides: guides.forAnother(settings.guides) };
     showSettings();
   }
-  const base = meshOf(choice)?.start?.base;
-  const port = page.robot !== undefined && base ? { robot: page.robot, base } : null;
+  portBase = pendingPath?.header?.base ?? meshOf(choice)?.start?.base ?? null;
+  const port = page.robot !== undefined && portBase ? { robot: page.robot, base: portBase } : null;
   tell({ kind: "load", source: choice.source, settings, port });
 }
 
@@ -326,7 +328,8 @@ async function openFile(file: File): Promise<void> {
   if (/\.(txt|csv)$/i.test(file.name)) {
     if (isReading()) return;
     try {
-      pendingPath = parsePath(await file.text());
+      const text = await file.text();
+      pendingPath = isTip ? parsePath(text) : parseRobotPath(text, settings);
     } catch (error) {
       toast(`${file.name}: ${(error as Error).message}`);
       return;
@@ -335,6 +338,10 @@ async function openFile(file: File): Promise<void> {
     return;
   }
   pendingPath = null;
+  if (!isTip) {
+    toast("An instrument needs a port, which the command places: keepout live MESH --robot psm.");
+    return;
+  }
   load({
     source: {
       kind: "file",
@@ -352,17 +359,19 @@ async function openFile(file: File): Promise<void> {
  */
 function adopt(header: PathHeader | null): void {
   if (header !== null) {
+    const choice = header.mesh === shown?.command ? shown : meshes.called(header.mesh);
+    const isOther = header.base !== undefined && meshOf(choice ?? null)?.digest !== header.digest;
+    if (choice === undefined || choice === null || isOther) {
+      pendingPath = null;
+      const place = isTip ? "open that file first" : "make a page with it";
+      toast(`This path is over ${header.mesh}, which is not in this page: ${place}.`);
+      return;
+    }
     settings = header.settings;
     showSettings();
     tell({ kind: "settings", settings });
-    if (header.mesh !== shown?.command) {
-      const choice = meshes.called(header.mesh);
-      if (choice !== undefined) {
-        load(choice); // it is replayed after loading
-        return;
-      }
-      pendingPath = null;
-      toast(`This path is over ${header.mesh}, which is not in this page: open that file first.`);
+    if (choice !== shown || header.base?.join() !== portBase?.join()) {
+      load(choice); // it is replayed after loading
       return;
     }
   }
@@ -389,10 +398,8 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
   const { keepout, robot } = page;
   const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_");
   const mesh = meshOf(shown);
-  if (robot !== undefined && mesh !== undefined) {
-    const { margin, maxStep, guides } = madeWith;
-    const made = { keepout, robot, margin, maxStep, guides };
-    const text = instrumentPathText(made, mesh, facts, lines);
+  if (robot !== undefined && mesh !== undefined && portBase !== null) {
+    const text = robotPathText({ keepout, robot }, madeWith, mesh, portBase, facts, lines);
     saveFile(`keepout-path-${robot}-${name}.txt`, text, "text/plain");
     toast(`${grouped(lines.length / (2 * facts.positions + 6))} cycles saved.`);
     return;
@@ -443,7 +450,9 @@ function change(part: Partial<ToolSettings>): void {
 
 element("again", HTMLButtonElement).onclick = () => {
   input.drop();
-  begin();
+  const base = meshOf(shown)?.start?.base;
+  if (base !== undefined && base.join() !== portBase?.join() && shown !== null) load(shown);
+  else begin();
 };
 for (const use of ["save", "replay"] as const) {
   element(use, HTMLButtonElement).onclick = () => tell({ kind: "ask for path", use });
@@ -452,7 +461,16 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showColors
 document.addEventListener("visibilitychange", () => {
   tell({ kind: "pause", paused: document.hidden });
 });
-if (!isTip) {
+takeFiles((file) => void openFile(file));
+// The keys choose a rule, also while the pointer drags the hand.
+document.addEventListener("keydown", (event) => {
+  const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
+  const rule = rules[Number(event.key) - 1];
+  if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
+  change({ rule });
+});
+if (robotScene !== null) {
+  addRobotControls(robotScene);
   view.ariaLabel =
     "The anatomy and the instrument, with the hand in red. Arrow keys lead its jaw across the view, " +
     "Page Up and Page Down into it and out of it; A, D, W, S, Q and E turn it; with Shift slowly; " +
@@ -461,9 +479,8 @@ if (!isTip) {
 const failures = isTip ? addTipControls() : null;
 showSettings();
 
-/** Adds files, double-clicks and counterexamples, which the page of an instrument does not have. */
+/** Adds double-clicks and counterexamples, which the page of an instrument does not have. */
 function addTipControls(): CounterexampleView {
-  takeFiles((file) => void openFile(file));
   element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
 
   // A double-click on the anatomy places the tool there.
@@ -473,14 +490,6 @@ function addTipControls(): CounterexampleView {
     if (line === null) return;
     input.drop();
     startOn([line]);
-  });
-
-  // The keys choose a rule, also while the pointer drags the hand.
-  document.addEventListener("keydown", (event) => {
-    const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
-    const rule = rules[Number(event.key) - 1];
-    if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
-    change({ rule });
   });
 
   return new CounterexampleView();

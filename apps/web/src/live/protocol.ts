@@ -16,6 +16,7 @@ import type {
 import type { CenteredSurface } from "../page/centered_surface.ts";
 import type { PackedSurface } from "../page/embedded_surface.ts";
 import type { CycleClock } from "./cycle_clock.ts";
+import type { Surroundings } from "./robot_surroundings.ts";
 import type { StartLine } from "./start_place.ts";
 
 /** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
@@ -92,8 +93,13 @@ export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "ra
    * Distance of each body's surface from the mesh; for a tip below 0 inside, NaN if unknown. [mm]
    */
   readonly clearances: readonly number[];
-  /** The same for a ball at the hand, with the radius of the last body. [mm] */
+  /**
+   * The same for a ball at the hand, with the radius of the last body. It is below 0 as well if the
+   * surface is between an instrument and its hand. [mm]
+   */
   readonly handClearance: number;
+  /** The surroundings of an instrument; null for a tip. */
+  readonly surroundings: Surroundings | null;
   /** The planes that limit the motion of a tip. */
   readonly planes: readonly Plane[];
   /** The number of cycles since the anatomy was loaded, and of those that were limited. */

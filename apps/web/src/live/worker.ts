@@ -16,14 +16,18 @@ import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
 import { type FromWorker, type Handlers, handled, type Source, type ToWorker } from "./protocol.ts";
+import { SurroundingsFinder } from "./robot_surroundings.ts";
 import { startPlace } from "./start_place.ts";
 
 let keepout: Keepout;
 let anatomy: { of: Anatomy; settings: ToolSettings; port: Port | null } | null = null;
+let surroundings: SurroundingsFinder | null = null; // of an instrument
 let loop: ControlLoop | null = null;
 let accepted: ToolSettings | null = null; // the settings of the last tool
 let place: readonly number[] | null = null; // the last start of the tool, in this anatomy
 const clock = new CycleClock();
+/** The accuracy of a clearance near the margin. [mm] */
+const accuracy = 0.05;
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
@@ -46,19 +50,23 @@ function tellState(time: number): void {
   const clearances = bodies.map((_, i) => tool.made.clearance(i));
   // The engine's own distance of the nearest body, if known.
   if (last.nearest >= 0) clearances[last.nearest] = last.distance;
-  const handClearance = anatomy.of.clearance(...hand.place) - (bodies.at(-1)?.radius ?? 0);
+  const around = surroundings?.find(tool, last, hand, clearances) ?? null;
+  const away = anatomy.of.clearance(...hand.place) - (bodies.at(-1)?.radius ?? 0);
+  const handClearance = around?.isHandBehind ? -Math.abs(away) : away;
   const planes = tool.made.planes().filter(({ isActive }) => isActive);
   const { lost, stepTime, rate } = clock;
-  const state = { ...last, time, hand, clearances, handClearance, planes };
+  const state = { ...last, time, hand, clearances, handClearance, planes, surroundings: around };
   tell({ kind: "state", state: { ...state, cycles, limited, lost, stepTime, rate } });
 }
 
+/** Sends a surface to be drawn. Returns the diagonal of its box. [mm] */
 function tellSurface(
   name: string,
   surface: { vertices: Float64Array; corners: Uint32Array },
-): void {
+): number {
   const drawn = centered(surface.vertices, surface.corners);
   tell({ kind: "surface", name, ...drawn }, [drawn.positions.buffer, drawn.corners.buffer]);
+  return drawn.size;
 }
 
 /** Makes a tool on the anatomy. Throws if the engine rejects the settings. */
@@ -67,6 +75,18 @@ function makeTool(settings: ToolSettings): Tool {
   const tool = new Tool(keepout, of, settings, port);
   tell({ kind: "tool", facts: tool.facts });
   return tool;
+}
+
+/** Throws if the jaws of an instrument cannot open so far where they are. */
+function requireRoom(settings: ToolSettings, { last }: ControlLoop): void {
+  if (settings.rule !== "certified" || anatomy === null) return;
+  const tool = new Tool(keepout, anatomy.of, settings, anatomy.port);
+  tool.place(last.positions);
+  const least = Math.min(...tool.facts.bodies.map((_, i) => tool.made.clearance(i)));
+  tool.made.delete();
+  if (least < settings.margin - accuracy) {
+    throw new Error("There is no room here to open the jaws: move them back first.");
+  }
 }
 
 /** Deletes the anatomy and the tool. */
@@ -79,20 +99,22 @@ function letGo(): void {
 async function load(source: Source, settings: ToolSettings, port: Port | null): Promise<void> {
   const name = source.kind === "embedded" ? source.mesh.name : source.name;
   let made: Anatomy;
+  let size: number;
   if (source.kind === "embedded") {
     const surface = await decodeSurface(source.mesh, source.data);
     letGo(); // from here on the page shows the other one
-    tellSurface(name, surface);
+    size = tellSurface(name, surface);
     made = keepout.anatomyOfSurface(surface.vertices, surface.corners);
   } else {
     made =
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
         : scaled(keepout.anatomyOfFile(source.name, source.bytes), source.scale);
-    tellSurface(name, made.surface());
+    size = tellSurface(name, made.surface());
   }
   letGo();
   anatomy = { of: made, settings, port };
+  surroundings = port === null ? null : new SurroundingsFinder(made, size);
   clock.lost = 0;
   tell({ kind: "findings", findings: made.findings() });
   tell({ kind: "guarded" });
@@ -146,6 +168,7 @@ const handlers: Handlers<ToWorker> = {
   load: ({ source, settings, port }) => load(source, settings, port),
   settings({ settings }) {
     if (loop !== null) {
+      if ((settings.opening ?? 0) > (loop.settings.opening ?? 0)) requireRoom(settings, loop);
       loop.use(settings);
       accepted = settings;
     }
