@@ -273,8 +273,8 @@ class GuardedInstrument final : public SimulatedTool {
   }
 
  private:
-  /// Returns the negative depth of a body whose axis is inside the surface in part or as a whole;
-  /// infinite if the axis is outside, or the surface has no inside. [mm]
+  /// Returns the negative depth of a body whose axis is inside the surface, in part or as a whole.
+  /// Infinite if the axis is outside, or the surface has no inside. [mm]
   double clearance_inside(std::size_t body, const oracle::Segment& axis) const {
     const double radius = joints_->instrument().bodies()[body].radius;
     const oracle::SafetyOracle& surface = on_->scene.oracle();
