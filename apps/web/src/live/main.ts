@@ -3,6 +3,7 @@
 import type { Findings, Frame, Rule, ToolFacts, ToolSettings, Vec3 } from "../engine/keepout.ts";
 import { colorOf } from "../page/color_of.ts";
 import { grouped, saveFile } from "../page/elements.ts";
+import { tissueOf, tissues } from "../page/tissue.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
 import { type Course, Demonstration } from "./demonstration.ts";
@@ -70,9 +71,12 @@ let readings: Readings | null = null;
 let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = null;
 
 // The worker starts before the scene exists.
-const worker = new Worker(
-  URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
+const workerUrl = URL.createObjectURL(
+  new Blob([embeddedText("worker")], { type: "text/javascript" }),
 );
+const worker = new Worker(workerUrl);
+/** Computes the shading of the anatomy beside the control loop. */
+let shader: Worker | null = null;
 worker.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
 worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
 
@@ -112,7 +116,7 @@ const handlers: Handlers<FromWorker> = {
   },
   surface(surface) {
     input.drop();
-    scene.show(surface);
+    showSurface(surface);
     chart.clear();
     state = null;
     shown = awaited;
@@ -121,6 +125,11 @@ const handlers: Handlers<FromWorker> = {
     set("hint", `drag me into ${wordFor(surface.name)}`);
     triangles = surface.corners.length / 3;
     if (isTip && pendingPath === null) fitTool();
+  },
+  shaded({ shading }) {
+    scene.refine(shading);
+    shader?.terminate();
+    shader = null;
   },
   findings({ findings }) {
     showFindings(findings, triangles, meshOf(shown)?.warnings ?? []);
@@ -160,6 +169,19 @@ const handlers: Handlers<FromWorker> = {
     meshes.select(shown);
   },
 };
+
+/** Shows an anatomy at once; another worker computes how it takes the light. */
+function showSurface(surface: Parameters<Handlers<FromWorker>["surface"]>[0]): void {
+  const isShape = awaited?.source.kind === "shape";
+  const tissue = isShape ? tissues.shape : tissueOf(surface.name);
+  scene.show(surface, tissue);
+  shader?.terminate();
+  shader = new Worker(workerUrl);
+  shader.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
+  const { positions, corners } = surface;
+  const message: ToWorker = { kind: "shade", positions, corners, creases: tissue.creases };
+  shader.postMessage(message);
+}
 
 function endLoading(): void {
   awaited = null;
@@ -425,6 +447,7 @@ function showSettings(): void {
   panel.show(settings);
   guides.show(settings);
   chart.setMargin(settings.margin);
+  scene.setMargin(settings.margin, settings.rule !== "none");
   showColors();
 }
 

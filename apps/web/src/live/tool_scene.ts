@@ -3,8 +3,11 @@ import * as three from "three";
 import type { ToolFacts, Vec3 } from "../engine/keepout.ts";
 import { Capsule } from "../page/capsule.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
+import { colorOf } from "../page/color_of.ts";
+import type { Tissue } from "../page/tissue.ts";
 import type { GuideKind } from "./guide_panel.ts";
 import { GuideShapes } from "./guide_shapes.ts";
+import { coloredWithin, MarginView } from "./margin_view.ts";
 import { colors, sheet } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { heldBody } from "./readings.ts";
@@ -42,6 +45,8 @@ export class ToolScene extends Scene {
     new three.TorusGeometry(9, 1.6, 12, 40),
     new three.MeshStandardMaterial({ color: colors.steel, roughness: 0.5 }),
   );
+  private readonly margin: MarginView;
+  private guard = { margin: 0, isGuarded: false };
   private toolColor = "";
   /** True until the view is turned to the jaw of an instrument. */
   private isNew = true;
@@ -57,17 +62,27 @@ export class ToolScene extends Scene {
     this.moving.add(this.edges, ...this.planes, this.guides.group);
     if (!isBall) this.moving.add(this.port);
     this.spring.line.renderOrder = isBall ? 1 : 3;
+    this.margin = new MarginView(container);
+    this.moving.add(this.margin.group);
   }
 
-  override show(surface: CenteredSurface): void {
+  override show(surface: CenteredSurface, tissue: Tissue): void {
     this.isNew = true;
-    super.show(surface);
+    this.margin.show(surface, tissue);
+    super.show(surface, tissue);
+  }
+
+  /** Takes the margin, and whether a rule keeps it. [mm] */
+  setMargin(margin: number, isGuarded: boolean): void {
+    this.guard = { margin, isGuarded };
+    this.redraw();
   }
 
   /** Gives tool and trail the color of a rule. */
   paintTool(color: string): void {
     this.toolColor = color;
     this.trail.paint(color);
+    this.margin.paint(color);
     this.redraw();
   }
 
@@ -279,6 +294,23 @@ export class ToolScene extends Scene {
     this.port.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), along);
     this.showPlanes(moment, tip, Math.max(4 * radius, 0.03 * seen));
     this.guides.mark(moment.guides);
+    this.showMargin(
+      moment,
+      this.bodies.map((_, i) => radiusOf(i)),
+    );
+  }
+
+  /** `drawn`: the drawn radius of each body. */
+  private showMargin({ cores, clearances, held, byMesh }: State, drawn: readonly number[]): void {
+    const bodies = this.radii.map((radius, i) => ({
+      from: this.pointOf(cores, 2 * i),
+      to: this.pointOf(cores, 2 * i + 1),
+      radius,
+    }));
+    const isHeld = held > 0 && byMesh;
+    this.margin.update({ ...this.guard, bodies, clearances, isHeld }, this.camera, drawn);
+    const sun = new three.Vector3(-0.45, 0.62, 0.64).transformDirection(this.camera.matrixWorld);
+    this.shade.place(bodies, sun, coloredWithin(this.size), colorOf("--alarm"));
   }
 
   /**

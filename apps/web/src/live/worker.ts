@@ -12,6 +12,7 @@ import {
 } from "../engine/keepout.ts";
 import { centered } from "../page/centered_surface.ts";
 import { decodeSurface, unpacked } from "../page/embedded_surface.ts";
+import { shade } from "../page/shading.ts";
 import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
@@ -144,6 +145,13 @@ function begin(): void {
 const handlers: Handlers<ToWorker> = {
   start: ({ engine, subject }) => start(engine, subject),
   load: ({ source, settings, port }) => load(source, settings, port),
+  shade({ positions, corners, creases }) {
+    const work = shade(positions, corners, creases);
+    let step = work.next();
+    while (!step.done) step = work.next();
+    const { normals, ambience } = step.value;
+    tell({ kind: "shaded", shading: step.value }, [normals.buffer, ambience.buffer]);
+  },
   settings({ settings }) {
     if (loop !== null) {
       loop.use(settings);
@@ -179,8 +187,12 @@ const handlers: Handlers<ToWorker> = {
 let queue: Promise<void> = Promise.resolve();
 self.onmessage = ({ data: message }: MessageEvent<ToWorker>) => {
   queue = queue
-    // Without an engine, only its start is handled.
-    .then(() => (message.kind === "start" || keepout ? handled(handlers, message) : undefined))
+    // Without an engine, only its start and shading are handled.
+    .then(() =>
+      message.kind === "start" || message.kind === "shade" || keepout
+        ? handled(handlers, message)
+        : undefined,
+    )
     .catch((error: unknown) => {
       const words = error instanceof Error ? error.message : String(error);
       tell({ kind: "failure", of: message.kind, message: words });
