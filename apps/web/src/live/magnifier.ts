@@ -44,6 +44,8 @@ export class Magnifier {
   private colors: Readonly<Record<string, string>> = {};
   private solid = "";
   private edge = "";
+  /** What is drawn now. */
+  private drawn = "";
 
   constructor() {
     const legend = make("span", { class: "bands" });
@@ -69,12 +71,13 @@ export class Magnifier {
     this.ticks.replaceChildren(
       ...[0, range / 2, range].map((value) => make("span", {}, `${value}`)),
     );
-    this.ticks.lastElementChild?.append(" mm");
+    this.ticks.lastElementChild?.append(" mm to the tool");
     this.paint();
   }
 
   paint(): void {
     const names = ["--ink", "--tool", "--plane", "--alarm", "--solid"];
+    this.drawn = "";
     this.colors = Object.fromEntries(names.map((name) => [name, colorOf(name)]));
   }
 
@@ -82,8 +85,11 @@ export class Magnifier {
   draw(contact: Contact, near: NearTriangles, camera: three.Camera, pixel: number): void {
     this.element.hidden = false;
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    if (width === 0 || height === 0) return;
-    const { point, normal, clearance, margin } = contact;
+    const { point, normal, clearance, margin, isHeld, isGuarded } = contact;
+    const view = [camera.matrixWorld.elements, point.toArray(), normal.toArray(), pixel];
+    const now = [view, clearance, margin, isHeld, isGuarded, width, height].join();
+    if (width === 0 || height === 0 || now === this.drawn) return;
+    this.drawn = now;
     const factor = Math.min(
       most,
       (widestGap * width * pixel) / Math.max(Math.abs(clearance), 1e-9),
@@ -103,7 +109,7 @@ export class Magnifier {
     this.canvas.height = Math.round(height * density);
     const pen = this.canvas.getContext("2d") as CanvasRenderingContext2D;
     pen.scale(density, density);
-    const reach = (0.5 * Math.hypot(width, height)) / scale;
+    const reach = (0.7 * (width + height)) / scale;
     const pieces = cut(near, middle, [right, up], reach, flat);
     this.drawSolid(pen, pieces, width, height);
     this.drawTool(pen, contact, flat, scale);
@@ -117,20 +123,22 @@ export class Magnifier {
     height: number,
   ): void {
     pen.beginPath();
-    for (let y = 0.25; y < height; y += 0.5) {
+    for (let y = 0.5; y < height; ++y) {
       const crossings = pieces
         .filter(([, ay, , by]) => ay > y !== by > y)
         .map(([ax, ay, bx, by, nx]) => ({ x: ax + ((y - ay) / (by - ay)) * (bx - ax), nx }))
+        // Beyond the picture some pieces are missing.
+        .filter(({ x }) => x >= 0 && x <= width)
         .sort((a, b) => a.x - b.x);
       let isIn = crossings[0] ? crossings[0].nx > 0 : isInside(pieces, 0.5 * width, y);
       let from = 0;
       for (const { x, nx } of crossings) {
-        if (isIn && nx > 0) pen.rect(from, y - 0.25, x - from, 0.55);
+        if (isIn && nx > 0) pen.rect(from, y - 0.5, x - from, 1.05);
         // Of a surface that is not closed, or meets itself, the direction counts.
         isIn = nx < 0;
         from = x;
       }
-      if (isIn) pen.rect(from, y - 0.25, width - from, 0.55);
+      if (isIn) pen.rect(from, y - 0.5, width - from, 1.05);
     }
     pen.fillStyle = this.solid;
     pen.fill();

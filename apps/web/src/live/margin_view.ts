@@ -153,10 +153,7 @@ export class MarginView {
   }
 
   /** Writes the clearance beside the contact, on the side of the tool. */
-  private label(
-    { point, normal, clearance, isHeld, isGuarded }: Contact,
-    camera: three.Camera,
-  ): void {
+  private label({ point, normal, clearance }: Contact, camera: three.Camera): void {
     const { clientWidth: width, clientHeight: height } = this.container;
     const onScreen = (place: three.Vector3) => {
       const { x, y } = place.clone().project(camera);
@@ -167,13 +164,14 @@ export class MarginView {
       number,
       number,
     ];
-    // Along the surface and upwards, away from hand and tool.
-    const length = Math.hypot(nx, ny);
+    // Along the surface, but upwards in any case: below it are often hand and tool.
+    const length = Math.hypot(nx, ny) || 1;
     const turn = nx > 0 ? 1 : -1;
-    const [dx, dy] = length > 1e-6 ? [(turn * ny) / length, (-turn * nx) / length] : [0, -1];
+    const rise = Math.min((-turn * nx) / length, -0.5);
+    const run = (turn * ny) / length;
+    const [dx, dy] = [run, rise].map((part) => part / Math.hypot(run, rise)) as [number, number];
     const [u, v] = [x + 62 * dx, Math.max(y + 62 * dy, 16)];
-    const words = clearance < 0 ? "inside" : isHeld && isGuarded ? "kept clear" : "clear";
-    set(this.callout, `${millimetres(clearance)} ${words}`);
+    set(this.callout, `clearance ${millimetres(clearance)}`);
     this.callout.className = `callout${clearance < 0 ? " bad" : ""}`;
     this.callout.hidden = this.leader.hidden = false;
     this.callout.style.transform = `translate(${u}px, ${v}px) translate(-50%, -50%)`;

@@ -292,7 +292,7 @@ export class ToolScene extends Scene {
     this.port.position.copy(this.pointOf(cores, 0));
     const along = this.pointOf(cores, 1).sub(this.port.position).normalize();
     this.port.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), along);
-    this.showPlanes(moment, tip, Math.max(4 * radius, 0.03 * seen));
+    this.showPlanes(moment, tip, Math.max(2.2 * radius, 0.02 * seen));
     this.guides.mark(moment.guides);
     this.showMargin(
       moment,

@@ -78,7 +78,7 @@ export function anatomyMaterial(tissue: Tissue, cut: CutOptions | null): three.S
         vec3 normal = normalize(gl_FrontFacing ? bent : -bent);
         // Across a sharp edge there is no normal but that of the triangle.
         vec3 flatNormal = normalize(cross(dFdx(eye), dFdy(eye)));
-        normal = mix(normal, flatNormal, creases * (1.0 - smoothstep(0.5, 0.75, dot(normal, flatNormal))));
+        normal = mix(normal, flatNormal, creases * (1.0 - smoothstep(0.8, 0.93, dot(normal, flatNormal))));
         // A smoothed normal may point away from the eye.
         normal = normalize(normal + seen * max(0.0, 0.04 - dot(normal, seen)));
         vec3 color = lit(gl_FrontFacing ? mix(valley, base, smoothstep(0.25, 0.9, open)) : hollow, normal, seen);

@@ -17,15 +17,13 @@ const directions = 40;
 const rayStops = [2.2, 3.2, 4.6, 6.6, 9.4, 13, 18];
 /** The passes that smooth normals; each reaches one triangle farther. */
 const passes = 6;
-/** An edge with a larger angle between its triangles stays sharp, if creases are kept: its cosine. */
-const sharpest = 0.5;
 /** The number of triangles or vertices between two pauses. */
 const slice = 20_000;
 
 /**
  * Computes the shading of a surface: (n, 3) coordinates and (m, 3) corners. Pauses (yields) after
- * some milliseconds of work. `creases`: keeps sharp edges, as machined parts have them; else the
- * steps of a CT scan are smoothed as well.
+ * some milliseconds of work. `creases`: does not smooth, because the surface has true edges; else
+ * the steps of a CT scan disappear.
  */
 export function* shade(
   positions: Float32Array,
@@ -35,24 +33,16 @@ export function* shade(
   let normals = new Float32Array(positions.length);
   yield* overTriangles(corners, (a, b, c) => addNormal(positions, normals, a, b, c));
   normalize(normals);
-  for (let pass = 0; pass < passes; ++pass) {
+  for (let pass = 0; pass < (creases ? 0 : passes); ++pass) {
     const from = normals;
     const sums = from.slice();
-    const add = (to: number, other: number) => {
-      const [x, y, z] = [
-        from[other] as number,
-        from[other + 1] as number,
-        from[other + 2] as number,
-      ];
-      const along =
-        x * (from[to] as number) + y * (from[to + 1] as number) + z * (from[to + 2] as number);
-      if (creases && along < sharpest) return;
-      sums[to] = (sums[to] as number) + x;
-      sums[to + 1] = (sums[to + 1] as number) + y;
-      sums[to + 2] = (sums[to + 2] as number) + z;
-    };
     yield* overTriangles(corners, (a, b, c) => {
-      add(a, b), add(a, c), add(b, a), add(b, c), add(c, a), add(c, b);
+      for (let k = 0; k < 3; ++k) {
+        const all = (from[a + k] as number) + (from[b + k] as number) + (from[c + k] as number);
+        sums[a + k] = (sums[a + k] as number) + all;
+        sums[b + k] = (sums[b + k] as number) + all;
+        sums[c + k] = (sums[c + k] as number) + all;
+      }
     });
     normalize(sums);
     normals = sums;
@@ -214,7 +204,9 @@ function* bendsOf(
     }
   };
   yield* overTriangles(corners, (a, b, c) => {
-    edge(a, b), edge(b, c), edge(c, a);
+    edge(a, b);
+    edge(b, c);
+    edge(c, a);
   });
   return sums.map((sum, i) => Math.max(-1, Math.min(1, sum / Math.max(counts[i] as number, 1))));
 }

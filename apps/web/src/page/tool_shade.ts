@@ -66,7 +66,7 @@ export class ToolShade implements Overlay {
       int band = min(int(at), ${clearanceColors.length - 1});
       float width = fwidth(at);
       float line = smoothstep(0.0, 1.5 * width, fract(at)) * 0.25 + 0.75;
-      float fade = 0.72 * (1.0 - 0.55 * nearest / range);
+      float fade = 0.85 * (1.0 - 0.5 * nearest / range);
       vec3 tint = mix(color, bands[band] * (0.35 + 0.9 * dot(color, vec3(0.3, 0.6, 0.1))), fade);
       return tint * mix(1.0, line, clamp(0.5 / width, 0.0, 1.0));
     }`;
