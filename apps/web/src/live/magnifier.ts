@@ -54,7 +54,7 @@ export class Magnifier {
       band.style.background = color;
       legend.append(band);
     }
-    const words = make("figcaption", {}, this.caption, legend, this.ticks);
+    const words = make("figcaption", {}, this.caption, legend, this.ticks, "to the tool");
     this.element = make("figure", { class: "magnifier" }, this.canvas, words);
     this.element.hidden = true;
     this.canvas.role = "img";
@@ -71,7 +71,7 @@ export class Magnifier {
     this.ticks.replaceChildren(
       ...[0, range / 2, range].map((value) => make("span", {}, `${value}`)),
     );
-    this.ticks.lastElementChild?.append(" mm to the tool");
+    this.ticks.lastElementChild?.append(" mm");
     this.paint();
   }
 
