@@ -75,10 +75,11 @@ export function anatomyMaterial(tissue: Tissue, cut: CutOptions | null): three.S
 
       void main() {
         vec3 seen = isOrthographic ? vec3(0.0, 0.0, 1.0) : normalize(-eye);
-        vec3 normal = normalize(gl_FrontFacing ? bent : -bent);
-        // Across a sharp edge there is no normal but that of the triangle.
+        vec3 normal = (gl_FrontFacing ? bent : -bent) / max(length(bent), 1e-6);
+        // At a sharp edge there is no normal but that of the triangle.
         vec3 flatNormal = normalize(cross(dFdx(eye), dFdy(eye)));
-        normal = mix(normal, flatNormal, creases * (1.0 - smoothstep(0.8, 0.93, dot(normal, flatNormal))));
+        float smoothness = smoothstep(0.2, 0.95, length(bent)) * smoothstep(0.8, 0.93, dot(normal, flatNormal));
+        normal = mix(normal, flatNormal, creases * (1.0 - smoothness));
         // A smoothed normal may point away from the eye.
         normal = normalize(normal + seen * max(0.0, 0.04 - dot(normal, seen)));
         vec3 color = lit(gl_FrontFacing ? mix(valley, base, smoothstep(0.25, 0.9, open)) : hollow, normal, seen);

@@ -3,7 +3,7 @@
 
 /** For each vertex of a surface. */
 export interface Shading {
-  /** Smoothed normals, three coordinates each. */
+  /** Normals, three coordinates each; zero at a sharp edge, where each triangle has its own. */
   readonly normals: Float32Array<ArrayBuffer>;
   /** How much light from all around reaches the vertex: 0 none, 255 all. */
   readonly ambience: Uint8Array<ArrayBuffer>;
@@ -13,16 +13,22 @@ export interface Shading {
 const cells = 120;
 /** The directions from which light comes, over the whole sphere. */
 const directions = 40;
-/** Where a ray of light is tested. [cells] */
-const rayStops = [2.2, 3.2, 4.6, 6.6, 9.4, 13, 18];
+/**
+ * Where a ray of light is tested, in cells, and the grid for it. A grid has cells that are twice as
+ * large as those of the one before, so that no ray jumps over a thin wall.
+ */
+const stops = [2.2, 3.2, 4.2, 6, 8, 12, 16, 20];
+const gridOfStop = [0, 0, 0, 1, 1, 2, 2, 2];
 /** The passes that smooth normals; each reaches one triangle farther. */
 const passes = 6;
+/** A vertex is at a sharp edge if a triangle is turned away from its normal: by this cosine. */
+const sharpest = 0.85;
 /** The number of triangles or vertices between two pauses. */
 const slice = 20_000;
 
 /**
  * Computes the shading of a surface: (n, 3) coordinates and (m, 3) corners. Pauses (yields) after
- * some milliseconds of work. `creases`: does not smooth, because the surface has true edges; else
+ * some milliseconds of work. `creases`: keeps sharp edges, because the surface has true ones; else
  * the steps of a CT scan disappear.
  */
 export function* shade(
@@ -49,6 +55,7 @@ export function* shade(
   }
   const light = yield* lightAt(positions, corners, normals);
   const bends = yield* bendsOf(positions, corners, normals);
+  if (creases) yield* clearEdges(positions, corners, normals);
   const ambience = new Uint8Array(light.length).map((_, i) => {
     const bend = bends[i] as number;
     return 255 * Math.min(1, (light[i] as number) * (0.9 + (bend < 0 ? 0.35 : 0.1) * bend));
@@ -79,6 +86,30 @@ function addNormal(p: Float32Array, normals: Float32Array, a: number, b: number,
   }
 }
 
+/** Clears the normals of vertices at sharp edges. */
+function* clearEdges(
+  positions: Float32Array,
+  corners: Uint32Array,
+  normals: Float32Array,
+): Generator<void, void> {
+  const kept = normals.slice();
+  const own = new Float32Array(9);
+  const places = new Float32Array(9);
+  yield* overTriangles(corners, (...triangle) => {
+    triangle.forEach((corner, i) => {
+      places.set(positions.subarray(corner, corner + 3), 3 * i);
+    });
+    own.fill(0);
+    addNormal(places, own, 0, 3, 6);
+    normalize(own);
+    for (const corner of triangle) {
+      let along = 0;
+      for (let k = 0; k < 3; ++k) along += (own[k] as number) * (kept[corner + k] as number);
+      if (along < sharpest) normals.fill(0, corner, corner + 3);
+    }
+  });
+}
+
 function normalize(vectors: Float32Array): void {
   for (let i = 0; i < vectors.length; i += 3) {
     const [x, y, z] = [vectors[i] as number, vectors[i + 1] as number, vectors[i + 2] as number];
@@ -91,14 +122,30 @@ function normalize(vectors: Float32Array): void {
 
 /** A grid of cells that the surface passes through. */
 interface Grid {
-  readonly low: readonly number[];
-  /** [mm] */
-  readonly cell: number;
   readonly counts: readonly number[];
   readonly taken: Uint8Array;
 }
 
-function* gridOf(positions: Float32Array, corners: Uint32Array): Generator<void, Grid> {
+/** Returns the grid with cells of twice the size. */
+function coarser({ counts, taken }: Grid): Grid {
+  const [across, down] = counts as [number, number, number];
+  const halves = counts.map((count) => (count + 1) >> 1);
+  const [wide, high] = halves as [number, number, number];
+  const found = new Uint8Array(halves.reduce((all, count) => all * count, 1));
+  for (let i = 0; i < taken.length; ++i) {
+    if (taken[i] === 0) continue;
+    const [x, row] = [i % across, Math.floor(i / across)];
+    const [y, z] = [row % down, Math.floor(row / down)];
+    found[((z >> 1) * high + (y >> 1)) * wide + (x >> 1)] = 1;
+  }
+  return { counts: halves, taken: found };
+}
+
+/** Returns grids from fine to coarse, their lowest corner, and the side of the finest cells. [mm] */
+function* gridsOf(
+  positions: Float32Array,
+  corners: Uint32Array,
+): Generator<void, { grids: Grid[]; low: number[]; cell: number }> {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < positions.length; ++i) {
@@ -132,7 +179,9 @@ function* gridOf(positions: Float32Array, corners: Uint32Array): Generator<void,
       }
     }
   });
-  return { low, cell, counts, taken };
+  const grids: Grid[] = [{ counts, taken }];
+  for (let i = 0; i < 2; ++i) grids.push(coarser(grids[i] as Grid));
+  return { grids, low, cell };
 }
 
 /** Returns how much light from all around reaches each vertex, from 0 to 1. */
@@ -141,9 +190,13 @@ function* lightAt(
   corners: Uint32Array,
   normals: Float32Array,
 ): Generator<void, Float32Array> {
-  const { low, cell, counts, taken } = yield* gridOf(positions, corners);
-  const [across, down, up] = counts as [number, number, number];
-  const farthest = rayStops[rayStops.length - 1] as number;
+  const { grids, low, cell } = yield* gridsOf(positions, corners);
+  const tests = stops.map((t, i) => {
+    const level = gridOfStop[i] as number;
+    const { counts, taken } = grids[level] as Grid;
+    const [across, down, up] = counts as [number, number, number];
+    return { t, size: 2 ** level, loss: 1 - t / 28, across, down, up, taken };
+  });
   // Evenly over the sphere, along a spiral.
   const rays = Array.from({ length: directions }, (_, i) => {
     const z = 1 - (2 * i + 1) / directions;
@@ -166,11 +219,13 @@ function* lightAt(
       const along = dx * nx + dy * ny + dz * nz;
       if (along < 0.3) continue; // the surface itself would be in the way
       all += along;
-      for (const t of rayStops) {
-        const [a, b, c] = [Math.floor(x + t * dx), Math.floor(y + t * dy), Math.floor(z + t * dz)];
+      for (const { t, size, loss, across, down, up, taken } of tests) {
+        const a = Math.floor((x + t * dx) / size);
+        const b = Math.floor((y + t * dy) / size);
+        const c = Math.floor((z + t * dz) / size);
         if (a < 0 || b < 0 || c < 0 || a >= across || b >= down || c >= up) break;
         if (taken[(c * down + b) * across + a] === 0) continue;
-        lost += along * (1 - t / (1.3 * farthest));
+        lost += along * loss;
         break;
       }
     }
