@@ -39,8 +39,9 @@ export const tissues = {
   },
   vessel: {
     ...organ,
-    base: [0.6, 0.1, 0.075],
-    valley: [0.22, 0.012, 0.012],
+    // Not as red as the alarm of paths.
+    base: [0.58, 0.2, 0.16],
+    valley: [0.2, 0.03, 0.025],
     hollow: [0.26, 0.05, 0.05],
     section: [0.82, 0.34, 0.28],
   },
