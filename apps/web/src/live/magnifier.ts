@@ -44,6 +44,7 @@ export class Magnifier {
   private colors: Readonly<Record<string, string>> = {};
   private solid = "";
   private edge = "";
+  private readonly font = `600 12px ${getComputedStyle(document.body).fontFamily}`;
   /** What is drawn now. */
   private drawn = "";
 
@@ -241,7 +242,7 @@ export class Magnifier {
 
     // Beside the gap, along the plane.
     const text = millimetres(clearance);
-    pen.font = `600 12px ${getComputedStyle(document.body).fontFamily}`;
+    pen.font = this.font;
     const long = pen.measureText(text).width + 10;
     const side = 14 + 0.5 * (Math.abs(ny) * long + Math.abs(nx) * 18);
     const turn = ny < 0 ? 1 : -1;

@@ -48,6 +48,7 @@ export class ToolScene extends Scene {
   private readonly margin: MarginView;
   private guard = { margin: 0, isGuarded: false };
   private toolColor = "";
+  private alarm = "";
   /** True until the view is turned to the jaw of an instrument. */
   private isNew = true;
 
@@ -81,6 +82,7 @@ export class ToolScene extends Scene {
   /** Gives tool and trail the color of a rule. */
   paintTool(color: string): void {
     this.toolColor = color;
+    this.alarm = colorOf("--alarm");
     this.trail.paint(color);
     this.margin.paint(color);
     this.redraw();
@@ -310,7 +312,7 @@ export class ToolScene extends Scene {
     const isHeld = held > 0 && byMesh;
     this.margin.update({ ...this.guard, bodies, clearances, isHeld }, this.camera, drawn);
     const sun = new three.Vector3(-0.45, 0.62, 0.64).transformDirection(this.camera.matrixWorld);
-    this.shade.place(bodies, sun, coloredWithin(this.size), colorOf("--alarm"));
+    this.shade.place(bodies, sun, coloredWithin(this.size), this.alarm);
   }
 
   /**
