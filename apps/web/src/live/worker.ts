@@ -89,7 +89,7 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
     made =
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
-        : scaled(keepout.anatomyOfFile(source.name, source.bytes), source.scale);
+        : scaled(keepout.anatomyOfFile(fileOf(source.name), source.bytes), source.scale);
     tellSurface(name, made.surface());
   }
   letGo();
@@ -98,6 +98,9 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
   tell({ kind: "findings", findings: made.findings() });
   tell({ kind: "guarded" });
 }
+
+/** Returns the name of a file without its factor: the engine needs the extension. */
+const fileOf = (name: string): string => name.replace(/ × \d+$/, "");
 
 /** Returns an anatomy with all coordinates multiplied; deletes the given one if it makes another. */
 function scaled(made: Anatomy, scale: number): Anatomy {
