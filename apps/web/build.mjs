@@ -38,6 +38,30 @@ const withoutMaps = {
   },
 };
 
+/** Removes blanks from the shaders of three.js, which are most of its text. */
+const withoutBlanks = {
+  name: "without blanks",
+  setup(bundler) {
+    bundler.onLoad({ filter: /three[\\/]build[\\/]three\.module\.js$/ }, async ({ path }) => {
+      const text = await readFile(path, "utf8");
+      const shader = /^(var|const) \w+ = "([^"\\]|\\.)*\\n([^"\\]|\\.)*";$/gm;
+      const contents = text.replaceAll(
+        shader,
+        (line) =>
+          line.slice(0, 4) +
+          line
+            .slice(4)
+            .replaceAll(/(\\n)(\\[nt])+/g, "$1")
+            .replaceAll("( ", "(")
+            .replaceAll(" )", ")")
+            .replaceAll(", ", ",")
+            .replaceAll(/ ([*<>=]=?) /g, "$1"),
+      );
+      return { contents };
+    });
+  },
+};
+
 /** Returns the text of esbuild's bundle of an entry, and the packages in it. */
 async function bundle(entry, modules = {}) {
   const { outputFiles, metafile } = await build({
@@ -51,7 +75,7 @@ async function bundle(entry, modules = {}) {
     format: "iife",
     legalComments: "inline",
     alias: modules,
-    plugins: [withoutMaps],
+    plugins: [withoutMaps, withoutBlanks],
     define: { "import.meta.url": '""' },
     external: ["module", "fs", "path", "url"],
     logOverride: { "empty-import-meta": "silent" },
@@ -61,7 +85,8 @@ async function bundle(entry, modules = {}) {
     .filter(([, { bytesInOutput }]) => bytesInOutput > 0)
     .map(([file]) => file.match(/^.*node_modules\/(@[^/]+\/)?[^/]+/)?.[0])
     .filter((folder) => folder !== undefined);
-  return { text: outputFiles[0].text, packages };
+  // The lines of a minified text are those of shaders.
+  return { text: outputFiles[0].text.replaceAll(/\n[ \t]+/g, "\n"), packages };
 }
 
 /** Returns a script element. No text in it can end the element. */

@@ -424,7 +424,7 @@ test("the jaw dragged into the skull: held back, and all bodies clear, says the 
     /^The (shaft|wrist|jaw) touches the bone and stops: 0\.2\d mm of clearance remains\.$/,
   );
   assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
-  assert.match(await textOf(desk, "#contact"), /^(shaft|wrist|jaw) 0\.2\d mm$/);
+  assert.match(await textOf(desk, ".callout"), /^(shaft|wrist|jaw) 0\.2\d mm$/);
   assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
   await desk.screenshot({ path: join(folder, "dragged.png") });
   await desk.mouse.up();
@@ -456,7 +456,7 @@ test("keys choose the mode while the hand pushes: none goes in, certified does n
   await desk.keyboard.press("1");
   await desk.waitForFunction(() => document.querySelector("#status b").textContent === "inside");
   assert.match(await textOf(desk, "#status span"), /deep in the bone: nothing stops it/);
-  assert.equal(await desk.$eval("#contact", ({ className }) => className), "inside");
+  assert.equal(await desk.$eval(".callout", ({ className }) => className), "callout bad");
   await desk.screenshot({ path: join(folder, "unguarded.png") });
   await desk.mouse.up();
   await desk.click("#again");

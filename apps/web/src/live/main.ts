@@ -3,6 +3,7 @@
 import type { Findings, Frame, Rule, ToolFacts, ToolSettings, Vec3 } from "../engine/keepout.ts";
 import { colorOf } from "../page/color_of.ts";
 import { grouped, saveFile } from "../page/elements.ts";
+import { tissueOf, tissues } from "../page/tissue.ts";
 import { anatomyWords } from "./anatomy_words.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { CounterexampleView } from "./counterexample_view.ts";
@@ -27,7 +28,7 @@ import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file
 import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
-import { addRobotControls, labelContact } from "./robot_controls.ts";
+import { addRobotControls } from "./robot_controls.ts";
 import { firstPositions, parseRobotPath, robotPathText } from "./robot_path.ts";
 import { RobotScene } from "./robot_scene.ts";
 import { SettingsPanel } from "./settings_panel.ts";
@@ -73,9 +74,12 @@ let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = nul
 let portBase: readonly number[] | null = null;
 
 // The worker starts before the scene exists.
-const worker = new Worker(
-  URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
+const workerUrl = URL.createObjectURL(
+  new Blob([embeddedText("worker")], { type: "text/javascript" }),
 );
+const worker = new Worker(workerUrl);
+/** Computes the shading of the anatomy beside the control loop. */
+let shader: Worker | null = null;
 worker.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
 worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
 
@@ -116,7 +120,7 @@ const handlers: Handlers<FromWorker> = {
   },
   surface(surface) {
     input.drop();
-    scene.show(surface);
+    showSurface(surface);
     chart.clear();
     state = null;
     shown = awaited;
@@ -126,6 +130,11 @@ const handlers: Handlers<FromWorker> = {
     triangles = surface.corners.length / 3;
     readings?.name(surface.name);
     if (isTip && pendingPath === null) fitTool();
+  },
+  shaded({ shading }) {
+    scene.refine(shading);
+    shader?.terminate();
+    shader = null;
   },
   findings({ findings }) {
     showFindings(findings, triangles, meshOf(shown)?.warnings ?? []);
@@ -165,6 +174,19 @@ const handlers: Handlers<FromWorker> = {
     meshes.select(shown);
   },
 };
+
+/** Shows an anatomy at once; another worker computes how it takes the light. */
+function showSurface(surface: Parameters<Handlers<FromWorker>["surface"]>[0]): void {
+  const isShape = awaited?.source.kind === "shape";
+  const tissue = isShape ? tissues.shape : tissueOf(surface.name);
+  scene.show(surface, tissue);
+  shader?.terminate();
+  shader = new Worker(workerUrl);
+  shader.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
+  const { positions, corners } = surface;
+  const message: ToWorker = { kind: "shade", positions, corners, creases: tissue.creases };
+  shader.postMessage(message);
+}
 
 function endLoading(): void {
   awaited = null;
@@ -290,7 +312,6 @@ function placeGrip(): void {
   if (state === null) return;
   const { place } = state.hand;
   grip.style.transform = scene.shift(place);
-  if (robotScene !== null && facts !== null) labelContact(robotScene, state, facts);
   const at = scene.project(place);
   const open = scene.openView();
   find.hidden = grip.hidden || (at.z < 1 && Math.abs(at.x) <= open.x + 0.02 && Math.abs(at.y) <= 1);
@@ -432,6 +453,7 @@ function showSettings(): void {
   panel.show(settings);
   guides.show(settings);
   chart.setMargin(settings.margin);
+  scene.setMargin(settings.margin, settings.rule !== "none");
   showColors();
 }
 

@@ -15,6 +15,7 @@ import type {
 } from "../engine/keepout.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
 import type { PackedSurface } from "../page/embedded_surface.ts";
+import type { Shading } from "../page/shading.ts";
 import type { CycleClock } from "./cycle_clock.ts";
 import type { Surroundings } from "./robot_surroundings.ts";
 import type { StartLine } from "./start_place.ts";
@@ -53,6 +54,13 @@ export type ToWorker =
       readonly port: Port | null;
     }
   | { readonly kind: "settings"; readonly settings: ToolSettings }
+  /** Computes how a surface takes the light; needs no engine. See page/shading.ts. */
+  | {
+      readonly kind: "shade";
+      readonly positions: Float32Array;
+      readonly corners: Uint32Array;
+      readonly creases: boolean;
+    }
   /** Places the tip or the joints; starts a new path. */
   | { readonly kind: "place"; readonly positions: readonly number[] }
   /** Places a tip on one of these lines, at a distance from the anatomy: see startPlace(). [mm] */
@@ -114,6 +122,7 @@ export type FromWorker =
       readonly statuses: readonly StatusWords[];
     }
   | ({ readonly kind: "surface"; readonly name: string } & CenteredSurface)
+  | { readonly kind: "shaded"; readonly shading: Shading }
   | { readonly kind: "findings"; readonly findings: Findings }
   /** The index is built: a tool can be placed. */
   | { readonly kind: "guarded" }

@@ -3,10 +3,9 @@ import * as three from "three";
 import type { ToolFacts, Vec3 } from "../engine/keepout.ts";
 import { Capsule } from "../page/capsule.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
-import { colorOf } from "../page/color_of.ts";
+import type { Tissue } from "../page/tissue.ts";
 import { colors } from "./markers.ts";
 import type { State } from "./protocol.ts";
-import { ContactMark } from "./robot_contact_mark.ts";
 import { InstrumentParts } from "./robot_parts.ts";
 import { ToolScene } from "./tool_scene.ts";
 
@@ -28,26 +27,22 @@ const firstJaw = 2;
  */
 export class RobotScene extends ToolScene {
   private readonly parts = new InstrumentParts();
-  private readonly contact = new ContactMark();
   private wishes: Capsule[] = [];
   private now: State | null = null;
   private isPortLaid = false;
-  /** The color of a body in the anatomy. */
-  private alarm = "";
 
   constructor(container: HTMLElement, room: () => number, onDraw: () => void) {
     super(container, room, onDraw, false);
-    this.moving.add(...this.parts.guarded, ...this.parts.unguarded, this.contact.group);
+    this.moving.add(...this.parts.guarded, ...this.parts.unguarded);
   }
 
-  override show(surface: CenteredSurface): void {
+  override show(surface: CenteredSurface, tissue: Tissue): void {
     this.isPortLaid = false;
-    super.show(surface);
+    super.show(surface, tissue);
   }
 
   override paintTool(color: string): void {
     this.parts.paint(color);
-    this.alarm = colorOf("--alarm");
     super.paintTool(color);
   }
 
@@ -174,16 +169,7 @@ export class RobotScene extends ToolScene {
     });
     this.spring.stretch(wish, tip, 0.35, 0.3);
 
-    const seen = tip.distanceTo(this.camera.position);
-    const gap = contact === null ? 0 : (clearances[contact.body] as number);
-    this.contact.show(
-      contact && {
-        surface: this.inside(contact.surface),
-        core: this.inside(contact.core),
-        color: gap < 0 ? alarm : colors.plane,
-        size: Math.max(6, 0.035 * seen),
-      },
-    );
+    this.showMargin(moment, this.radii);
     this.guides.mark(moment.guides);
   }
 

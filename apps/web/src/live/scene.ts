@@ -2,10 +2,15 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../engine/keepout.ts";
+import { anatomyMaterial, paintTissue } from "../page/anatomy_material.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
-import { makeGraphics, surfaceGeometry } from "../page/graphics.ts";
+import { makeGraphics, setShading, surfaceGeometry } from "../page/graphics.ts";
+import { PictureQuality } from "../page/picture_quality.ts";
+import type { Shading } from "../page/shading.ts";
 import { StillPicture } from "../page/still_picture.ts";
-import { colors, Spring, Trail } from "./markers.ts";
+import { type Tissue, tissues } from "../page/tissue.ts";
+import { ToolShade } from "../page/tool_shade.ts";
+import { Spring, Trail } from "./markers.ts";
 import type { State } from "./protocol.ts";
 
 /** The anatomy with the hand and a tool, which a derived class draws. */
@@ -14,15 +19,15 @@ export abstract class Scene {
   private readonly renderer: three.WebGLRenderer;
   protected readonly controls: OrbitControls;
   private readonly still: StillPicture;
-  protected readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
+  protected readonly anatomy: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
   protected readonly moving = new three.Scene();
   protected readonly spring = new Spring();
   protected readonly trail = new Trail();
   /** The displayed state; null: no tool yet. */
   private moment: State | null = null;
   private readonly lit: three.Group[] = [];
-  /** The most pixels drawn per pixel of the screen, along a side. */
-  private readonly finest: number;
+  protected readonly shade = new ToolShade();
+  private readonly quality: PictureQuality;
   protected corners = new Uint32Array();
   private origin = new three.Vector3();
   protected size = 100; // of the anatomy's box: its diagonal [mm]
@@ -42,17 +47,16 @@ export abstract class Scene {
     // The still picture smooths its own edges.
     const { renderer, isSlow } = makeGraphics(false);
     this.renderer = renderer;
-    this.finest = isSlow ? 0.6 : 1;
+    this.quality = new PictureQuality(isSlow ? 1 : 0);
     this.renderer.domElement.id = "picture";
     container.prepend(this.renderer.domElement);
     this.camera.up.set(0, 0, 1);
 
     const light = new three.Scene();
-    const material = new three.MeshLambertMaterial({ color: colors.bone, side: three.DoubleSide });
-    this.anatomy = new three.Mesh(new three.BufferGeometry(), material);
+    this.anatomy = new three.Mesh(new three.BufferGeometry(), anatomyMaterial(tissues.shape, null));
     this.anatomy.frustumCulled = false;
-    light.add(this.anatomy, this.lights());
-    this.still = new StillPicture(light, this.camera, isSlow ? 0 : 4);
+    light.add(this.anatomy);
+    this.still = new StillPicture(light, this.camera, 0, this.shade);
 
     this.moving.add(this.lights(), this.spring.line, this.trail.line);
     this.moving.visible = false;
@@ -70,7 +74,8 @@ export abstract class Scene {
   }
 
   /** Shows another anatomy from one side, in the size of the view. */
-  show({ positions, corners, origin, size }: CenteredSurface): void {
+  show({ positions, corners, origin, size }: CenteredSurface, tissue: Tissue): void {
+    paintTissue(this.anatomy.material, tissue);
     this.anatomy.geometry.dispose();
     this.anatomy.geometry = surfaceGeometry(positions, corners);
     this.corners = corners;
@@ -86,6 +91,12 @@ export abstract class Scene {
     this.controls.update();
     this.clear();
     this.resize();
+  }
+
+  /** Refines the shading of the shown anatomy. */
+  refine(shading: Shading): void {
+    setShading(this.anatomy.geometry, shading);
+    this.outdate();
   }
 
   /** Shows this state from now on. */
@@ -165,9 +176,12 @@ export abstract class Scene {
   redraw(): void {
     if (this.isDue) return;
     this.isDue = true;
-    requestAnimationFrame(() => {
+    requestAnimationFrame((begin) => {
       this.isDue = false;
       this.draw();
+      requestAnimationFrame((end) => {
+        if (this.quality.add(end - begin)) this.resize();
+      });
     });
   }
 
@@ -209,9 +223,10 @@ export abstract class Scene {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.container;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(
-      Math.min(window.devicePixelRatio, 2, this.finest * window.devicePixelRatio),
-    );
+    const { name, scale, samples, shade } = this.quality.quality;
+    this.container.dataset.picture = name;
+    this.still.adjust(samples, shade);
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2, scale * devicePixelRatio));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();

@@ -3,8 +3,11 @@ import * as three from "three";
 import type { ToolFacts, Vec3 } from "../engine/keepout.ts";
 import { Capsule } from "../page/capsule.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
+import { colorOf } from "../page/color_of.ts";
+import type { Tissue } from "../page/tissue.ts";
 import type { GuideKind } from "./guide_panel.ts";
 import { GuideShapes } from "./guide_shapes.ts";
+import { coloredWithin, MarginView } from "./margin_view.ts";
 import { colors, sheet } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { Scene } from "./scene.ts";
@@ -37,7 +40,12 @@ export class ToolScene extends Scene {
     new three.BufferGeometry(),
     new three.LineBasicMaterial({ color: colors.plane, depthTest: false, transparent: true }),
   );
+  private readonly margin: MarginView;
+  private guard = { margin: 0, isGuarded: false };
   protected toolColor = "";
+  protected alarm = "";
+  /** The names of the bodies; none for a tip. */
+  private names: readonly string[] = [];
   /** True until the first view of an anatomy is chosen. */
   private isNew = true;
 
@@ -51,17 +59,28 @@ export class ToolScene extends Scene {
     super(container, room, onDraw);
     this.moving.add(this.edges, ...this.planes, this.guides.group);
     this.spring.line.renderOrder = isBall ? 1 : 3;
+    this.margin = new MarginView(container);
+    this.moving.add(this.margin.group);
   }
 
-  override show(surface: CenteredSurface): void {
+  override show(surface: CenteredSurface, tissue: Tissue): void {
     this.isNew = true;
-    super.show(surface);
+    this.margin.show(surface, tissue);
+    super.show(surface, tissue);
+  }
+
+  /** Takes the margin, and whether a rule keeps it. [mm] */
+  setMargin(margin: number, isGuarded: boolean): void {
+    this.guard = { margin, isGuarded };
+    this.redraw();
   }
 
   /** Gives tool and trail the color of a rule. */
   paintTool(color: string): void {
     this.toolColor = color;
+    this.alarm = colorOf("--alarm");
     this.trail.paint(color);
+    this.margin.paint(color);
     this.redraw();
   }
 
@@ -72,6 +91,7 @@ export class ToolScene extends Scene {
       body.dispose();
     }
     this.radii = bodies.map(({ radius }) => radius);
+    this.names = this.isBall ? [] : bodies.map(({ name }) => name);
     // Created first, so that the hand is drawn below a tool at the same position.
     this.wanted = new Capsule(this.isBall ? 0.35 : 0.6);
     this.wanted.paint(colors.hand);
@@ -227,8 +247,27 @@ export class ToolScene extends Scene {
     this.wanted.show(this.isBall || wish.distanceTo(tip) > 0.3 || Math.abs(turn.w) < 0.9995);
     const [wide, least] = this.isBall ? [0.16 * radius, 0.1 * radius] : [0.35, 0.3];
     this.spring.stretch(wish, tip, wide, least);
-    this.showPlanes(moment, tip, Math.max(4 * radius, 0.03 * seen));
+    this.showPlanes(moment, tip, Math.max(2.2 * radius, 0.02 * seen));
     this.guides.mark(moment.guides);
+    this.showMargin(
+      moment,
+      this.bodies.map((_, i) => radiusOf(i)),
+    );
+  }
+
+  /** `drawn`: the drawn radius of each body. */
+  protected showMargin({ cores, clearances, held, byMesh }: State, drawn: readonly number[]): void {
+    const bodies = this.radii.map((radius, i) => ({
+      from: this.pointOf(cores, 2 * i),
+      to: this.pointOf(cores, 2 * i + 1),
+      radius,
+    }));
+    const isHeld = held > 0 && byMesh;
+    const { names } = this;
+    const tool = { ...this.guard, bodies, names, clearances, isHeld };
+    this.margin.update(tool, this.camera, drawn);
+    const sun = new three.Vector3(-0.45, 0.62, 0.64).transformDirection(this.camera.matrixWorld);
+    this.shade.place(bodies, sun, coloredWithin(this.size), this.alarm);
   }
 
   /**

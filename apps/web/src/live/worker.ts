@@ -12,6 +12,7 @@ import {
 } from "../engine/keepout.ts";
 import { centered } from "../page/centered_surface.ts";
 import { decodeSurface, unpacked } from "../page/embedded_surface.ts";
+import { shade } from "../page/shading.ts";
 import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
@@ -109,7 +110,7 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
     made =
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
-        : scaled(keepout.anatomyOfFile(source.name, source.bytes), source.scale);
+        : scaled(keepout.anatomyOfFile(fileOf(source.name), source.bytes), source.scale);
     size = tellSurface(name, made.surface());
   }
   letGo();
@@ -119,6 +120,9 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
   tell({ kind: "findings", findings: made.findings() });
   tell({ kind: "guarded" });
 }
+
+/** Returns the name of a file without its factor: the engine needs the extension. */
+const fileOf = (name: string): string => name.replace(/ × \d+$/, "");
 
 /** Returns an anatomy with all coordinates multiplied; deletes the given one if it makes another. */
 function scaled(made: Anatomy, scale: number): Anatomy {
@@ -166,6 +170,13 @@ function begin(): void {
 const handlers: Handlers<ToWorker> = {
   start: ({ engine, subject }) => start(engine, subject),
   load: ({ source, settings, port }) => load(source, settings, port),
+  shade({ positions, corners, creases }) {
+    const work = shade(positions, corners, creases);
+    let step = work.next();
+    while (!step.done) step = work.next();
+    const { normals, ambience } = step.value;
+    tell({ kind: "shaded", shading: step.value }, [normals.buffer, ambience.buffer]);
+  },
   settings({ settings }) {
     if (loop !== null) {
       if ((settings.opening ?? 0) > (loop.settings.opening ?? 0)) requireRoom(settings, loop);
@@ -202,8 +213,12 @@ const handlers: Handlers<ToWorker> = {
 let queue: Promise<void> = Promise.resolve();
 self.onmessage = ({ data: message }: MessageEvent<ToWorker>) => {
   queue = queue
-    // Without an engine, only its start is handled.
-    .then(() => (message.kind === "start" || keepout ? handled(handlers, message) : undefined))
+    // Without an engine, only its start and shading are handled.
+    .then(() =>
+      message.kind === "start" || message.kind === "shade" || keepout
+        ? handled(handlers, message)
+        : undefined,
+    )
     .catch((error: unknown) => {
       const words = error instanceof Error ? error.message : String(error);
       tell({ kind: "failure", of: message.kind, message: words });
