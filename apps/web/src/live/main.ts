@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The page of `keepout live`, for the ball of a tip or for an instrument: connects its parts. */
-import type { Findings, Frame, Rule, ToolFacts, ToolSettings, Vec3 } from "../engine/keepout.ts";
+import type {
+  Findings,
+  Frame,
+  Rule,
+  StatusWords,
+  ToolFacts,
+  ToolSettings,
+  Vec3,
+} from "../engine/keepout.ts";
 import { colorOf } from "../page/color_of.ts";
 import { grouped, saveFile } from "../page/elements.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
-import { CounterexampleView } from "./counterexample_view.ts";
 import { type Course, Demonstration } from "./demonstration.ts";
+import { Duel } from "./duel.ts";
 import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
 import { type GuideKind, GuidePanel } from "./guide_panel.ts";
@@ -32,6 +40,7 @@ import {
 import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
+import { makeWorker } from "./rival.ts";
 import { SettingsPanel } from "./settings_panel.ts";
 import type { StartLine } from "./start_place.ts";
 import { ToolScene } from "./tool_scene.ts";
@@ -66,13 +75,14 @@ let triangles = 0;
 let facts: ToolFacts | null = null;
 let state: State | null = null;
 let readings: Readings | null = null;
+/** The mode with two scenes; null for an instrument. */
+let duel: Duel | null = null;
+let statusWords: readonly StatusWords[] = [];
 /** A path to replay once its mesh is loaded. */
 let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = null;
 
 // The worker starts before the scene exists.
-const worker = new Worker(
-  URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
-);
+const worker = makeWorker();
 worker.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
 worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
 
@@ -80,6 +90,10 @@ const subject = isTip ? "tip" : "instrument";
 tell({ kind: "start", engine: embeddedText("engine"), subject });
 const meshes = new MeshList(load);
 const grip = element("grip", HTMLElement);
+/** The hand in the other pane of the mode with two scenes. */
+const otherGrip = grip.cloneNode() as HTMLElement;
+otherGrip.id = "other-grip";
+grip.after(otherGrip);
 page.meshes.forEach((mesh, i) => {
   const source = { kind: "embedded", mesh, data: embeddedText(`mesh-${i}`) } as const;
   meshes.offer("In this page", { source, command: mesh.command_name });
@@ -98,13 +112,14 @@ const input = new HandInput(scene, view, !isTip, (hand) => {
   tell({ kind: "hand", hand });
 });
 
-function tell(message: ToWorker): void {
-  worker.postMessage(message);
+function tell(message: ToWorker, transfer: Transferable[] = []): void {
+  worker.postMessage(message, transfer);
 }
 
 const handlers: Handlers<FromWorker> = {
   ready({ statuses, shapes }) {
     readings = new Readings(statuses);
+    statusWords = statuses;
     // A generated mesh has no port for an instrument.
     for (const name of isTip ? shapes : []) {
       meshes.offer("Generated", { source: { kind: "shape", name }, command: name });
@@ -130,6 +145,7 @@ const handlers: Handlers<FromWorker> = {
     endLoading();
     begin();
     play();
+    duel?.loaded();
   },
   tool(tool) {
     facts = tool.facts;
@@ -138,6 +154,7 @@ const handlers: Handlers<FromWorker> = {
   state: (message) => show(message.state),
   path: ({ use, lines, settings: madeWith }) => takePath(use, lines, madeWith),
   replayed({ cycles, differs }) {
+    if (duel?.ended()) return;
     const what = isTip ? "the tool" : "the joints";
     toast(
       differs < 0
@@ -146,7 +163,7 @@ const handlers: Handlers<FromWorker> = {
             `on ${what} went another way than on record.`,
     );
   },
-  counterexamples: (message) => failures?.open(message),
+  counterexamples: (message) => duel?.openTrials(message),
   settings(message) {
     settings = message.settings;
     showSettings();
@@ -217,6 +234,7 @@ function show(now: State): void {
   scene.update(now);
   chart.add(now.time, now.handClearance, Math.min(...now.clearances));
   readings?.show(now, settings, facts, scene.frames);
+  duel?.show(now, statusWords);
 }
 
 // The first seconds.
@@ -289,6 +307,7 @@ function placeGrip(): void {
   if (state === null) return;
   const { place } = state.hand;
   grip.style.transform = scene.shift(place);
+  otherGrip.style.transform = scene.shift(place, 0);
   const at = scene.project(place);
   const open = scene.openView();
   find.hidden = grip.hidden || (at.z < 1 && Math.abs(at.x) <= open.x + 0.02 && Math.abs(at.y) <= 1);
@@ -320,6 +339,7 @@ function load(choice: Choice): void {
   const base = meshOf(choice)?.start?.base;
   const port = page.robot !== undefined && base ? { robot: page.robot, base } : null;
   tell({ kind: "load", source: choice.source, settings, port });
+  duel?.loading(choice);
 }
 
 async function openFile(file: File): Promise<void> {
@@ -371,7 +391,7 @@ function adopt(header: PathHeader | null): void {
 
 function replay(lines: Float64Array): void {
   input.drop();
-  tell({ kind: "replay", lines });
+  tell({ kind: "replay", lines, isHeld: false });
 }
 
 /** Replays the opened path, if there is one. */
@@ -387,7 +407,8 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
     return;
   }
   const { keepout, robot } = page;
-  const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_");
+  const both = duel?.isOn ? `-${madeWith.rule}` : "";
+  const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_") + both;
   const mesh = meshOf(shown);
   if (robot !== undefined && mesh !== undefined) {
     const { margin, maxStep, guides } = madeWith;
@@ -435,6 +456,7 @@ function showColors(): void {
     `var(--rule-${settings.rule.replaceAll("_", "-")})`,
   );
   scene.paintTool(colorOf("--tool"));
+  duel?.paint();
 }
 
 function change(part: Partial<ToolSettings>): void {
@@ -453,7 +475,7 @@ for (const use of ["save", "replay"] as const) {
 }
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showColors);
 document.addEventListener("visibilitychange", () => {
-  tell({ kind: "pause", paused: document.hidden });
+  tell({ kind: "pause", paused: document.hidden || duel?.isStill === true });
 });
 if (!isTip) {
   view.ariaLabel =
@@ -461,13 +483,25 @@ if (!isTip) {
     "Page Up and Page Down into it and out of it; A, D, W, S, Q and E turn it; with Shift slowly; " +
     "Escape lets go.";
 }
-const failures = isTip ? addTipControls() : null;
+duel = isTip ? addTipControls() : null;
 showSettings();
 
-/** Adds files, double-clicks and counterexamples, which the page of an instrument does not have. */
-function addTipControls(): CounterexampleView {
+/** Adds files, double-clicks and the mode with two scenes, which the page of an instrument does not have. */
+function addTipControls(): Duel {
   takeFiles((file) => void openFile(file));
-  element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
+  const two = new Duel({
+    scene,
+    tell,
+    change,
+    load,
+    settings: () => settings,
+    drop: () => input.drop(),
+    shown: () => shown,
+    isLoading: () => awaited !== null,
+    called: (command) => meshes.called(command),
+    savePath: (lines, madeWith) => takePath("save", lines, madeWith),
+  });
+  element("fail", HTMLButtonElement).onclick = () => two.playStroke();
 
   // A double-click on the anatomy places the tool there.
   view.addEventListener("dblclick", (event) => {
@@ -483,8 +517,8 @@ function addTipControls(): CounterexampleView {
     const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
     const rule = rules[Number(event.key) - 1];
     if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
-    change({ rule });
+    if (two.isOn) two.chooseRule(rule);
+    else change({ rule });
   });
-
-  return new CounterexampleView();
+  return two;
 }

@@ -9,6 +9,7 @@ import { colors, sheet } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { heldBody } from "./readings.ts";
 import { Scene } from "./scene.ts";
+import type { SecondTool } from "./second_tool.ts";
 import type { StartLine } from "./start_place.ts";
 
 /** The largest number of drawn active planes. */
@@ -43,6 +44,7 @@ export class ToolScene extends Scene {
     new three.MeshStandardMaterial({ color: colors.steel, roughness: 0.5 }),
   );
   private toolColor = "";
+  private second: SecondTool | null = null;
   /** True until the view is turned to the jaw of an instrument. */
   private isNew = true;
 
@@ -68,6 +70,20 @@ export class ToolScene extends Scene {
   paintTool(color: string): void {
     this.toolColor = color;
     this.trail.paint(color);
+    this.redraw();
+  }
+
+  /** Shows a second tip in a pane of its own, beside this one; null: one pane. */
+  pair(second: SecondTool | null): void {
+    this.second = second;
+    this.beside = second?.scene ?? null;
+    this.panes.count = second === null ? 1 : 2;
+    this.resize();
+  }
+
+  /** Shows the second tip in this state. */
+  updateSecond(state: State): void {
+    this.second?.update(state, this.inside(state.flange.place));
     this.redraw();
   }
 
@@ -279,6 +295,18 @@ export class ToolScene extends Scene {
     this.port.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), along);
     this.showPlanes(moment, tip, Math.max(4 * radius, 0.03 * seen));
     this.guides.mark(moment.guides);
+    const other = this.second?.state;
+    if (!other) return;
+    const crossed = other.crossedAt && this.inside(other.crossedAt);
+    const [otherTip, otherHand] = [other.flange.place, other.hand.place].map((place) =>
+      this.inside(place),
+    );
+    this.second?.arrange(
+      otherTip as three.Vector3,
+      otherHand as three.Vector3,
+      radiusOf(last),
+      crossed,
+    );
   }
 
   /**

@@ -15,6 +15,7 @@ import { decodeSurface, unpacked } from "../page/embedded_surface.ts";
 import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
+import { follow, Leader } from "./lockstep.ts";
 import { type FromWorker, type Handlers, handled, type Source, type ToWorker } from "./protocol.ts";
 import { startPlace } from "./start_place.ts";
 
@@ -24,24 +25,28 @@ let loop: ControlLoop | null = null;
 let accepted: ToolSettings | null = null; // the settings of the last tool
 let place: readonly number[] | null = null; // the last start of the tool, in this anatomy
 const clock = new CycleClock();
+let leader: Leader | null = null;
+let isFollower = false;
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
 }
 
 function run(): void {
-  if (loop === null) return;
+  if (loop === null || isFollower || leader?.isAhead) return;
   const control = loop;
   const at = clock.run(() => {
     const end = control.run();
+    leader?.add(control);
     if (end !== null) tell({ kind: "replayed", ...end });
   });
+  leader?.flush(at);
   if (at !== null) tellState(at);
 }
 
 function tellState(time: number): void {
   if (loop === null || anatomy === null) return;
-  const { last, hand, tool, cycles, limited } = loop;
+  const { last, hand, tool, cycles, limited, crossings, crossedAt } = loop;
   const { bodies } = tool.facts;
   const clearances = bodies.map((_, i) => tool.made.clearance(i));
   // The engine's own distance of the nearest body, if known.
@@ -50,7 +55,10 @@ function tellState(time: number): void {
   const planes = tool.made.planes().filter(({ isActive }) => isActive);
   const { lost, stepTime, rate } = clock;
   const state = { ...last, time, hand, clearances, handClearance, planes };
-  tell({ kind: "state", state: { ...state, cycles, limited, lost, stepTime, rate } });
+  tell({
+    kind: "state",
+    state: { ...state, cycles, limited, crossings, crossedAt, lost, stepTime, rate },
+  });
 }
 
 function tellSurface(
@@ -74,6 +82,7 @@ function letGo(): void {
   loop?.discard();
   anatomy?.of.delete();
   loop = anatomy = place = null;
+  stopLeading();
 }
 
 async function load(source: Source, settings: ToolSettings, port: Port | null): Promise<void> {
@@ -113,6 +122,22 @@ function placeAt(positions: readonly number[]): void {
   place = positions;
   loop?.place(place);
   begin();
+  if (loop !== null) leader?.place(loop);
+}
+
+function stopLeading(): void {
+  leader?.close();
+  leader = null;
+  if (loop !== null) loop.isPaired = false;
+}
+
+/** Prepares a loop whose cycles another one runs as well. Counts the motions through an open surface. */
+function pair(control: ControlLoop): void {
+  const { of } = anatomy as NonNullable<typeof anatomy>;
+  control.isPaired = true;
+  if (of.findings().watertight) return;
+  const { vertices, corners } = of.surface();
+  control.wall = { vertices: vertices.slice(), corners: corners.slice() };
 }
 
 async function start(engine: string, subject: Subject): Promise<void> {
@@ -148,6 +173,7 @@ const handlers: Handlers<ToWorker> = {
     if (loop !== null) {
       loop.use(settings);
       accepted = settings;
+      leader?.use(settings);
     }
     if (anatomy !== null) anatomy.settings = settings;
     begin();
@@ -161,7 +187,41 @@ const handlers: Handlers<ToWorker> = {
     placeAt(found);
   },
   hand: ({ hand }) => loop?.hold(hand),
-  replay: ({ lines }) => loop?.startReplay(lines),
+  replay({ lines, isHeld }) {
+    loop?.startReplay(lines, isHeld);
+    if (loop !== null) leader?.place(loop);
+  },
+  lead({ port, rule }) {
+    stopLeading();
+    if (port === null || loop === null) return;
+    leader = new Leader(port, rule);
+    pair(loop);
+    loop.place(loop.last.positions);
+    leader.place(loop);
+  },
+  "rule of the follower"({ rule }) {
+    if (loop === null || leader === null) return;
+    loop.use(loop.settings); // its path starts anew as well
+    leader.use(loop.settings, rule);
+  },
+  follow({ port }) {
+    isFollower = true;
+    follow(port, {
+      place(positions, settings) {
+        if (loop === null) {
+          loop = new ControlLoop(makeTool, settings, positions);
+          pair(loop);
+        } else loop.place(positions);
+      },
+      use: (settings) => loop?.use(settings),
+      loop: () => loop,
+      tell: tellState,
+      fail(error) {
+        const words = error instanceof Error ? error.message : String(error);
+        tell({ kind: "failure", of: "settings", message: words });
+      },
+    });
+  },
   "ask for path"({ use }) {
     if (loop === null) return;
     tell({ kind: "path", use, lines: loop.record.lines(), settings: loop.settings });
