@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { Cycle, Frame, Tool, ToolSettings, Vec3 } from "../engine/keepout.ts";
 import { type PathFormat, PathRecord, pathFormat } from "./path_record.ts";
-import { crossing, type Triangles } from "./wall.ts";
 
 /** The time in which the hand covers 63 % of a jump of the pointer. [cycles] */
 const handSmoothing = 8;
@@ -25,9 +24,11 @@ export class ControlLoop {
   tool: Tool;
   /** True if another loop runs the same cycles: then the path has a line for each cycle. */
   isPaired = false;
-  /** If set, counts the motions of a tip through this surface, and where the last one crossed it. */
-  wall: Triangles | null = null;
+  /** If set, returns where a motion of a tip crosses the surface; such motions are counted. */
+  wall: ((from: Vec3, to: Vec3) => Vec3 | null) | null = null;
   crossings = 0;
+  /** How often the tool was placed. */
+  placed = 0;
   crossedAt: Vec3 | null = null;
   private readonly format: PathFormat;
   private pointer: Frame | null = null;
@@ -76,6 +77,7 @@ export class ControlLoop {
     this.hand = this.last.flange;
     this.pointer = this.replay = null;
     this.record.clear();
+    ++this.placed;
     this.crossings = 0;
     this.crossedAt = null;
   }
@@ -139,8 +141,8 @@ export class ControlLoop {
     this.record.add(line, !this.isPaired && before.status <= lastOk);
     ++this.cycles;
     if (this.last.held > 0) ++this.limited;
-    const place = this.wall && crossing(this.wall, before.flange.place, this.last.flange.place);
-    if (place !== null) {
+    const place = this.wall?.(before.flange.place, this.last.flange.place);
+    if (place) {
       ++this.crossings;
       this.crossedAt = place;
     }

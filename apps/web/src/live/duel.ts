@@ -27,7 +27,7 @@ export interface DuelHost {
   readonly shown: () => Choice | null;
   readonly isLoading: () => boolean;
   readonly load: (choice: Choice) => void;
-  readonly called: (command: string) => Choice | undefined;
+  readonly sample: (name: string) => Choice | undefined;
   readonly savePath: (lines: Float64Array, settings: ToolSettings) => void;
 }
 
@@ -116,7 +116,7 @@ export class Duel {
   /** Plays the stroke on which the rule of Li et al. lets the tool through. */
   playStroke(): void {
     const found = wallStrokes
-      .map((stroke) => ({ stroke, choice: this.host.called(stroke.mesh) }))
+      .map((stroke) => ({ stroke, choice: this.host.sample(stroke.mesh) }))
       .find(({ choice }) => choice !== undefined);
     if (found?.choice === undefined || this.host.isLoading()) return;
     this.enter();

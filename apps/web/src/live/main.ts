@@ -308,6 +308,7 @@ function placeGrip(): void {
   const { place } = state.hand;
   grip.style.transform = scene.shift(place);
   otherGrip.style.transform = scene.shift(place, 0);
+  otherGrip.hidden = grip.hidden;
   const at = scene.project(place);
   const open = scene.openView();
   find.hidden = grip.hidden || (at.z < 1 && Math.abs(at.x) <= open.x + 0.02 && Math.abs(at.y) <= 1);
@@ -498,7 +499,7 @@ function addTipControls(): Duel {
     drop: () => input.drop(),
     shown: () => shown,
     isLoading: () => awaited !== null,
-    called: (command) => meshes.called(command),
+    sample: (name) => meshes.sample(name),
     savePath: (lines, madeWith) => takePath("save", lines, madeWith),
   });
   element("fail", HTMLButtonElement).onclick = () => two.playStroke();

@@ -108,6 +108,8 @@ export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "ra
   readonly limited: number;
   /** Motions of a tip through an open surface since it was placed, and where; beside another tool only. */
   readonly crossings: number;
+  /** How often the tool was placed. */
+  readonly placed: number;
   readonly crossedAt: Vec3 | null;
 }
 

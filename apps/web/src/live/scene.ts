@@ -97,6 +97,7 @@ export abstract class Scene {
   /** Shows this state from now on. */
   update(moment: State): void {
     const { place } = moment.flange;
+    if (moment.placed !== this.moment?.placed) this.trail.clear();
     if (this.moment?.flange.place.some((value, i) => value !== place[i])) {
       this.trail.add(this.inside(place));
     }

@@ -29,7 +29,7 @@ export class SecondTool {
   /** Shows this state from now on. `tip`: the tool in the frame of the scene. */
   update(state: State, tip: three.Vector3): void {
     // Placed again: the old trail does not belong to it.
-    if (this.state !== null && state.cycles < this.state.cycles) this.trail.clear();
+    if (state.placed !== this.state?.placed) this.trail.clear();
     if (this.state?.flange.place.join() !== state.flange.place.join()) this.trail.add(tip);
     this.state = state;
   }

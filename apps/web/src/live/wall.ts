@@ -13,32 +13,43 @@ export interface Triangles {
  */
 export function crossing({ vertices, corners }: Triangles, from: Vec3, to: Vec3): Vec3 | null {
   const at = (corner: number, axis: number) => vertices[3 * corner + axis] as number;
-  const [dx, dy, dz] = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
-  const low = from.map((value, axis) => Math.min(value, to[axis] as number)) as unknown as Vec3;
-  const high = from.map((value, axis) => Math.max(value, to[axis] as number)) as unknown as Vec3;
+  const motion = minus(to, from);
   let first = Infinity;
   for (let i = 0; i < corners.length; i += 3) {
     const [a, b, c] = [corners[i] as number, corners[i + 1] as number, corners[i + 2] as number];
-    if (isBeside(0) || isBeside(1) || isBeside(2)) continue;
-    // Möller and Trumbore (1997).
-    const [ux, uy, uz] = [at(b, 0) - at(a, 0), at(b, 1) - at(a, 1), at(b, 2) - at(a, 2)];
-    const [vx, vy, vz] = [at(c, 0) - at(a, 0), at(c, 1) - at(a, 1), at(c, 2) - at(a, 2)];
-    const [px, py, pz] = [dy * vz - dz * vy, dz * vx - dx * vz, dx * vy - dy * vx];
-    const scale = 1 / (ux * px + uy * py + uz * pz);
-    const [sx, sy, sz] = [from[0] - at(a, 0), from[1] - at(a, 1), from[2] - at(a, 2)];
-    const u = scale * (sx * px + sy * py + sz * pz);
-    const [qx, qy, qz] = [sy * uz - sz * uy, sz * ux - sx * uz, sx * uy - sy * ux];
-    const v = scale * (dx * qx + dy * qy + dz * qz);
-    const t = scale * (vx * qx + vy * qy + vz * qz);
-    if (u >= 0 && v >= 0 && u + v <= 1 && t >= 0 && t <= 1) first = Math.min(first, t);
-
-    function isBeside(axis: number): boolean {
-      const [x, y, z] = [at(a, axis), at(b, axis), at(c, axis)];
-      return (
-        Math.max(x, y, z) < (low[axis] as number) || Math.min(x, y, z) > (high[axis] as number)
-      );
-    }
+    // Most triangles are beside the motion along x.
+    const [x, y, z] = [at(a, 0), at(b, 0), at(c, 0)];
+    if (Math.max(x, y, z) < Math.min(from[0], to[0])) continue;
+    if (Math.min(x, y, z) > Math.max(from[0], to[0])) continue;
+    const [p, q, r] = [a, b, c].map((n): Vec3 => [at(n, 0), at(n, 1), at(n, 2)]) as [
+      Vec3,
+      Vec3,
+      Vec3,
+    ];
+    first = Math.min(first, shareAt(from, motion, p, q, r));
   }
   if (first === Infinity) return null;
-  return [from[0] + first * dx, from[1] + first * dy, from[2] + first * dz];
+  return from.map((value, axis) => value + first * (motion[axis] as number)) as unknown as Vec3;
 }
+
+/** Returns the fraction of a motion at which it meets a triangle, or infinity: Möller and Trumbore (1997). */
+function shareAt(from: Vec3, motion: Vec3, a: Vec3, b: Vec3, c: Vec3): number {
+  const [first, second, start] = [minus(b, a), minus(c, a), minus(from, a)];
+  const across = cross(motion, second);
+  const scale = 1 / dot(first, across);
+  const turned = cross(start, first);
+  const [u, v, share] = [
+    scale * dot(start, across),
+    scale * dot(motion, turned),
+    scale * dot(second, turned),
+  ] as Vec3;
+  return u >= 0 && v >= 0 && u + v <= 1 && share >= 0 && share <= 1 ? share : Infinity;
+}
+
+const minus = (a: Vec3, b: Vec3): Vec3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const dot = (a: Vec3, b: Vec3): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a: Vec3, b: Vec3): Vec3 => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];

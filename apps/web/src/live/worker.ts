@@ -18,6 +18,7 @@ import { CycleClock } from "./cycle_clock.ts";
 import { follow, Leader } from "./lockstep.ts";
 import { type FromWorker, type Handlers, handled, type Source, type ToWorker } from "./protocol.ts";
 import { startPlace } from "./start_place.ts";
+import { crossing } from "./wall.ts";
 
 let keepout: Keepout;
 let anatomy: { of: Anatomy; settings: ToolSettings; port: Port | null } | null = null;
@@ -46,7 +47,7 @@ function run(): void {
 
 function tellState(time: number): void {
   if (loop === null || anatomy === null) return;
-  const { last, hand, tool, cycles, limited, crossings, crossedAt } = loop;
+  const { last, hand, tool, cycles, limited, placed, crossings, crossedAt } = loop;
   const { bodies } = tool.facts;
   const clearances = bodies.map((_, i) => tool.made.clearance(i));
   // The engine's own distance of the nearest body, if known.
@@ -57,7 +58,7 @@ function tellState(time: number): void {
   const state = { ...last, time, hand, clearances, handClearance, planes };
   tell({
     kind: "state",
-    state: { ...state, cycles, limited, crossings, crossedAt, lost, stepTime, rate },
+    state: { ...state, cycles, limited, placed, crossings, crossedAt, lost, stepTime, rate },
   });
 }
 
@@ -137,7 +138,11 @@ function pair(control: ControlLoop): void {
   control.isPaired = true;
   if (of.findings().watertight) return;
   const { vertices, corners } = of.surface();
-  control.wall = { vertices: vertices.slice(), corners: corners.slice() };
+  const copy = { vertices: vertices.slice(), corners: corners.slice() };
+  control.wall = (from, to) => {
+    const length = Math.hypot(...to.map((value, axis) => value - (from[axis] as number)));
+    return of.clearance(...from) > length ? null : crossing(copy, from, to);
+  };
 }
 
 async function start(engine: string, subject: Subject): Promise<void> {
