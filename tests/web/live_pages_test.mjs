@@ -14,7 +14,7 @@ import { execFileSync } from "node:child_process";
 import { readdirSync, readFileSync, renameSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { differing, linesOf, replayedPath } from "./paths.mjs";
+import { differing, linesOf, replayedPath, stepsText } from "./paths.mjs";
 import {
   assertAccessible,
   assertAlone,
@@ -287,14 +287,7 @@ test("the same drag without a fixture goes in", async () => {
   await desk.click("#again");
   await sleep(500);
   await rub(2);
-  const rows = linesOf(await savedPath());
-  // Writes the motions between the tips in the format of replay.
-  const steps = rows.slice(1).map((line, i) => {
-    const tip = rows[i].slice(3);
-    const motion = tip.map((value, axis) => line[3 + axis] - value);
-    return [i, "free", ...tip, ...motion, ...motion].join(",");
-  });
-  writeFileSync(join(folder, "free.csv"), `head\n${steps.join("\n")}\n`);
+  writeFileSync(join(folder, "free.csv"), stepsText(linesOf(await savedPath())));
   const verdict = judged("free.csv", "0");
   assert.ok(verdict.inside > 100, `${verdict.inside} motions end inside`);
   assert.ok(verdict.crossing > 0);

@@ -32,3 +32,13 @@ export function differing(lines, rows) {
     [0, 1, 2].some((axis) => !Object.is(line[3 + axis], Number(rows[i][2 + axis]))),
   ).length;
 }
+
+/** Returns the motions between the tool positions of a path, in the format of replay. */
+export function stepsText(lines) {
+  const steps = lines.slice(1).map((line, i) => {
+    const tip = lines[i].slice(3);
+    const motion = tip.map((value, axis) => line[3 + axis] - value);
+    return [i, "free", ...tip, ...motion, ...motion].join(",");
+  });
+  return `head\n${steps.join("\n")}\n`;
+}

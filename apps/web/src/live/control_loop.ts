@@ -27,7 +27,7 @@ export class ControlLoop {
   /** If set, returns where a motion of a tip crosses the surface; such motions are counted. */
   wall: ((from: Vec3, to: Vec3) => Vec3 | null) | null = null;
   crossings = 0;
-  /** How often the tool was placed. */
+  /** The number of times that the tool was placed. */
   placed = 0;
   crossedAt: Vec3 | null = null;
   private readonly format: PathFormat;

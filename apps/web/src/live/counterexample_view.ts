@@ -154,7 +154,7 @@ export class CounterexampleView {
 /** One counterexample under one rule. */
 class Stage {
   readonly scene = new three.Scene();
-  /** Where the motion of the tip crosses a triangle, or null. */
+  /** The place where the motion of the tip crosses a triangle, or null. */
   readonly crossedAt: Vec3 | null;
   private readonly tip = new Capsule();
   private readonly lights = new three.Group();

@@ -10,7 +10,7 @@ import type { ControlLoop } from "./control_loop.ts";
 const mostAhead = 200;
 
 type ToFollower =
-  /** Makes the tool if there is none, and places it. */
+  /** Places the tool; makes it at first. */
   | {
       readonly kind: "place";
       readonly positions: readonly number[];
@@ -75,9 +75,9 @@ export class Leader {
   }
 }
 
-/** What the follower does in its worker. */
+/** The work of the follower in its worker. */
 export interface FollowerWork {
-  /** Returns the loop. Makes it at first. */
+  /** Places the tool; makes it at first. */
   readonly place: (positions: readonly number[], settings: ToolSettings) => void;
   readonly use: (settings: ToolSettings) => void;
   readonly loop: () => ControlLoop | null;

@@ -108,7 +108,7 @@ export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "ra
   readonly limited: number;
   /** Motions of a tip through an open surface since it was placed, and where; beside another tool only. */
   readonly crossings: number;
-  /** How often the tool was placed. */
+  /** The number of times that the tool was placed. */
   readonly placed: number;
   readonly crossedAt: Vec3 | null;
 }

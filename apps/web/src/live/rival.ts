@@ -10,7 +10,7 @@ import {
   type ToWorker,
 } from "./protocol.ts";
 
-/** What the page does with messages of the second engine. */
+/** Handlers of the page for messages of the second engine. */
 export interface RivalEvents {
   /** The anatomy is read: it can follow. */
   readonly ready: () => void;

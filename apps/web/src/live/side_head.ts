@@ -19,7 +19,6 @@ export class SideHead {
     this.chip.className = `chip ${mood}`;
     set(this.chip, chip);
     const isKnown = Number.isFinite(clearance);
-    const length = digits === 2 ? millimetres(clearance) : `${clearance.toFixed(digits)} mm`;
-    set(this.figure, isKnown ? `${length} from the surface` : "–");
+    set(this.figure, isKnown ? `${millimetres(clearance, digits)} from the surface` : "–");
   }
 }

@@ -7,7 +7,7 @@ export interface WallStroke {
   readonly mesh: string;
   /** The hand goes straight from each place to the next one. [mm] */
   readonly way: readonly Vec3[];
-  /** Where the camera looks, from which direction, and the length that it shows. [mm] */
+  /** The target of the camera, its direction from there, and the length that it shows. [mm] */
   readonly target: Vec3;
   readonly direction: Vec3;
   readonly length: number;
