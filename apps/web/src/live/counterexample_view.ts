@@ -42,7 +42,8 @@ export class CounterexampleView {
   isOpen = false;
   private readonly panes: Panes;
   private readonly camera = new three.PerspectiveCamera(30, 1, 0.01, 1000);
-  private graphics: { renderer: three.WebGLRenderer; controls: OrbitControls } | null = null;
+  private renderer: three.WebGLRenderer | null = null;
+  private controls: OrbitControls | null = null;
   private stages: Stage[] = [];
   private shown: Shown | null = null;
   private isPaused = false;
@@ -54,12 +55,11 @@ export class CounterexampleView {
   ) {
     this.panes = new Panes(container);
     this.panes.count = 2;
-    this.camera.up.set(0, 0, 1);
   }
 
   open(shown: Shown): void {
     this.shown = shown;
-    const { renderer } = this.prepare();
+    const renderer = this.prepare();
     renderer.domElement.hidden = false;
     if (!this.isOpen) requestAnimationFrame(() => this.play());
     this.isOpen = true;
@@ -67,7 +67,7 @@ export class CounterexampleView {
 
   close(): void {
     this.isOpen = false;
-    if (this.graphics) this.graphics.renderer.domElement.hidden = true;
+    if (this.renderer) this.renderer.domElement.hidden = true;
   }
 
   pause(isPaused: boolean): void {
@@ -95,39 +95,45 @@ export class CounterexampleView {
       `${reasons[name] ?? ""} One step: the hand asks for ${asked} mm (dashed), the margin is ` +
         `${this.shown.margin} mm. The forbidden side is red.`,
     );
-    this.aim(example);
+    const [first] = this.stages;
+    if (first !== undefined) this.aim(example, first, (ends[0] as Trial["ends"][number]).place);
     this.clock = { at: performance.now(), played: 0 };
   }
 
-  /** Looks at the middle of the commanded motion, from its side. */
-  private aim({ tip, desired }: Counterexample): void {
-    const along = vector(desired);
-    const side = along
-      .clone()
-      .cross(new three.Vector3(0.2, 0.3, 1))
-      .normalize();
-    const eye = side.applyAxisAngle(new three.Vector3(0, 0, 1), 0.6).setZ(0.45);
-    const middle = vector(tip).addScaledVector(along, 0.5);
-    this.camera.position.copy(middle).addScaledVector(eye, along.length() * 2.8);
-    const { controls } = this.prepare();
-    controls.target.copy(middle);
-    controls.update();
+  /** Looks at the place where the motion crosses a triangle, from its side, with the free side above. */
+  private aim({ tip, desired }: Counterexample, { crossedAt, normal }: Stage, end: Vec3): void {
+    const target = vector(crossedAt ?? tip);
+    const { camera } = this;
+    camera.up.copy(normal);
+    const side = vector(end).sub(vector(tip)).cross(normal).normalize();
+    const length = Math.max(5 * vector(end).distanceTo(target), 0.35 * vector(desired).length());
+    camera.position.copy(
+      side
+        .addScaledVector(normal, 0.4)
+        .normalize()
+        .multiplyScalar(2 * length),
+    );
+    camera.position.add(target);
+    const renderer = this.prepare();
+    this.controls?.dispose(); // they keep the first direction that is up
+    this.controls = new OrbitControls(camera, renderer.domElement);
+    this.controls.target.copy(target);
+    this.controls.update();
   }
 
-  private prepare(): NonNullable<typeof this.graphics> {
-    if (this.graphics !== null) return this.graphics;
-    const renderer = new three.WebGLRenderer({ antialias: true, alpha: true });
-    renderer.setScissorTest(true);
-    renderer.domElement.id = "trials";
-    this.container.prepend(renderer.domElement);
-    const controls = new OrbitControls(this.camera, renderer.domElement);
-    this.graphics = { renderer, controls };
-    return this.graphics;
+  private prepare(): three.WebGLRenderer {
+    if (this.renderer === null) {
+      this.renderer = new three.WebGLRenderer({ antialias: true, alpha: true });
+      this.renderer.setScissorTest(true);
+      this.renderer.domElement.id = "trials";
+      this.container.prepend(this.renderer.domElement);
+    }
+    return this.renderer;
   }
 
   private play(): void {
     if (!this.isOpen) return;
-    const { renderer } = this.prepare();
+    const renderer = this.prepare();
     const now = performance.now();
     if (!this.isPaused) this.clock.played += now - this.clock.at;
     this.clock.at = now;
@@ -156,6 +162,8 @@ class Stage {
   readonly scene = new three.Scene();
   /** The place where the motion of the tip crosses a triangle, or null. */
   readonly crossedAt: Vec3 | null;
+  /** The normal of that triangle, into the free side. */
+  readonly normal = new three.Vector3(0, 0, 1);
   private readonly tip = new Capsule();
   private readonly lights = new three.Group();
   private readonly radius: number;
@@ -168,9 +176,17 @@ class Stage {
   ) {
     const from = vector(begin);
     const wanted = from.clone().add(vector(example.desired));
-    this.radius = from.distanceTo(wanted) * 0.035;
+    this.radius = from.distanceTo(wanted) * 0.02;
     const corners = example.triangles.flat();
-    this.crossedAt = crossing({ vertices: example.vertices.flat(), corners }, begin, end);
+    const vertices = example.vertices.flat();
+    this.crossedAt = crossing({ vertices, corners }, begin, end);
+    const crossed = example.triangles.find((one) =>
+      crossing({ vertices, corners: one }, begin, end),
+    );
+    if (crossed !== undefined) {
+      const [a, b, c] = crossed.map((corner) => vector(example.vertices[corner] as Vec3));
+      new three.Triangle(a, b, c).getNormal(this.normal);
+    }
 
     const geometry = new three.BufferGeometry().setFromPoints(example.vertices.map(vector));
     geometry.setIndex(corners);
@@ -197,9 +213,9 @@ class Stage {
       mark.scale.setScalar(0.6 * this.radius);
       this.scene.add(mark);
     }
-    const key = new three.DirectionalLight("#ffffff", 2.4);
-    key.position.set(-0.9, 1.1, 0.9);
-    this.lights.add(key, new three.HemisphereLight("#ffffff", "#6b6259", 1.1));
+    const key = new three.DirectionalLight("#ffffff", 2.6);
+    key.position.set(-1.6, 1, 0.3);
+    this.lights.add(key, new three.HemisphereLight("#ffffff", "#6b6259", 0.7));
     this.scene.add(this.lights);
   }
 

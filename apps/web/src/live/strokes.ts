@@ -17,8 +17,8 @@ export interface WallStroke {
 }
 
 const oneSide =
-  "Li et al.’s rule adds no plane for a tip behind the surface. This wall is open at its ends, so a tool gets " +
-  "behind it. The certified rule guards both sides.";
+  "Li et al.’s rule adds no plane for a tip behind the surface. A tool gets there through the open end. " +
+  "The certified rule guards both sides.";
 
 /** The best one first. */
 export const wallStrokes: readonly WallStroke[] = [
@@ -44,8 +44,8 @@ export const wallStrokes: readonly WallStroke[] = [
       [0, -15, 10],
     ],
     target: [0, -25, 10],
-    direction: [0.8, -0.35, 0.75],
-    length: 60,
+    direction: [0.3, 0.6, 1],
+    length: 75,
     toolRadius: 1,
     begin: "The wall of this tube faces inwards. The hand pushes at it from outside.",
     why: oneSide,

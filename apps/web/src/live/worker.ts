@@ -41,8 +41,8 @@ function run(): void {
     leader?.add(control);
     if (end !== null) tell({ kind: "replayed", ...end });
   });
-  leader?.flush(at);
   if (at !== null) tellState(at);
+  leader?.flush(at);
 }
 
 function tellState(time: number): void {
