@@ -131,9 +131,12 @@ test("two scenes by keys: both tools follow, and the left one has no fixture", a
   await tab.keyboard.press("1");
   assert.equal(await tab.$eval("#rival-rule", ({ value }) => value), "none");
   await tab.keyboard.down("ArrowLeft");
-  await tab.waitForFunction(() => document.querySelector("#duel .chip").textContent === "inside", {
-    timeout: 150_000,
-  });
+  await tab.waitForFunction(
+    () =>
+      [...document.querySelectorAll("#duel .chip")].map(({ textContent }) => textContent).join() ===
+      "inside,limited",
+    { timeout: 150_000 },
+  );
   await tab.keyboard.up("ArrowLeft");
   assert.match((await heads())[1], /^limited; 0\.\d\d mm/);
   await tab.keyboard.press("Escape");
