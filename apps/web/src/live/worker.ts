@@ -98,7 +98,7 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
     made =
       source.kind === "shape"
         ? keepout.anatomyOfShape(source.name)
-        : scaled(keepout.anatomyOfFile(source.name, source.bytes), source.scale);
+        : scaled(keepout.anatomyOfFile(fileName(source.name), source.bytes), source.scale);
     tellSurface(name, made.surface());
   }
   letGo();
@@ -107,6 +107,9 @@ async function load(source: Source, settings: ToolSettings, port: Port | null): 
   tell({ kind: "findings", findings: made.findings() });
   tell({ kind: "guarded" });
 }
+
+/** Returns the name without the scale that the page appends: keepout reads the format from its end. */
+const fileName = (name: string): string => name.replace(/ × \d+$/, "");
 
 /** Returns an anatomy with all coordinates multiplied; deletes the given one if it makes another. */
 function scaled(made: Anatomy, scale: number): Anatomy {
