@@ -14,6 +14,7 @@ import { execFileSync } from "node:child_process";
 import { readdirSync, readFileSync, renameSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
+import { differing, linesOf, replayedPath, stepsText } from "./paths.mjs";
 import {
   assertAccessible,
   assertAlone,
@@ -208,33 +209,8 @@ async function rub(seconds = 4) {
   await desk.mouse.up();
 }
 
-/** Returns the numbers in the lines of a path. */
-const linesOf = ({ text }) =>
-  text
-    .split("\n")
-    .filter((line) => line !== "" && !line.startsWith("#"))
-    .map((line) => line.split(" ").map(Number));
-
 /** Runs the command in the head of a path. Returns the rows of STEPS.csv. */
-function replayed({ file, text }, mesh, rule) {
-  const line = text.split("\n").find((one) => one.startsWith("#   keepout replay "));
-  const words = line
-    .match(/'[^']*'|\S+/g)
-    .slice(2) // past "# keepout"
-    .map((word) => ({ THIS_FILE: file, RULE: rule })[word] ?? word);
-  words[1] = mesh;
-  run(keepout, ...words);
-  const [, ...rows] = readFileSync(join(folder, "steps.csv"), "utf8").trim().split("\n");
-  return rows.map((row) => row.split(","));
-}
-
-/** Returns the number of cycles in which the tool positions of path and replay are not bitwise identical. */
-function differing(lines, rows) {
-  assert.equal(rows.length, lines.length);
-  return lines.filter((line, i) =>
-    [0, 1, 2].some((axis) => !Object.is(line[3 + axis], Number(rows[i][2 + axis]))),
-  ).length;
-}
+const replayed = (path, mesh, rule) => replayedPath(keepout, folder, path, mesh, rule);
 
 test("a drag into the skull: limited, out of it, and the same as keepout replay", async () => {
   const begin = performance.now();
@@ -311,14 +287,7 @@ test("the same drag without a fixture goes in", async () => {
   await desk.click("#again");
   await sleep(500);
   await rub(2);
-  const rows = linesOf(await savedPath());
-  // Writes the motions between the tips in the format of replay.
-  const steps = rows.slice(1).map((line, i) => {
-    const tip = rows[i].slice(3);
-    const motion = tip.map((value, axis) => line[3 + axis] - value);
-    return [i, "free", ...tip, ...motion, ...motion].join(",");
-  });
-  writeFileSync(join(folder, "free.csv"), `head\n${steps.join("\n")}\n`);
+  writeFileSync(join(folder, "free.csv"), stepsText(linesOf(await savedPath())));
   const verdict = judged("free.csv", "0");
   assert.ok(verdict.inside > 100, `${verdict.inside} motions end inside`);
   assert.ok(verdict.crossing > 0);
@@ -326,21 +295,6 @@ test("the same drag without a fixture goes in", async () => {
 });
 
 test("a tip led by keys", () => ledByKeys("ArrowLeft", "#newtons", "0.00 N"));
-
-test("counterexamples: the paper's rule goes through, the certified one stays out", async () => {
-  await desk.click("#fail");
-  await desk.waitForSelector("#failures[open] #examples button");
-  const examples = await desk.$$("#examples button");
-  assert.equal(examples.length, 3);
-  for (const example of examples) {
-    await example.click();
-    const captions = await desk.$$eval("#duel figcaption span", (all) =>
-      all.map((one) => one.textContent),
-    );
-    assert.deepEqual(captions, ["goes through the surface", "stays out"]);
-  }
-  await desk.click("#failures .close");
-});
 
 test("files are dropped: a mesh, then what is none, and the page lives on", async () => {
   const client = await desk.createCDPSession();

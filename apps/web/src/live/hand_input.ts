@@ -46,6 +46,7 @@ const turns: Readonly<Record<string, Vec3>> = {
 export class HandInput {
   private hand: Frame = { place: [0, 0, 0], turn: unturned };
   private pointer: number | null = null;
+  private pane = 0; // in which the pointer has grabbed the hand
   private grip: { dx: number; dy: number } = { dx: 0, dy: 0 };
   private finger = { x: 0, y: 0 }; // position of a second one [px]
   private isHeld = false;
@@ -97,12 +98,14 @@ export class HandInput {
       this.finger = { x: event.clientX, y: event.clientY };
     }
     if (event.button !== 0 || this.pointer !== null) return;
-    const at = this.inView(event);
+    const pane = this.scene.panes.under(event);
+    const at = this.inView(event, pane);
     const { place } = this.hand;
     const hand = this.scene.project(place);
     const dx = hand.x - at.x;
     const dy = hand.y - at.y;
-    const pixels = Math.hypot(dx * 0.5 * this.view.clientWidth, dy * 0.5 * this.view.clientHeight);
+    const { width, height } = this.scene.panes.area();
+    const pixels = Math.hypot(dx * 0.5 * width, dy * 0.5 * height);
     const near = event.pointerType === "mouse" ? reach.mouse : reach.touch;
     if (pixels > Math.max(near, this.scene.ballRadius(place))) return;
     event.stopPropagation();
@@ -111,6 +114,7 @@ export class HandInput {
     this.view.setPointerCapture(event.pointerId);
     this.view.classList.add("dragging");
     this.pointer = event.pointerId;
+    this.pane = pane;
     this.grip = { dx, dy };
     this.go({});
   }
@@ -124,7 +128,7 @@ export class HandInput {
       this.turnBy([pixelTurn * (event.clientY - y), pixelTurn * (event.clientX - x), 0]);
       return;
     }
-    const at = this.inView(event);
+    const at = this.inView(event, this.pane);
     const { dx, dy } = this.grip;
     this.go({ place: this.scene.unproject(at.x + dx, at.y + dy, this.hand.place) });
   }
@@ -204,13 +208,9 @@ export class HandInput {
     this.hold(this.hand);
   }
 
-  /** Returns a position in the view, from -1 to 1 in both directions. */
-  inView(event: MouseEvent): { x: number; y: number } {
-    const box = this.view.getBoundingClientRect();
-    return {
-      x: (2 * (event.clientX - box.left)) / box.width - 1,
-      y: 1 - (2 * (event.clientY - box.top)) / box.height,
-    };
+  /** Returns a position in a pane of the view, from -1 to 1 in both directions. */
+  inView(event: MouseEvent, pane = this.scene.panes.under(event)): { x: number; y: number } {
+    return this.scene.panes.within(event, pane);
   }
 }
 

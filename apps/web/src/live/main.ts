@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The page of `keepout live`, for the ball of a tip or for an instrument: connects its parts. */
-import type { Findings, Frame, Rule, ToolFacts, ToolSettings, Vec3 } from "../engine/keepout.ts";
+import type {
+  Findings,
+  Frame,
+  Rule,
+  StatusWords,
+  ToolFacts,
+  ToolSettings,
+  Vec3,
+} from "../engine/keepout.ts";
 import { colorOf } from "../page/color_of.ts";
 import { grouped, saveFile } from "../page/elements.ts";
 import { tissueOf, tissues } from "../page/tissue.ts";
 import { anatomyWords } from "./anatomy_words.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
-import { CounterexampleView } from "./counterexample_view.ts";
 import { type Course, Demonstration } from "./demonstration.ts";
+import { Duel } from "./duel.ts";
 import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
 import { type GuideKind, GuidePanel } from "./guide_panel.ts";
@@ -28,6 +36,7 @@ import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file
 import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
+import { makeWorker } from "./rival.ts";
 import { addRobotControls } from "./robot_controls.ts";
 import { firstPositions, parseRobotPath, robotPathText } from "./robot_path.ts";
 import { RobotScene } from "./robot_scene.ts";
@@ -68,16 +77,16 @@ let triangles = 0;
 let facts: ToolFacts | null = null;
 let state: State | null = null;
 let readings: Readings | null = null;
+/** The mode with two scenes; null for an instrument. */
+let duel: Duel | null = null;
+let statusWords: readonly StatusWords[] = [];
 /** A path to replay once its mesh is loaded. */
 let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = null;
 /** The port of an instrument: that of the page, or that of an opened path. */
 let portBase: readonly number[] | null = null;
 
 // The worker starts before the scene exists.
-const workerUrl = URL.createObjectURL(
-  new Blob([embeddedText("worker")], { type: "text/javascript" }),
-);
-const worker = new Worker(workerUrl);
+const worker = makeWorker();
 /** Computes the shading of the anatomy beside the control loop. */
 let shader: Worker | null = null;
 worker.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
@@ -87,6 +96,10 @@ const subject = isTip ? "tip" : "instrument";
 tell({ kind: "start", engine: embeddedText("engine"), subject });
 const meshes = new MeshList(load);
 const grip = element("grip", HTMLElement);
+/** The hand in the other pane of the mode with two scenes. */
+const otherGrip = grip.cloneNode() as HTMLElement;
+otherGrip.id = "other-grip";
+grip.after(otherGrip);
 page.meshes.forEach((mesh, i) => {
   const source = { kind: "embedded", mesh, data: embeddedText(`mesh-${i}`) } as const;
   meshes.offer("In this page", { source, command: mesh.command_name });
@@ -106,13 +119,14 @@ const input = new HandInput(scene, view, !isTip, (hand) => {
   tell({ kind: "hand", hand });
 });
 
-function tell(message: ToWorker): void {
-  worker.postMessage(message);
+function tell(message: ToWorker, transfer: Transferable[] = []): void {
+  worker.postMessage(message, transfer);
 }
 
 const handlers: Handlers<FromWorker> = {
   ready({ statuses, shapes }) {
     readings = new Readings(statuses);
+    statusWords = statuses;
     // A generated mesh has no port for an instrument.
     for (const name of isTip ? shapes : []) {
       meshes.offer("Generated", { source: { kind: "shape", name }, command: name });
@@ -144,6 +158,7 @@ const handlers: Handlers<FromWorker> = {
     endLoading();
     begin();
     play();
+    duel?.loaded();
   },
   tool(tool) {
     facts = tool.facts;
@@ -152,6 +167,7 @@ const handlers: Handlers<FromWorker> = {
   state: (message) => show(message.state),
   path: ({ use, lines, settings: madeWith }) => takePath(use, lines, madeWith),
   replayed({ cycles, differs }) {
+    if (duel?.ended()) return;
     const what = isTip ? "the tool" : "the joints";
     toast(
       differs < 0
@@ -160,7 +176,7 @@ const handlers: Handlers<FromWorker> = {
             `on ${what} went another way than on record.`,
     );
   },
-  counterexamples: (message) => failures?.open(message),
+  counterexamples: (message) => duel?.openTrials(message),
   settings(message) {
     settings = message.settings;
     showSettings();
@@ -181,7 +197,7 @@ function showSurface(surface: Parameters<Handlers<FromWorker>["surface"]>[0]): v
   const tissue = isShape ? tissues.shape : tissueOf(surface.name);
   scene.show(surface, tissue);
   shader?.terminate();
-  shader = new Worker(workerUrl);
+  shader = makeWorker();
   shader.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
   const { positions, corners } = surface;
   const message: ToWorker = { kind: "shade", positions, corners, creases: tissue.creases };
@@ -247,6 +263,7 @@ function show(now: State): void {
   scene.update(now);
   chart.add(now.time, now.handClearance, Math.min(...now.clearances));
   readings?.show(now, settings, facts, scene.frames);
+  duel?.show(now, statusWords);
 }
 
 // The first seconds.
@@ -312,6 +329,8 @@ function placeGrip(): void {
   if (state === null) return;
   const { place } = state.hand;
   grip.style.transform = scene.shift(place);
+  otherGrip.style.transform = scene.shift(place, 0);
+  otherGrip.hidden = grip.hidden;
   const at = scene.project(place);
   const open = scene.openView();
   find.hidden = grip.hidden || (at.z < 1 && Math.abs(at.x) <= open.x + 0.02 && Math.abs(at.y) <= 1);
@@ -343,6 +362,7 @@ function load(choice: Choice): void {
   portBase = pendingPath?.header?.base ?? meshOf(choice)?.start?.base ?? null;
   const port = page.robot !== undefined && portBase ? { robot: page.robot, base: portBase } : null;
   tell({ kind: "load", source: choice.source, settings, port });
+  duel?.loading(choice);
 }
 
 async function openFile(file: File): Promise<void> {
@@ -401,7 +421,7 @@ function adopt(header: PathHeader | null): void {
 
 function replay(lines: Float64Array): void {
   input.drop();
-  tell({ kind: "replay", lines });
+  tell({ kind: "replay", lines, isHeld: false });
 }
 
 /** Replays the opened path, if there is one. */
@@ -417,7 +437,8 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
     return;
   }
   const { keepout, robot } = page;
-  const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_");
+  const both = duel?.isOn ? `-${madeWith.rule}` : "";
+  const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_") + both;
   const mesh = meshOf(shown);
   if (robot !== undefined && mesh !== undefined && portBase !== null) {
     const text = robotPathText({ keepout, robot }, madeWith, mesh, portBase, facts, lines);
@@ -461,6 +482,7 @@ function showSettings(): void {
 function showColors(): void {
   document.documentElement.style.setProperty("--tool", `var(--rule-${settings.rule})`);
   scene.paintTool(colorOf("--tool"));
+  duel?.paint();
 }
 
 function change(part: Partial<ToolSettings>): void {
@@ -481,7 +503,7 @@ for (const use of ["save", "replay"] as const) {
 }
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showColors);
 document.addEventListener("visibilitychange", () => {
-  tell({ kind: "pause", paused: document.hidden });
+  tell({ kind: "pause", paused: document.hidden || duel?.isStill === true });
 });
 takeFiles((file) => void openFile(file));
 // The keys choose a rule, also while the pointer drags the hand.
@@ -489,7 +511,8 @@ document.addEventListener("keydown", (event) => {
   const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
   const rule = rules[Number(event.key) - 1];
   if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
-  change({ rule });
+  if (duel?.isOn) duel.chooseRule(rule);
+  else change({ rule });
 });
 if (robotScene !== null) {
   addRobotControls(robotScene);
@@ -498,12 +521,24 @@ if (robotScene !== null) {
     "Page Up and Page Down into it and out of it; A, D, W, S, Q and E turn it; with Shift slowly; " +
     "Escape lets go.";
 }
-const failures = isTip ? addTipControls() : null;
+duel = isTip ? addTipControls() : null;
 showSettings();
 
-/** Adds double-clicks and counterexamples, which the page of an instrument does not have. */
-function addTipControls(): CounterexampleView {
-  element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
+/** Adds double-clicks and the mode with two scenes, which the page of an instrument does not have. */
+function addTipControls(): Duel {
+  const two = new Duel({
+    scene,
+    tell,
+    change,
+    load,
+    settings: () => settings,
+    drop: () => input.drop(),
+    shown: () => shown,
+    isLoading: () => awaited !== null,
+    sample: (name) => meshes.sample(name),
+    savePath: (lines, madeWith) => takePath("save", lines, madeWith),
+  });
+  element("fail", HTMLButtonElement).onclick = () => two.playStroke();
 
   // A double-click on the anatomy places the tool there.
   view.addEventListener("dblclick", (event) => {
@@ -514,5 +549,5 @@ function addTipControls(): CounterexampleView {
     startOn([line]);
   });
 
-  return new CounterexampleView();
+  return two;
 }

@@ -7,6 +7,7 @@ import type {
   Frame,
   Plane,
   Port,
+  Rule,
   StatusWords,
   Subject,
   ToolFacts,
@@ -72,8 +73,14 @@ export type ToWorker =
     }
   /** The hand; null: it is released, and the spring pulls it to the tool. */
   | { readonly kind: "hand"; readonly hand: Frame | null }
-  /** Repeats a recorded path: see path_record.ts. */
-  | { readonly kind: "replay"; readonly lines: Float64Array }
+  /** Repeats a recorded path: see path_record.ts. `isHeld`: true if the hand stays at its end. */
+  | { readonly kind: "replay"; readonly lines: Float64Array; readonly isHeld: boolean }
+  /** Sends each cycle to a follower that listens to this port, and has this rule; null: to none. */
+  | { readonly kind: "lead"; readonly port: MessagePort | null; readonly rule: Rule }
+  /** Gives the follower another rule; the path starts anew on both sides. */
+  | { readonly kind: "rule of the follower"; readonly rule: Rule }
+  /** Runs the cycles that arrive at this port. */
+  | { readonly kind: "follow"; readonly port: MessagePort }
   | { readonly kind: "ask for path"; readonly use: "save" | "replay" }
   | { readonly kind: "ask for counterexamples" }
   /** The simulation pauses while the page is hidden. */
@@ -113,6 +120,11 @@ export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "ra
   /** The number of cycles since the anatomy was loaded, and of those that were limited. */
   readonly cycles: number;
   readonly limited: number;
+  /** Motions of a tip through an open surface since it was placed, and where; beside another tool only. */
+  readonly crossings: number;
+  /** The number of times that the tool was placed. */
+  readonly placed: number;
+  readonly crossedAt: Vec3 | null;
 }
 
 export type FromWorker =
@@ -142,9 +154,12 @@ export type FromWorker =
       readonly margin: number;
       /**
        * `ends`: the ends of a step under the rule of Li et al. (2020), and under the certified
-       * rule.
+       * rule, and their distances from the surface.
        */
-      readonly examples: readonly { example: Counterexample; ends: readonly Vec3[] }[];
+      readonly examples: readonly {
+        example: Counterexample;
+        ends: readonly { place: Vec3; clearance: number }[];
+      }[];
     }
   /** The settings that stay in force when others were rejected. */
   | { readonly kind: "settings"; readonly settings: ToolSettings }

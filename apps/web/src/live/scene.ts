@@ -11,11 +11,16 @@ import { StillPicture } from "../page/still_picture.ts";
 import { type Tissue, tissues } from "../page/tissue.ts";
 import { ToolShade } from "../page/tool_shade.ts";
 import { Spring, Trail } from "./markers.ts";
+import { type Area, Panes } from "./panes.ts";
 import type { State } from "./protocol.ts";
 
 /** The anatomy with the hand and a tool, which a derived class draws. */
 export abstract class Scene {
   readonly camera = new three.PerspectiveCamera(32, 1, 0.1, 10_000);
+  /** The parts of the view, all seen by the same camera; the tool is in the last one. */
+  readonly panes: Panes;
+  /** Drawn in the first of two panes, instead of the moving parts. */
+  protected beside: three.Scene | null = null;
   private readonly renderer: three.WebGLRenderer;
   protected readonly controls: OrbitControls;
   private readonly still: StillPicture;
@@ -50,6 +55,7 @@ export abstract class Scene {
     this.quality = new PictureQuality(isSlow ? 1 : 0);
     this.renderer.domElement.id = "picture";
     container.prepend(this.renderer.domElement);
+    this.panes = new Panes(container);
     this.camera.up.set(0, 0, 1);
 
     const light = new three.Scene();
@@ -102,6 +108,7 @@ export abstract class Scene {
   /** Shows this state from now on. */
   update(moment: State): void {
     const { place } = moment.flange;
+    if (moment.placed !== this.moment?.placed) this.trail.clear();
     if (this.moment?.flange.place.some((value, i) => value !== place[i])) {
       this.trail.add(this.inside(place));
     }
@@ -128,6 +135,9 @@ export abstract class Scene {
 
   /** Returns half the width and height of the open part, in those of the view. */
   openView(): { x: number; y: number } {
+    // With two panes no card covers the view; at the top of each pane are its readings.
+    if (this.panes.count === 2)
+      return { x: 0.9, y: Math.max(1 - 130 / this.panes.area().height, 0.4) };
     return { x: this.room(), y: Math.max(1 - 60 / this.container.clientHeight, 0.3) };
   }
 
@@ -143,7 +153,7 @@ export abstract class Scene {
   ballRadius(place: Vec3): number {
     const depth = this.inside(place).distanceTo(this.camera.position);
     const halfHeight = depth * Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
-    return (0.5 * this.container.clientHeight * this.toolRadius) / halfHeight;
+    return (0.5 * this.panes.area().height * this.toolRadius) / halfHeight;
   }
 
   /** Returns the position in the view, from -1 to 1 in both directions, and the depth. */
@@ -151,11 +161,24 @@ export abstract class Scene {
     return this.inside(place).project(this.camera);
   }
 
-  /** Like project(), but as a CSS translation from the upper left. */
-  shift(place: Vec3): string {
+  /** Like project(), but as a CSS translation from the upper left of the view, in one of its panes. */
+  shift(place: Vec3, pane = this.panes.count - 1): string {
     const { x, y } = this.project(place);
-    const { clientWidth, clientHeight } = this.container;
-    return `translate(${0.5 * (1 + x) * clientWidth}px, ${0.5 * (1 - y) * clientHeight}px)`;
+    const { x: left, y: top, width, height } = this.panes.area(pane);
+    return `translate(${left + 0.5 * (1 + x) * width}px, ${top + 0.5 * (1 - y) * height}px)`;
+  }
+
+  /** Looks at a place from a direction, and from so far that a length fits into a pane. [mm] */
+  lookFrom(place: Vec3, direction: Vec3, length: number): void {
+    const halfAngle = (0.5 * this.camera.fov * Math.PI) / 180;
+    const distance = length / (2 * Math.tan(halfAngle) * Math.min(1, this.camera.aspect));
+    this.controls.target.copy(this.inside(place));
+    this.camera.position
+      .set(...direction)
+      .normalize()
+      .multiplyScalar(distance)
+      .add(this.controls.target);
+    this.controls.update();
   }
 
   /** Returns the position under a point of the view, at the depth of another position. */
@@ -202,10 +225,23 @@ export abstract class Scene {
     this.fitDepths();
     for (const lights of this.lit) lights.quaternion.copy(this.camera.quaternion);
     if (this.moment !== null) this.arrange(this.moment);
-    this.still.draw(this.renderer);
-    this.renderer.render(this.moving, this.camera);
+    const areas = this.panes.areas();
+    areas.forEach((area, i) => {
+      this.choose(area);
+      this.still.draw(this.renderer);
+      const moving = i < areas.length - 1 ? this.beside : this.moving;
+      if (moving !== null) this.renderer.render(moving, this.camera);
+    });
     ++this.drawn;
     this.onDraw();
+  }
+
+  /** Draws from now on into this part of the view only. */
+  private choose({ x, y, width, height }: Area): void {
+    const part = [x, this.container.clientHeight - y - height, width, height] as const;
+    this.renderer.setViewport(...part);
+    this.renderer.setScissor(...part);
+    this.renderer.setScissorTest(true);
   }
 
   /** Sets the range of visible depths, so that it holds the anatomy and a tool beside it. */
@@ -220,15 +256,17 @@ export abstract class Scene {
     this.still.outdate();
   }
 
-  private resize(): void {
+  protected resize(): void {
     const { clientWidth: width, clientHeight: height } = this.container;
     if (width === 0 || height === 0) return;
     const { name, scale, samples, shade } = this.quality.quality;
     this.container.dataset.picture = name;
-    this.still.adjust(samples, shade);
+    const pane = this.panes.area();
+    // The shade of one tool would show on the anatomy of both.
+    this.still.adjust(samples, shade && this.panes.count === 1);
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2, scale * devicePixelRatio));
     this.renderer.setSize(width, height);
-    this.camera.aspect = width / height;
+    this.camera.aspect = pane.width / pane.height;
     this.camera.updateProjectionMatrix();
     if (this.moment !== null) this.keepInSight(this.inside(this.moment.flange.place));
     this.outdate();

@@ -11,6 +11,7 @@ import { coloredWithin, MarginView } from "./margin_view.ts";
 import { colors, sheet } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { Scene } from "./scene.ts";
+import type { SecondTool } from "./second_tool.ts";
 import type { StartLine } from "./start_place.ts";
 
 /** The largest number of drawn active planes. */
@@ -46,6 +47,7 @@ export class ToolScene extends Scene {
   protected alarm = "";
   /** The names of the bodies; none for a tip. */
   private names: readonly string[] = [];
+  private second: SecondTool | null = null;
   /** True until the first view of an anatomy is chosen. */
   private isNew = true;
 
@@ -81,6 +83,20 @@ export class ToolScene extends Scene {
     this.alarm = colorOf("--alarm");
     this.trail.paint(color);
     this.margin.paint(color);
+    this.redraw();
+  }
+
+  /** Shows a second tip in a pane of its own, beside this one; null: one pane. */
+  pair(second: SecondTool | null): void {
+    this.second = second;
+    this.beside = second?.scene ?? null;
+    this.panes.count = second === null ? 1 : 2;
+    this.resize();
+  }
+
+  /** Shows the second tip in this state. */
+  updateSecond(state: State): void {
+    this.second?.update(state, this.inside(state.flange.place));
     this.redraw();
   }
 
@@ -249,9 +265,23 @@ export class ToolScene extends Scene {
     this.spring.stretch(wish, tip, wide, least);
     this.showPlanes(moment, tip, Math.max(2.2 * radius, 0.02 * seen));
     this.guides.mark(moment.guides);
-    this.showMargin(
-      moment,
-      this.bodies.map((_, i) => radiusOf(i)),
+    if (this.panes.count === 1) {
+      this.showMargin(
+        moment,
+        this.bodies.map((_, i) => radiusOf(i)),
+      );
+    } else this.margin.hide();
+    const other = this.second?.state;
+    if (!other) return;
+    const crossed = other.crossedAt && this.inside(other.crossedAt);
+    const [otherTip, otherHand] = [other.flange.place, other.hand.place].map((place) =>
+      this.inside(place),
+    );
+    this.second?.arrange(
+      otherTip as three.Vector3,
+      otherHand as three.Vector3,
+      radiusOf(last),
+      crossed,
     );
   }
 

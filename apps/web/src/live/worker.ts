@@ -16,9 +16,11 @@ import { shade } from "../page/shading.ts";
 import { ControlLoop } from "./control_loop.ts";
 import { runCounterexamples } from "./counterexample_trials.ts";
 import { CycleClock } from "./cycle_clock.ts";
+import { follow, Leader } from "./lockstep.ts";
 import { type FromWorker, type Handlers, handled, type Source, type ToWorker } from "./protocol.ts";
 import { SurroundingsFinder } from "./robot_surroundings.ts";
 import { startPlace } from "./start_place.ts";
+import { crossing } from "./wall.ts";
 
 let keepout: Keepout;
 let anatomy: { of: Anatomy; settings: ToolSettings; port: Port | null } | null = null;
@@ -29,24 +31,28 @@ let place: readonly number[] | null = null; // the last start of the tool, in th
 const clock = new CycleClock();
 /** The accuracy of a clearance near the margin. [mm] */
 const accuracy = 0.05;
+let leader: Leader | null = null;
+let isFollower = false;
 
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
 }
 
 function run(): void {
-  if (loop === null) return;
+  if (loop === null || isFollower || leader?.isAhead) return;
   const control = loop;
   const at = clock.run(() => {
     const end = control.run();
+    leader?.add(control);
     if (end !== null) tell({ kind: "replayed", ...end });
   });
   if (at !== null) tellState(at);
+  leader?.flush(at);
 }
 
 function tellState(time: number): void {
   if (loop === null || anatomy === null) return;
-  const { last, hand, tool, cycles, limited } = loop;
+  const { last, hand, tool, cycles, limited, placed, crossings, crossedAt } = loop;
   const { bodies } = tool.facts;
   const clearances = bodies.map((_, i) => tool.made.clearance(i));
   // The engine's own distance of the nearest body, if known.
@@ -57,7 +63,10 @@ function tellState(time: number): void {
   const planes = tool.made.planes().filter(({ isActive }) => isActive);
   const { lost, stepTime, rate } = clock;
   const state = { ...last, time, hand, clearances, handClearance, planes, surroundings: around };
-  tell({ kind: "state", state: { ...state, cycles, limited, lost, stepTime, rate } });
+  tell({
+    kind: "state",
+    state: { ...state, cycles, limited, placed, crossings, crossedAt, lost, stepTime, rate },
+  });
 }
 
 /** Sends a surface to be drawn. Returns the diagonal of its box. [mm] */
@@ -95,6 +104,7 @@ function letGo(): void {
   loop?.discard();
   anatomy?.of.delete();
   loop = anatomy = place = null;
+  stopLeading();
 }
 
 async function load(source: Source, settings: ToolSettings, port: Port | null): Promise<void> {
@@ -139,6 +149,26 @@ function placeAt(positions: readonly number[]): void {
   place = positions;
   loop?.place(place);
   begin();
+  if (loop !== null) leader?.place(loop);
+}
+
+function stopLeading(): void {
+  leader?.close();
+  leader = null;
+  if (loop !== null) loop.isPaired = false;
+}
+
+/** Prepares a loop whose cycles another one runs as well. Counts the motions through an open surface. */
+function pair(control: ControlLoop): void {
+  const { of } = anatomy as NonNullable<typeof anatomy>;
+  control.isPaired = true;
+  if (of.findings().watertight) return;
+  const { vertices, corners } = of.surface();
+  const copy = { vertices: vertices.slice(), corners: corners.slice() };
+  control.wall = (from, to) => {
+    const length = Math.hypot(...to.map((value, axis) => value - (from[axis] as number)));
+    return of.clearance(...from) > length ? null : crossing(copy, from, to);
+  };
 }
 
 async function start(engine: string, subject: Subject): Promise<void> {
@@ -182,6 +212,7 @@ const handlers: Handlers<ToWorker> = {
       if ((settings.opening ?? 0) > (loop.settings.opening ?? 0)) requireRoom(settings, loop);
       loop.use(settings);
       accepted = settings;
+      leader?.use(settings);
     }
     if (anatomy !== null) anatomy.settings = settings;
     begin();
@@ -195,7 +226,41 @@ const handlers: Handlers<ToWorker> = {
     placeAt(found);
   },
   hand: ({ hand }) => loop?.hold(hand),
-  replay: ({ lines }) => loop?.startReplay(lines),
+  replay({ lines, isHeld }) {
+    loop?.startReplay(lines, isHeld);
+    if (loop !== null) leader?.place(loop);
+  },
+  lead({ port, rule }) {
+    stopLeading();
+    if (port === null || loop === null) return;
+    leader = new Leader(port, rule);
+    pair(loop);
+    loop.place(loop.last.positions);
+    leader.place(loop);
+  },
+  "rule of the follower"({ rule }) {
+    if (loop === null || leader === null) return;
+    loop.use(loop.settings); // its path starts anew as well
+    leader.use(loop.settings, rule);
+  },
+  follow({ port }) {
+    isFollower = true;
+    follow(port, {
+      place(positions, settings) {
+        if (loop === null) {
+          loop = new ControlLoop(makeTool, settings, positions);
+          pair(loop);
+        } else loop.place(positions);
+      },
+      use: (settings) => loop?.use(settings),
+      loop: () => loop,
+      tell: tellState,
+      fail(error) {
+        const words = error instanceof Error ? error.message : String(error);
+        tell({ kind: "failure", of: "settings", message: words });
+      },
+    });
+  },
   "ask for path"({ use }) {
     if (loop === null) return;
     tell({ kind: "path", use, lines: loop.record.lines(), settings: loop.settings });

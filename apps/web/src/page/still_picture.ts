@@ -89,11 +89,11 @@ export class StillPicture {
     this.material.needsUpdate = true;
   }
 
-  /** Fills the view with the picture and its depths. */
+  /** Fills the renderer's viewport with the picture and its depths. */
   draw(renderer: three.WebGLRenderer): void {
-    const size = renderer.getDrawingBufferSize(new three.Vector2());
     if (this.isOutdated) {
-      this.target.setSize(size.x, size.y);
+      const { z: width, w: height } = renderer.getCurrentViewport(new three.Vector4());
+      this.target.setSize(width, height);
       renderer.setRenderTarget(this.target);
       renderer.clear();
       renderer.render(this.scene, this.camera);
