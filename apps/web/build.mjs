@@ -38,24 +38,33 @@ const withoutMaps = {
   },
 };
 
-/** Removes blanks from the shaders of three.js, which are most of its text. */
-const withoutBlanks = {
-  name: "without blanks",
+/** Parts of three.js's shaders for materials, lights and surfaces that no page has. */
+const unusedShaders =
+  /^(alphahash|backgroundCube|batching|bumpmap|clearcoat|cube|displacementmap|distance|emissivemap|envmap|equirect|gradientmap|iridescence|lightmap|lightprobes|lights_(physical|toon)|mesh(matcap|normal|physical|toon)|metalnessmap|morph|normalmap|points|roughnessmap|shadow|skin|specularmap|sprite|tonemapping|transmission)/;
+
+/** Removes shaders that no page uses from three.js, and blanks from the others. */
+const smallShaders = {
+  name: "small shaders",
   setup(bundler) {
     bundler.onLoad({ filter: /three[\\/]build[\\/]three\.module\.js$/ }, async ({ path }) => {
       const text = await readFile(path, "utf8");
-      const shader = /^(var|const) \w+ = "([^"\\]|\\.)*\\n([^"\\]|\\.)*";$/gm;
+      const names = new Map(
+        [...text.matchAll(/^\t(\w+): ([\w$]+),?$/gm)].map(([, name, variable]) => [variable, name]),
+      );
       const contents = text.replaceAll(
-        shader,
-        (line) =>
-          line.slice(0, 4) +
-          line
-            .slice(4)
+        /^((?:var|const) ([\w$]+) = )("(?:[^"\\]|\\.)*");$/gm,
+        (line, start, variable, shader) => {
+          const name = names.get(variable);
+          if (name === undefined) return line;
+          if (unusedShaders.test(name)) return `${start}"";`;
+          const short = shader
             .replaceAll(/(\\n)(\\[nt])+/g, "$1")
             .replaceAll("( ", "(")
             .replaceAll(" )", ")")
             .replaceAll(", ", ",")
-            .replaceAll(/ ([*<>=]=?) /g, "$1"),
+            .replaceAll(/ ([*<>=]=?) /g, "$1");
+          return `${start}${short};`;
+        },
       );
       return { contents };
     });
@@ -75,7 +84,7 @@ async function bundle(entry, modules = {}) {
     format: "iife",
     legalComments: "inline",
     alias: modules,
-    plugins: [withoutMaps, withoutBlanks],
+    plugins: [withoutMaps, smallShaders],
     define: { "import.meta.url": '""' },
     external: ["module", "fs", "path", "url"],
     logOverride: { "empty-import-meta": "silent" },

@@ -18,11 +18,11 @@ const shaftRadius = 4;
 /** The distances from the pitch axis at which the shaft ends in a collar, and the collar in the clevis. */
 const [collar, clevis] = [10, 7];
 
-const metal = (color: string, roughness = 0.42) =>
-  new three.MeshStandardMaterial({ color, roughness, metalness: 0.25, side: three.DoubleSide });
+const metal = (color: string, shininess = 40) =>
+  new three.MeshPhongMaterial({ color, shininess, specular: "#5a6068", side: three.DoubleSide });
 const steel = metal("#a9b4c2");
-const dark = metal("#3d444e", 0.6);
-const bright = metal("#d6dce4", 0.3);
+const dark = metal("#3d444e", 15);
+const bright = metal("#d6dce4", 70);
 
 const unit = new three.CylinderGeometry(1, 1, 1, 32);
 const cube = new three.BoxGeometry(1, 1, 1);
