@@ -3,7 +3,7 @@
  * Tests what a page of `keepout live` shows before anyone touches it: its layout in windows of many sizes, and
  * the start of the tool beside every sample mesh:
  *
- *   live_layout_test.mjs KEEPOUT FOLDER [BROWSER]
+ *   live_layout_test.mjs KEEPOUT FOLDER
  *
  * All tests use one page. Meshes of real anatomy are tested if ./run has prepared them; the large ones only with
  * ./test --long.
@@ -15,7 +15,7 @@ import { join } from "node:path";
 import { after, test } from "node:test";
 import { empty, isLong, launched, note, opened, root, sleep, textOf } from "./tabs.mjs";
 
-const [keepout, folder, browserPath] = process.argv.slice(2);
+const [keepout, folder] = process.argv.slice(2);
 const sizes = [
   "1920x1080",
   "1280x800",
@@ -34,7 +34,7 @@ const sizeOf = (text) => {
 empty(folder);
 const cube = join(root, "tests/install/cube.obj");
 execFileSync(keepout, ["live", cube, "--no-open", "--out", "page.html"], { cwd: folder });
-const browser = await launched(browserPath);
+const browser = await launched();
 after(() => browser.close());
 const tab = await opened(browser, join(folder, "page.html"), sizeOf("1280x800"));
 

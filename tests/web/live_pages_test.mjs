@@ -2,7 +2,7 @@
 /**
  * Tests the pages of `keepout live`, for a tip and for an instrument, in a browser with real input:
  *
- *   live_pages_test.mjs KEEPOUT JUDGE_PATH FOLDER [BROWSER]
+ *   live_pages_test.mjs KEEPOUT JUDGE_PATH FOLDER
  *
  * The pointer drags the tip into the skull. `keepout replay` repeats the path and must give bitwise the
  * same result, and the exact oracle judges it. Further tests drag without a fixture, and drop files. The
@@ -18,6 +18,8 @@ import {
   assertAccessible,
   assertAlone,
   empty,
+  firefoxLong,
+  isFirefox,
   large,
   launched,
   note,
@@ -29,7 +31,7 @@ import {
   textOf,
 } from "./tabs.mjs";
 
-const [keepout, judge, folder, browserPath] = process.argv.slice(2);
+const [keepout, judge, folder] = process.argv.slice(2);
 const skull = join(process.env.KEEPOUT_CACHE || join(root, ".cache"), "fixtures/skull.stl");
 empty(folder);
 const run = (program, ...args) =>
@@ -39,7 +41,7 @@ const judged = (...words) => {
   note(JSON.stringify(verdict));
   return verdict;
 };
-const browser = await launched(browserPath);
+const browser = await launched(folder);
 after(() => browser.close());
 
 /** The tabs of the tested page. */
@@ -148,12 +150,9 @@ function testPage(name, ...options) {
     assert.ok(empty <= 1250e3, "the page without anatomy takes more than a second at 10 Mbit/s");
     assertAlone(join(folder, page), 6e6);
   });
-  /** Opens the page, and waits until the tool can be dragged. Downloads are saved in the folder. */
+  /** Opens the page, and waits until the tool can be dragged. */
   return async (viewport) => {
-    const tab = await opened(browser, join(folder, page), viewport, async (one) => {
-      const client = await one.createCDPSession();
-      await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
-    });
+    const tab = await opened(browser, join(folder, page), viewport);
     await ready(tab);
     return tab;
   };
@@ -342,16 +341,39 @@ test("counterexamples: the paper's rule goes through, the certified one stays ou
   await desk.click("#failures .close");
 });
 
-test("files are dropped: a mesh, then what is none, and the page lives on", async () => {
+/** Returns a function that drops a file with these bytes on the page, by real input. */
+async function dropInput() {
   const client = await desk.createCDPSession();
-  /** Drops a file with these bytes on the page. */
-  const drop = async (name, bytes) => {
+  return async (name, bytes) => {
     writeFileSync(join(folder, name), bytes);
     const data = { items: [], files: [join(folder, name)], dragOperationsMask: 1 };
     for (const type of ["dragEnter", "dragOver", "drop"]) {
       await client.send("Input.dispatchDragEvent", { type, x: 640, y: 400, data });
     }
   };
+}
+
+/** Like dropInput(), but by events that the page makes: Firefox's protocol drags no files. */
+const dropEvents = () => async (name, bytes) => {
+  writeFileSync(join(folder, name), bytes);
+  await desk.evaluate(
+    async (file, base64) => {
+      const content = await (await fetch(`data:;base64,${base64}`)).arrayBuffer();
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File([content], file));
+      for (const type of ["dragenter", "dragover", "drop"]) {
+        document
+          .querySelector("#view")
+          .dispatchEvent(new DragEvent(type, { dataTransfer, bubbles: true, cancelable: true }));
+      }
+    },
+    name,
+    Buffer.from(bytes).toString("base64"),
+  );
+};
+
+test("files are dropped: a mesh, then what is none, and the page lives on", async () => {
+  const drop = isFirefox ? await dropEvents() : await dropInput();
   await drop("my cube.obj", readFileSync(join(root, "tests/install/cube.obj")));
   await desk.waitForFunction(() => document.title.startsWith("my cube.obj"));
   await ready(desk);

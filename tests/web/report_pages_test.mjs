@@ -2,7 +2,7 @@
 /**
  * Tests the reports of the commands in a browser with real input:
  *
- *   report_pages_test.mjs KEEPOUT FOLDER [BROWSER]
+ *   report_pages_test.mjs KEEPOUT FOLDER
  *
  * Each command runs on a small mesh, and the test opens its page. Every number on the page must be one of
  * the record. Tables sort, plots show what is under the pointer, and the anatomy turns. If REPORT_RECORDS
@@ -28,7 +28,7 @@ import {
   small,
 } from "./tabs.mjs";
 
-const [keepout, folder, browserPath] = process.argv.slice(2);
+const [keepout, folder] = process.argv.slice(2);
 const given = process.env.REPORT_RECORDS;
 const large = { width: 1280, height: 900 };
 empty(folder);
@@ -221,7 +221,7 @@ async function assertNumbers(tab, record, selector) {
   return texts.length;
 }
 
-const browser = await launched(browserPath);
+const browser = await launched();
 
 /** Opens a page. Returns it when it is complete. */
 async function opened(file, viewport, prepare) {

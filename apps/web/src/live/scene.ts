@@ -7,12 +7,16 @@ import { makeGraphics, surfaceGeometry } from "../page/graphics.ts";
 import { StillPicture } from "../page/still_picture.ts";
 import { colors, Spring, Trail } from "./markers.ts";
 import type { State } from "./protocol.ts";
+import type { Pinch } from "./two_fingers.ts";
+import { ViewMotion } from "./view_motion.ts";
 
 /** The anatomy with the hand and a tool, which a derived class draws. */
 export abstract class Scene {
   readonly camera = new three.PerspectiveCamera(32, 1, 0.1, 10_000);
   private readonly renderer: three.WebGLRenderer;
   protected readonly controls: OrbitControls;
+  /** Moves the view by keys and by two fingers. */
+  readonly motion: ViewMotion;
   private readonly still: StillPicture;
   protected readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
   protected readonly moving = new three.Scene();
@@ -58,6 +62,7 @@ export abstract class Scene {
     this.moving.visible = false;
 
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.motion = new ViewMotion(this.camera, this.controls);
     this.renderer.domElement.addEventListener("webglcontextrestored", () => this.outdate());
     this.controls.addEventListener("change", () => this.outdate());
     new ResizeObserver(() => this.resize()).observe(container);
@@ -126,6 +131,12 @@ export abstract class Scene {
     this.controls.target.add(way);
     this.camera.position.add(way);
     this.controls.update();
+  }
+
+  /** Turns and zooms the view about a place. */
+  pinch(place: Vec3, { spread, twist }: Pinch): void {
+    this.motion.zoom(spread, this.inside(place));
+    this.motion.turn(twist, 0, this.inside(place));
   }
 
   /** Returns the radius of the tool's ball in the view. [px] */
