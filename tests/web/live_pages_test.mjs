@@ -141,10 +141,10 @@ async function savedPath(tab = desk) {
 }
 
 /** Makes a page of the skull, and tests its size. Returns a function that opens the page. */
-function testPage(name, ...options) {
+function testPage(name, when, ...options) {
   const page = `${name}.html`;
-  run(keepout, "live", skull, ...options, "--no-open", "--out", page);
-  test(`${name}: the page is small, and needs nothing beside it`, () => {
+  test(`${name}: the page is small, and needs nothing beside it`, when, () => {
+    run(keepout, "live", skull, ...options, "--no-open", "--out", page);
     const empty = statSync(join(root, "build/web/live.html")).size;
     note(`page without anatomy ${(empty / 1e3).toFixed(0)} kB`);
     assert.ok(empty <= 1250e3, "the page without anatomy takes more than a second at 10 Mbit/s");
@@ -159,9 +159,9 @@ function testPage(name, ...options) {
 }
 
 /** The last tests of a page: names of controls, contrast, and no faults reported by the browser. */
-function testLooks(name) {
+function testLooks(name, when) {
   for (const [looks, scheme] of Object.entries({ phone: "dark", light: "light", dark: "dark" })) {
-    const options = looks === "phone" ? onlyLong : {};
+    const options = looks === "phone" ? onlyLong : when;
     test(`${name}: controls have names and contrast holds: ${looks}`, options, async () => {
       const tab = looks === "phone" ? phone : desk;
       await tab.bringToFront();
@@ -170,7 +170,7 @@ function testLooks(name) {
       await tab.screenshot({ path: join(folder, `${name}_${looks}.png`) });
     });
   }
-  test(`${name}: nothing was complained of`, async () => {
+  test(`${name}: nothing was complained of`, when, async () => {
     const tabs = [desk, phone].filter(Boolean);
     const faults = tabs.flatMap((tab) => tab.faults);
     await Promise.all(tabs.map((tab) => tab.close()));
@@ -199,7 +199,7 @@ async function ledByKeys(key, figure, rest) {
 
 // The page of a tip.
 
-const openTip = testPage("tip");
+const openTip = testPage("tip", {});
 
 /** Drags the tip's grip into the anatomy, and up and down there. */
 async function rub(seconds = 4) {
@@ -265,47 +265,51 @@ test("a drag into the skull: limited, out of it, and the same as keepout replay"
   await assertReplayed();
 });
 
-test("a corridor that is fitted to the tool holds it, as keepout replay does", async () => {
-  await desk.click("#again");
-  await desk.select("#guide", "slab");
-  await says(desk, "#guide-state", "inside");
-  const [text] = await desk.$eval("#guide-text", (field) => [field.value]);
-  await dragged(2, (t) => [-60 * t, 150 * Math.sin(7 * t)]);
-  await desk.screenshot({ path: join(folder, "tip_guided.png") });
-  await says(desk, "#guide-state", "held by slab");
-  await desk.mouse.up();
-  const path = await savedPath();
-  assert.deepEqual(path.header.settings.guides, [text]);
-  const lines = linesOf(path);
-  assert.equal(differing(lines, replayed(path, skull, "certified")), 0);
-  const [place, normal, [width]] = text
-    .split(":")
-    .slice(1)
-    .map((part) => part.split(",").map(Number));
-  const scale = Math.hypot(...normal);
-  const out = lines.map((line) => {
-    const across = normal.reduce((sum, n, i) => sum + (n * (line[3 + i] - place[i])) / scale, 0);
-    return Math.abs(across) - width;
-  });
-  const farthest = out.reduce((most, one) => Math.max(most, one), -Infinity);
-  assert.ok(farthest > -0.01 && farthest < 0.0021, `${farthest} mm out of the corridor`);
+test(
+  "a corridor that is fitted to the tool holds it, as keepout replay does",
+  firefoxLong,
+  async () => {
+    await desk.click("#again");
+    await desk.select("#guide", "slab");
+    await says(desk, "#guide-state", "inside");
+    const [text] = await desk.$eval("#guide-text", (field) => [field.value]);
+    await dragged(2, (t) => [-60 * t, 150 * Math.sin(7 * t)]);
+    await desk.screenshot({ path: join(folder, "tip_guided.png") });
+    await says(desk, "#guide-state", "held by slab");
+    await desk.mouse.up();
+    const path = await savedPath();
+    assert.deepEqual(path.header.settings.guides, [text]);
+    const lines = linesOf(path);
+    assert.equal(differing(lines, replayed(path, skull, "certified")), 0);
+    const [place, normal, [width]] = text
+      .split(":")
+      .slice(1)
+      .map((part) => part.split(",").map(Number));
+    const scale = Math.hypot(...normal);
+    const out = lines.map((line) => {
+      const across = normal.reduce((sum, n, i) => sum + (n * (line[3 + i] - place[i])) / scale, 0);
+      return Math.abs(across) - width;
+    });
+    const farthest = out.reduce((most, one) => Math.max(most, one), -Infinity);
+    assert.ok(farthest > -0.01 && farthest < 0.0021, `${farthest} mm out of the corridor`);
 
-  // The page accepts guides in the text field, and rejects text that is no guide.
-  const write = async (words) => {
-    await desk.$eval("#guide-text", (field) => field.select());
-    await desk.type("#guide-text", `${words}\n`);
-  };
-  await write("ball:1,2");
-  await says(desk, "#toast", "the guide 'ball:1,2'");
-  assert.equal(await desk.$eval("#guide-text", (field) => field.value), text);
-  await write("low=half_space:0,0,-500:0,0,1 wide=ball:0,0,0:900");
-  await desk.waitForFunction(() => document.querySelector("#guide").value === "text");
-  await says(desk, "#guide-state", "inside");
-  await desk.select("#guide", "none");
-  await says(desk, "#guide-state", "–");
-});
+    // The page accepts guides in the text field, and rejects text that is no guide.
+    const write = async (words) => {
+      await desk.$eval("#guide-text", (field) => field.select());
+      await desk.type("#guide-text", `${words}\n`);
+    };
+    await write("ball:1,2");
+    await says(desk, "#toast", "the guide 'ball:1,2'");
+    assert.equal(await desk.$eval("#guide-text", (field) => field.value), text);
+    await write("low=half_space:0,0,-500:0,0,1 wide=ball:0,0,0:900");
+    await desk.waitForFunction(() => document.querySelector("#guide").value === "text");
+    await says(desk, "#guide-state", "inside");
+    await desk.select("#guide", "none");
+    await says(desk, "#guide-state", "–");
+  },
+);
 
-test("the same drag without a fixture goes in", async () => {
+test("the same drag without a fixture goes in", firefoxLong, async () => {
   await desk.click("#rules input[value=none]");
   await desk.click("#again");
   await sleep(500);
@@ -326,20 +330,24 @@ test("the same drag without a fixture goes in", async () => {
 
 test("a tip led by keys", () => ledByKeys("ArrowLeft", "#newtons", "0.00 N"));
 
-test("counterexamples: the paper's rule goes through, the certified one stays out", async () => {
-  await desk.click("#fail");
-  await desk.waitForSelector("#failures[open] #examples button");
-  const examples = await desk.$$("#examples button");
-  assert.equal(examples.length, 3);
-  for (const example of examples) {
-    await example.click();
-    const captions = await desk.$$eval("#duel figcaption span", (all) =>
-      all.map((one) => one.textContent),
-    );
-    assert.deepEqual(captions, ["goes through the surface", "stays out"]);
-  }
-  await desk.click("#failures .close");
-});
+test(
+  "counterexamples: the paper's rule goes through, the certified one stays out",
+  firefoxLong,
+  async () => {
+    await desk.click("#fail");
+    await desk.waitForSelector("#failures[open] #examples button");
+    const examples = await desk.$$("#examples button");
+    assert.equal(examples.length, 3);
+    for (const example of examples) {
+      await example.click();
+      const captions = await desk.$$eval("#duel figcaption span", (all) =>
+        all.map((one) => one.textContent),
+      );
+      assert.deepEqual(captions, ["goes through the surface", "stays out"]);
+    }
+    await desk.click("#failures .close");
+  },
+);
 
 /** Returns a function that drops a file with these bytes on the page, by real input. */
 async function dropInput() {
@@ -372,38 +380,45 @@ const dropEvents = () => async (name, bytes) => {
   );
 };
 
-test("files are dropped: a mesh, then what is none, and the page lives on", async () => {
-  const drop = isFirefox ? await dropEvents() : await dropInput();
-  await drop("my cube.obj", readFileSync(join(root, "tests/install/cube.obj")));
-  await desk.waitForFunction(() => document.title.startsWith("my cube.obj"));
-  await ready(desk);
-  assert.match(await textOf(desk, "#findings"), /12 triangles.*watertight/);
+test(
+  "files are dropped: a mesh, then what is none, and the page lives on",
+  firefoxLong,
+  async () => {
+    const drop = isFirefox ? await dropEvents() : await dropInput();
+    await drop("my cube.obj", readFileSync(join(root, "tests/install/cube.obj")));
+    await desk.waitForFunction(() => document.title.startsWith("my cube.obj"));
+    await ready(desk);
+    assert.match(await textOf(desk, "#findings"), /12 triangles.*watertight/);
 
-  await drop("broken.stl", readFileSync(skull).subarray(0, 1000));
-  await says(desk, "#toast", "broken.stl: ");
-  note(await textOf(desk, "#toast"));
-  await drop("nonsense.txt", "1 2 3\n");
-  await says(desk, "#toast", "nonsense.txt: line 1");
-  assert.equal(await desk.title(), "my cube.obj – keepout live");
+    await drop("broken.stl", readFileSync(skull).subarray(0, 1000));
+    await says(desk, "#toast", "broken.stl: ");
+    note(await textOf(desk, "#toast"));
+    await drop("nonsense.txt", "1 2 3\n");
+    await says(desk, "#toast", "nonsense.txt: line 1");
+    assert.equal(await desk.title(), "my cube.obj – keepout live");
 
-  const before = await limitedCycles(desk);
-  await rub(2);
-  const path = await savedPath();
-  assert.equal(
-    differing(linesOf(path), replayed(path, join(folder, "my cube.obj"), "certified")),
-    0,
-  );
-  const limitedAfter = await limitedCycles(desk);
-  assert.ok(limitedAfter > before + 100, `limited cycles: ${before} before, ${limitedAfter} after`);
+    const before = await limitedCycles(desk);
+    await rub(2);
+    const path = await savedPath();
+    assert.equal(
+      differing(linesOf(path), replayed(path, join(folder, "my cube.obj"), "certified")),
+      0,
+    );
+    const limitedAfter = await limitedCycles(desk);
+    assert.ok(
+      limitedAfter > before + 100,
+      `limited cycles: ${before} before, ${limitedAfter} after`,
+    );
 
-  // The engine rejects the settings of this path, and the earlier settings stay in use.
-  await drop("refused.txt", path.text.replace('"radius":5', '"radius":-1'));
-  await says(desk, "#toast", "longer than --radius");
-  note(await textOf(desk, "#toast"));
-  await desk.waitForFunction(() =>
-    document.querySelector("#radius").parentElement.innerText.includes("5 mm"),
-  );
-});
+    // The engine rejects the settings of this path, and the earlier settings stay in use.
+    await drop("refused.txt", path.text.replace('"radius":5', '"radius":-1'));
+    await says(desk, "#toast", "longer than --radius");
+    note(await textOf(desk, "#toast"));
+    await desk.waitForFunction(() =>
+      document.querySelector("#radius").parentElement.innerText.includes("5 mm"),
+    );
+  },
+);
 
 test("a tip led by touch, on a phone", onlyLong, async () => {
   phone = await openTip(small);
@@ -418,11 +433,11 @@ test("a tip led by touch, on a phone", onlyLong, async () => {
   await finger.end();
 });
 
-testLooks("tip");
+testLooks("tip", {});
 
 // The page of an instrument.
 
-const openInstrument = testPage("instrument", "--robot", "psm");
+const openInstrument = testPage("instrument", firefoxLong, "--robot", "psm");
 
 /** Drags the jaw down into the anatomy and sideways there; does not release it. */
 const leadIn = (seconds = 6) =>
@@ -437,30 +452,34 @@ async function clearPath(tab = desk) {
   return { path, verdict };
 }
 
-test("the jaw dragged into the skull: held back, and all bodies clear, says the judge", async () => {
-  desk = await openInstrument(large);
-  await leadIn();
-  assert.equal(await textOf(desk, "#status b"), "limited");
-  assert.match(await textOf(desk, "#status span"), /the surface is in the way/);
-  assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
-  assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
-  await desk.screenshot({ path: join(folder, "dragged.png") });
-  await desk.mouse.up();
-  await noteRates();
-  const { path, verdict } = await clearPath();
-  assert.equal(verdict.in_mesh, 0);
-  assert.ok(verdict.way > 20, `the jaw went ${verdict.way} mm only`);
-  assert.ok(verdict.held >= 500, `held back in ${verdict.held} cycles only`);
-  assert.ok(verdict.nearest !== null && verdict.nearest >= verdict.kept - 1e-9);
+test(
+  "the jaw dragged into the skull: held back, and all bodies clear, says the judge",
+  firefoxLong,
+  async () => {
+    desk = await openInstrument(large);
+    await leadIn();
+    assert.equal(await textOf(desk, "#status b"), "limited");
+    assert.match(await textOf(desk, "#status span"), /the surface is in the way/);
+    assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
+    assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
+    await desk.screenshot({ path: join(folder, "dragged.png") });
+    await desk.mouse.up();
+    await noteRates();
+    const { path, verdict } = await clearPath();
+    assert.equal(verdict.in_mesh, 0);
+    assert.ok(verdict.way > 20, `the jaw went ${verdict.way} mm only`);
+    assert.ok(verdict.held >= 500, `held back in ${verdict.held} cycles only`);
+    assert.ok(verdict.nearest !== null && verdict.nearest >= verdict.kept - 1e-9);
 
-  // Checks the judge itself: with a larger margin it must report breaches.
-  const { margin } = path.header;
-  const stricter = path.text.replace(`"margin":${margin}`, `"margin":${margin + 0.3}`);
-  writeFileSync(join(folder, "stricter.txt"), stricter);
-  assert.ok(judged("stricter.txt").below > 0, "the judge sees nothing");
-});
+    // Checks the judge itself: with a larger margin it must report breaches.
+    const { margin } = path.header;
+    const stricter = path.text.replace(`"margin":${margin}`, `"margin":${margin + 0.3}`);
+    writeFileSync(join(folder, "stricter.txt"), stricter);
+    assert.ok(judged("stricter.txt").below > 0, "the judge sees nothing");
+  },
+);
 
-test("a ball about the jaw's end holds it, and bodies stay clear", async () => {
+test("a ball about the jaw's end holds it, and bodies stay clear", firefoxLong, async () => {
   await desk.click("#again");
   await desk.select("#guide", "ball");
   await says(desk, "#guide-state", "inside");
@@ -495,8 +514,9 @@ test("it is turned by the wheel and by keys, and the hand with it", onlyLong, as
   assert.ok(verdict.turn > 0.5, `turned by ${verdict.turn} rad only`);
 });
 
-test("an instrument led by keys, into the skull and out of hand", () =>
-  ledByKeys("ArrowDown", "#hand-off", "0.00 mm"));
+test("an instrument led by keys, into the skull and out of hand", firefoxLong, () =>
+  ledByKeys("ArrowDown", "#hand-off", "0.00 mm"),
+);
 
 test("a wider margin is come up to, and kept", onlyLong, async () => {
   await desk.$eval("#margin", (slider) => {
@@ -537,4 +557,4 @@ test(
   },
 );
 
-testLooks("instrument");
+testLooks("instrument", firefoxLong);

@@ -137,3 +137,21 @@ export async function assertAccessible(tab, scheme) {
     scheme,
   );
 }
+
+/** Returns how many of the pixels in a part of the page have the color of bone. */
+export async function bonePixels(tab, clip) {
+  const picture = await tab.screenshot({ encoding: "base64", clip });
+  return tab.evaluate(async (data) => {
+    const image = await createImageBitmap(
+      await (await fetch(`data:image/png;base64,${data}`)).blob(),
+    );
+    const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data: values } = context.getImageData(0, 0, image.width, image.height);
+    let count = 0;
+    for (let i = 0; i < values.length; i += 4) {
+      if (values[i] - values[i + 2] > 20 && values[i] - values[i + 1] < 40) ++count;
+    }
+    return count;
+  }, picture);
+}
