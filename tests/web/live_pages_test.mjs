@@ -405,6 +405,8 @@ test(
       0,
     );
     const limitedAfter = await limitedCycles(desk);
+    await drop("cut.txt", path.text.slice(0, -3));
+    await says(desk, "#toast", "cut.txt: the file is cut");
     assert.ok(
       limitedAfter > before + 100,
       `limited cycles: ${before} before, ${limitedAfter} after`,

@@ -585,7 +585,9 @@ test("a depth that reaches the radius of a body is a lower bound", async () => {
 });
 
 const experiments = pages.find(({ record }) => record.experiments);
-const emulated = isFirefox ? onlyChromium("it cannot emulate print and dark media") : { skip: given };
+const emulated = isFirefox
+  ? onlyChromium("it cannot emulate print and dark media")
+  : { skip: given };
 test("claims come first; pictures of a record do nothing", emulated, async () => {
   const tab = await opened(experiments.file, large);
   const claimed = await tab.$$eval("main > section:first-of-type tbody th > :first-child", (all) =>

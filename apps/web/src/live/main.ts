@@ -355,17 +355,18 @@ async function openFile(file: File): Promise<void> {
  */
 function adopt(header: PathHeader | null): void {
   if (header !== null) {
+    const isShown = header.mesh === shown?.command;
+    const choice = isShown ? undefined : meshes.called(header.mesh);
+    if (!isShown && choice === undefined) {
+      pendingPath = null;
+      toast(`This path is over ${header.mesh}, which is not in this page: open that file first.`);
+      return;
+    }
     settings = header.settings;
     showSettings();
     tell({ kind: "settings", settings });
-    if (header.mesh !== shown?.command) {
-      const choice = meshes.called(header.mesh);
-      if (choice !== undefined) {
-        load(choice); // it is replayed after loading
-        return;
-      }
-      pendingPath = null;
-      toast(`This path is over ${header.mesh}, which is not in this page: open that file first.`);
+    if (choice !== undefined) {
+      load(choice); // it is replayed after loading
       return;
     }
   }
