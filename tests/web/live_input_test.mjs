@@ -142,8 +142,8 @@ test("a second finger zooms the view and leaves the hand held, under the first f
   const held = await handAt();
   const stage = { x: 0, y: 0, width: 390, height: 470 };
   const far = await bonePixels(tab, stage);
-  const second = await tab.touchscreen.touchStart(held.x + 60, held.y + 60);
-  for (let i = 1; i <= 8; ++i) await second.move(held.x + 60 + 8 * i, held.y + 60 + 8 * i);
+  const second = await tab.touchscreen.touchStart(held.x - 60, held.y + 60);
+  for (let i = 1; i <= 8; ++i) await second.move(held.x - 60 - 8 * i, held.y + 60 + 8 * i);
   await sleep(500);
   const after = await handAt();
   assert.ok(Math.hypot(after.x - held.x, after.y - held.y) < 8, "the hand left the finger");
