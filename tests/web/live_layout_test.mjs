@@ -3,7 +3,7 @@
  * Tests what a page of `keepout live` shows before anyone touches it: its layout in windows of many sizes, and
  * the start of the tool beside every sample mesh:
  *
- *   live_layout_test.mjs KEEPOUT FOLDER [BROWSER]
+ *   live_layout_test.mjs KEEPOUT FOLDER
  *
  * All tests use one page. Meshes of real anatomy are tested if ./run has prepared them; the large ones only with
  * ./test --long.
@@ -13,9 +13,20 @@ import { execFileSync } from "node:child_process";
 import { existsSync, readdirSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { empty, isLong, launched, note, opened, root, sleep, textOf } from "./tabs.mjs";
+import {
+  bonePixels,
+  empty,
+  firefoxLong,
+  isLong,
+  launched,
+  note,
+  opened,
+  root,
+  sleep,
+  textOf,
+} from "./tabs.mjs";
 
-const [keepout, folder, browserPath] = process.argv.slice(2);
+const [keepout, folder] = process.argv.slice(2);
 const sizes = [
   "1920x1080",
   "1280x800",
@@ -26,6 +37,8 @@ const sizes = [
   "360x640",
   "844x390",
 ];
+/** The part of the view between the cards. */
+const middle = { x: 320, y: 20, width: 640, height: 760 };
 const sizeOf = (text) => {
   const [width, height] = text.split("x").map(Number);
   return { width, height };
@@ -34,7 +47,7 @@ const sizeOf = (text) => {
 empty(folder);
 const cube = join(root, "tests/install/cube.obj");
 execFileSync(keepout, ["live", cube, "--no-open", "--out", "page.html"], { cwd: folder });
-const browser = await launched(browserPath);
+const browser = await launched();
 after(() => browser.close());
 const tab = await opened(browser, join(folder, "page.html"), sizeOf("1280x800"));
 
@@ -111,7 +124,7 @@ async function assertStart(name) {
   );
 }
 
-test("the tool begins free and in sight beside every generated mesh", async () => {
+test("the tool begins free and in sight beside every generated mesh", firefoxLong, async () => {
   const names = await tab.$$eval('#mesh optgroup[label="Generated"] option', (all) =>
     all.map((one) => [one.value, one.textContent]),
   );
@@ -122,7 +135,7 @@ test("the tool begins free and in sight beside every generated mesh", async () =
   }
 });
 
-test("the tool begins free and in sight beside the anatomies", async () => {
+test("the tool begins free and in sight beside the anatomies", firefoxLong, async () => {
   const fixtures = join(process.env.KEEPOUT_CACHE || join(root, ".cache"), "fixtures");
   const files = existsSync(fixtures)
     ? readdirSync(fixtures).filter((name) => name.endsWith(".stl"))
@@ -146,33 +159,12 @@ test("a mesh in meters is seen, and scaled by a button", async () => {
   await (await tab.$("#file")).uploadFile(join(folder, "meters.obj"));
   await ready("meters.obj");
   await sleep(500);
-  assert.ok((await bonePixels()) > 500, "the mesh is not drawn");
+  assert.ok((await bonePixels(tab, middle)) > 500, "the mesh is not drawn");
   assert.match(await textOf(tab, "#toast"), /0\.16 mm across.*meters/);
   await tab.click("#toast button");
   await assertStart("meters.obj × 1000");
   assert.match(await textOf(tab, "#findings"), /160/);
 });
-
-/** Returns how many of the view's pixels have the color of bone. */
-async function bonePixels() {
-  const picture = await tab.screenshot({
-    encoding: "base64",
-    clip: { x: 320, y: 20, width: 640, height: 760 },
-  });
-  return tab.evaluate(async (data) => {
-    const image = await createImageBitmap(
-      await (await fetch(`data:image/png;base64,${data}`)).blob(),
-    );
-    const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
-    context.drawImage(image, 0, 0);
-    const { data: values } = context.getImageData(0, 0, image.width, image.height);
-    let count = 0;
-    for (let i = 0; i < values.length; i += 4) {
-      if (values[i] - values[i + 2] > 20 && values[i] - values[i + 1] < 40) ++count;
-    }
-    return count;
-  }, picture);
-}
 
 /** Returns the middle of the grip. */
 const handAt = () =>
@@ -218,7 +210,7 @@ test("the hand stays while a rule is chosen, and the inside is red", async () =>
 });
 
 test("a lost WebGL context is reported, and drawn again", async () => {
-  const before = await bonePixels();
+  const before = await bonePixels(tab, middle);
   const lose = await tab.evaluateHandle(() => {
     const context = document.querySelector("#picture").getContext("webgl2");
     return context.getExtension("WEBGL_lose_context");
@@ -231,7 +223,7 @@ test("a lost WebGL context is reported, and drawn again", async () => {
   await lose.evaluate((one) => one.restoreContext());
   await tab.waitForFunction(() => document.querySelector("#loading").hidden);
   await sleep(700);
-  const after = await bonePixels();
+  const after = await bonePixels(tab, middle);
   assert.ok(after > 0.9 * before, `${before} pixels of bone before, ${after} after`);
 });
 

@@ -9,7 +9,9 @@ for needed in web/{live,report,report_with_anatomy}.html wasm/keepout.wasm web/f
   [ -f "$root/build/$needed" ] ||
     { echo "skipped: there is no build/$needed; apps/web/build tests makes it"; exit 77; }
 done
-for program in node npm chromium; do
+browser=(chromium)
+[ "${KEEPOUT_BROWSER:-}" != firefox ] || browser=(firefox-esr Xvfb)
+for program in node npm "${browser[@]}"; do
   command -v "$program" >/dev/null ||
     { echo "skipped: there is no $program; cmake/debian_packages_web.txt has what the tests need"; exit 77; }
 done

@@ -2,6 +2,7 @@
 import { Quaternion, Vector3 } from "three";
 import { type Frame, unturned, type Vec3 } from "../engine/keepout.ts";
 import type { Scene } from "./scene.ts";
+import { TwoFingers } from "./two_fingers.ts";
 
 /** The distance from the ball within which a pointer grabs the hand. [px] */
 const reach = { mouse: 30, touch: 52 } as const;
@@ -39,9 +40,10 @@ const turns: Readonly<Record<string, Vec3>> = {
 
 /**
  * Moves the hand by mouse, touch or keys. A pointer that grabs the hand moves it across the view at
- * constant depth, within the open part of the view, and the wheel moves it deeper. Elsewhere a pointer turns the view. A released
- * hand follows the tool; keys hold it until Escape. If the hand can be rotated, letters, Shift and
- * the wheel, or a second finger rotate it.
+ * constant depth, within the open part of the view, and the wheel moves it deeper. Elsewhere a pointer turns the view.
+ * A second finger zooms and turns the view about the hand, which stays held. A released hand follows the tool; keys
+ * hold it until Escape, or until another element has the focus. If the hand can be rotated, letters, Shift and the
+ * wheel, or a second finger rotate it.
  */
 export class HandInput {
   private hand: Frame = { place: [0, 0, 0], turn: unturned };
@@ -49,6 +51,7 @@ export class HandInput {
   private pane = 0; // in which the pointer has grabbed the hand
   private grip: { dx: number; dy: number } = { dx: 0, dy: 0 };
   private finger = { x: 0, y: 0 }; // position of a second one [px]
+  private readonly fingers = new TwoFingers();
   private isHeld = false;
   private readonly keys = new Set<string>();
   private isSlow = false;
@@ -76,7 +79,10 @@ export class HandInput {
       this.isSlow = event.shiftKey;
       this.keys.delete(keyOf(event));
     });
-    view.addEventListener("blur", () => this.keys.clear());
+    view.addEventListener("blur", () => {
+      this.keys.clear();
+      if (this.isHeld && this.pointer === null) this.release();
+    });
   }
 
   /** Sets the position of the hand while no input moves it. */
@@ -93,17 +99,17 @@ export class HandInput {
   }
 
   private take(event: PointerEvent): void {
-    if (this.pointer !== null && this.canTurn) {
+    this.fingers.move(event);
+    if (this.pointer !== null) {
       event.stopPropagation();
       this.finger = { x: event.clientX, y: event.clientY };
+      return;
     }
-    if (event.button !== 0 || this.pointer !== null) return;
+    const isSecond = event.pointerType === "touch" && this.fingers.count > 1;
+    if (event.button !== 0 || isSecond) return;
     const pane = this.scene.panes.under(event);
-    const at = this.inView(event, pane);
     const { place } = this.hand;
-    const hand = this.scene.project(place);
-    const dx = hand.x - at.x;
-    const dy = hand.y - at.y;
+    const { dx, dy } = this.offset(event, pane);
     const { width, height } = this.scene.panes.area();
     const pixels = Math.hypot(dx * 0.5 * width, dy * 0.5 * height);
     const near = event.pointerType === "mouse" ? reach.mouse : reach.touch;
@@ -120,8 +126,18 @@ export class HandInput {
   }
 
   private lead(event: PointerEvent): void {
-    if (this.pointer === null) return;
+    const pinch = this.fingers.move(event);
+    if (this.pointer === null) {
+      // The controls of the camera zoom and shift.
+      if (pinch !== null) this.scene.motion.turn(pinch.twist, 0);
+      return;
+    }
     event.stopPropagation();
+    if (pinch !== null && !this.canTurn) {
+      this.scene.pinch(this.hand.place, pinch);
+      if (event.pointerId === this.pointer) this.grip = this.offset(event, this.pane);
+      return;
+    }
     if (event.pointerId !== this.pointer) {
       const { x, y } = this.finger;
       this.finger = { x: event.clientX, y: event.clientY };
@@ -133,7 +149,15 @@ export class HandInput {
     this.go({ place: this.scene.unproject(at.x + dx, at.y + dy, this.hand.place) });
   }
 
+  /** Returns the way from a pointer to the hand, in the view. */
+  private offset(event: PointerEvent, pane: number): { dx: number; dy: number } {
+    const at = this.inView(event, pane);
+    const hand = this.scene.project(this.hand.place);
+    return { dx: hand.x - at.x, dy: hand.y - at.y };
+  }
+
   private letGo(event: PointerEvent): void {
+    this.fingers.lift(event);
     if (event.pointerId !== this.pointer) return;
     event.stopPropagation();
     this.release();

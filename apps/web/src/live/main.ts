@@ -43,6 +43,7 @@ import { RobotScene } from "./robot_scene.ts";
 import { SettingsPanel } from "./settings_panel.ts";
 import type { StartLine } from "./start_place.ts";
 import { ToolScene } from "./tool_scene.ts";
+import { addViewKeys } from "./view_keys.ts";
 
 /** The largest initial tool radius, as a fraction of the anatomy's diagonal. */
 const largestTool = 0.03;
@@ -118,6 +119,8 @@ const input = new HandInput(scene, view, !isTip, (hand) => {
   grip.classList.remove("new");
   tell({ kind: "hand", hand });
 });
+
+addViewKeys(view, scene.motion);
 
 function tell(message: ToWorker, transfer: Transferable[] = []): void {
   worker.postMessage(message, transfer);
@@ -519,7 +522,7 @@ if (robotScene !== null) {
   view.ariaLabel =
     "The anatomy and the instrument, with the hand in red. Arrow keys lead its jaw across the view, " +
     "Page Up and Page Down into it and out of it; A, D, W, S, Q and E turn it; with Shift slowly; " +
-    "Escape lets go.";
+    "Escape releases it. I, J, K and L turn the view, plus and minus zoom.";
 }
 duel = isTip ? addTipControls() : null;
 showSettings();

@@ -73,6 +73,8 @@ export function parsePath(text: string): { header: PathHeader | null; lines: Flo
     numbers.push(...values);
   });
   if (numbers.length === 0) throw new Error("there is no cycle in it: is this a path?");
+  if (header !== null && !text.endsWith("\n"))
+    throw new Error("the file is cut: its last line has no end");
   return { header, lines: Float64Array.from(numbers) };
 }
 

@@ -69,8 +69,8 @@ export class Readings {
     set(this.status.querySelector("b"), chip);
     set(this.status.querySelector("span"), sentence);
     // A screen reader finishes a sentence before the text changes.
-    if (state.time - this.spokenAt <= 2000) return;
-    this.spokenAt = state.time;
+    if (performance.now() - this.spokenAt <= 2000) return;
+    this.spokenAt = performance.now();
     set("spoken", `${chip}: ${sentence}`);
   }
 

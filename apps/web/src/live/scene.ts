@@ -13,6 +13,8 @@ import { ToolShade } from "../page/tool_shade.ts";
 import { Spring, Trail } from "./markers.ts";
 import { type Area, Panes } from "./panes.ts";
 import type { State } from "./protocol.ts";
+import type { Pinch } from "./two_fingers.ts";
+import { ViewMotion } from "./view_motion.ts";
 
 /** The anatomy with the hand and a tool, which a derived class draws. */
 export abstract class Scene {
@@ -23,6 +25,8 @@ export abstract class Scene {
   protected beside: three.Scene | null = null;
   private readonly renderer: three.WebGLRenderer;
   protected readonly controls: OrbitControls;
+  /** Moves the view by keys and by two fingers. */
+  readonly motion: ViewMotion;
   private readonly still: StillPicture;
   protected readonly anatomy: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
   protected readonly moving = new three.Scene();
@@ -68,6 +72,7 @@ export abstract class Scene {
     this.moving.visible = false;
 
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.motion = new ViewMotion(this.camera, this.controls);
     this.renderer.domElement.addEventListener("webglcontextrestored", () => this.outdate());
     this.controls.addEventListener("change", () => this.outdate());
     new ResizeObserver(() => this.resize()).observe(container);
@@ -147,6 +152,12 @@ export abstract class Scene {
     this.controls.target.add(way);
     this.camera.position.add(way);
     this.controls.update();
+  }
+
+  /** Turns and zooms the view about a place. */
+  pinch(place: Vec3, { spread, twist }: Pinch): void {
+    this.motion.zoom(spread, this.inside(place));
+    this.motion.turn(twist, 0, this.inside(place));
   }
 
   /** Returns the radius of the tool's ball in the view. [px] */

@@ -7,7 +7,7 @@ const words: Readonly<Record<string, string>> = {
   recovering: "the tool was closer than its margin, and moves away",
   truncated: "only a part of the motion could be proved: the tool makes that part",
   infeasible: "the surface is too close on several sides: move the hand back",
-  inside: "the tool is inside: choose “Start over”, or double-click the surface",
+  inside: "the tool is inside the anatomy: choose “Start over”, or double-click the surface",
   touching: "the tool touches the surface: choose “Start over”",
   margin_too_small: "the margin is too small for a mesh of this size: make it larger",
   beyond_reach: "the motion is longer than the motion sphere: make the sphere larger",

@@ -5,14 +5,14 @@ import { lastKey, valueAt } from "./record.ts";
 import { shown } from "./shown.ts";
 
 /** Rules, modes and checkers with a color of their own, which is the same on all pages. */
-const named = ["none", "all_faces", "paper", "certified", "linearized", "tip_only", "sliding"];
+const named = ["none", "all-faces", "paper", "certified", "linearized", "tip-only", "sliding"];
 
 /**
  * Returns the variable of the page's style with the color of a rule, a mode or a checker. Only
  * checkers by samples have no color of their own.
  */
 export function ruleColor(rule: string): string {
-  const key = rule.replaceAll(" ", "_").replace("linearised", "linearized");
+  const key = rule.replaceAll(/[ _]/g, "-").replace("linearised", "linearized");
   return `--rule-${named.includes(key) ? key : "sampled"}`;
 }
 

@@ -44,7 +44,7 @@ export function strokeSection(record: SimulationRecord, anatomy: Anatomy): HTMLE
     lead(
       "Stroke ",
       chooser,
-      " along the path of the tip; at first it is the one that tells most. ",
+      " along the path of the tip; the worst is shown first. ",
       ...(isClosed ? ["The anatomy is hatched. "] : []),
       make("b", {}, "Red"),
       record.has_convex_tool
@@ -68,7 +68,7 @@ function options({ runs, moment }: SimulationRecord): HTMLElement[] {
   const others = (runs[0] as Run).strokes.map((_, stroke) => option(stroke));
   others.splice(moment.stroke, 1);
   return [
-    make("optgroup", { label: "tells most" }, option(moment.stroke)),
+    make("optgroup", { label: "worst" }, option(moment.stroke)),
     make("optgroup", { label: "others" }, ...others),
   ];
 }
