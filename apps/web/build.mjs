@@ -40,7 +40,7 @@ const withoutMaps = {
 
 /** Parts of three.js's shaders for materials, lights and surfaces that no page has. */
 const unusedShaders =
-  /^(alphahash|backgroundCube|batching|bumpmap|clearcoat|cube|displacementmap|distance|emissivemap|envmap|equirect|gradientmap|iridescence|lightmap|lightprobes|lights_(physical|toon)|mesh(matcap|normal|physical|toon)|metalnessmap|morph|normalmap|points|roughnessmap|shadow|skin|specularmap|sprite|tonemapping|transmission)/;
+  /^(alphahash|backgroundCube|batching|bumpmap|clearcoat|cube|displacementmap|distance|emissivemap|envmap|equirect|gradientmap|iridescence|lightmap|lightprobes|lights_(physical|toon)|mesh(matcap|normal|physical|toon)|metalnessmap|morph|normalmap|points|roughnessmap|shadow|skin|sprite|tonemapping|transmission)/;
 
 /** Removes shaders that no page uses from three.js, and blanks from the others. */
 const smallShaders = {
