@@ -132,9 +132,10 @@ async function savedPath(tab = desk) {
     await sleep(50);
     const name = readdirSync(folder).find((one) => !before.has(one) && one.endsWith(".txt"));
     if (name === undefined) continue;
+    const text = readFileSync(join(folder, name), "utf8");
+    if (text === "") continue; // Firefox makes the file before it fills it
     const file = `path-${before.size}.txt`; // the next one has the same name
     renameSync(join(folder, name), join(folder, file));
-    const text = readFileSync(join(folder, file), "utf8");
     return { file, text, header: JSON.parse(text.match(/^# path: (.*)$/m)[1]) };
   }
   assert.fail("no path was saved");
