@@ -76,9 +76,19 @@ function(keepout_compile_options target)
       # Sanitizer checks make functions long; this halves the time of register allocation.
       target_compile_options(${target} PRIVATE -fira-region=one)
     endif()
-    # Both have the vector length of SSE2, and so run the same lines.
-    target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4)")
     target_link_options(${target} PUBLIC -fsanitize=${KEEPOUT_SANITIZE})
+  endif()
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+    # Vectors of SVE have no size at compile time, so they cannot be members. NEON remains.
+    set(disabled "HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128")
+    # Highway's NEON contains AES, which keepout does not use. GCC 12 compiles implicit constructors
+    # without the target of the surrounding pragma, so NEON must be the target of the whole file.
+    target_compile_options(${target} PRIVATE -march=armv8-a+crypto)
+  elseif(KEEPOUT_SANITIZE)
+    set(disabled "HWY_SSSE3|HWY_SSE4")  # they have the vector length of SSE2, and so run the same lines
+  endif()
+  if(DEFINED disabled)
+    target_compile_definitions(${target} PRIVATE "HWY_DISABLED_TARGETS=(${disabled})")
   endif()
   # Libraries only: they are position-independent, and programs use other flags for that.
   get_target_property(type ${target} TYPE)

@@ -16,6 +16,7 @@ import re
 import textwrap
 from dataclasses import dataclass
 from html import escape
+from pathlib import Path
 from typing import Any
 
 import matplotlib
@@ -45,20 +46,25 @@ class Look:
     dark: str
 
 
+#: The colors of the activation rules on all pages, light and dark, by name.
+_of_pages = {rule: colors for rule, *colors in re.findall(
+    r"--rule-(\w+): light-dark\((#\w{6}), (#\w{6})\)",
+    (Path(__file__).parents[1] / "apps/web/src/page/rule_colors.css").read_text(encoding="utf-8"))}
+
 #: The look of each mode. Colors differ for color-blind eyes too, and have a contrast of 3 : 1 or more. Add yours
 #: here; tests/experiments/test_figures.py checks its color.
 MODES = {
-    "none": Look("no fixture", "#17202e", "#e8edf4"),
-    "all_faces": Look("all faces", "#939646", "#ffdc31"),
-    "paper": Look("the paper's rule", "#d63a00", "#ff7a35"),
-    "certified": Look("certified", "#1864dc", "#5b9bff"),
-    "closest_points_2007": Look("closest points (2007)", "#4900d4", "#8141fc"),
-    "vector_field": Look("vector field", "#890072", "#d490a4"),
-    "sdf_0.25": Look("distance field, 0.25 mm", "#174835", "#1c7f5d"),
-    "sdf_0.5": Look("distance field, 0.5 mm", "#4a7a50", "#a4f87f"),
-    "sdf_1": Look("distance field, 1 mm", "#2ea38d", "#63ffb2"),
-    "fcl_continuous": Look("FCL, continuous", "#940a00", "#ca3621"),
-    "bullet_sweep": Look("Bullet, sweep", "#a465ba", "#baa0db"),
+    "none": Look("no fixture", *_of_pages["none"]),
+    "all_faces": Look("all faces", *_of_pages["all_faces"]),
+    "paper": Look("the paper's rule", *_of_pages["paper"]),
+    "certified": Look("certified", *_of_pages["certified"]),
+    "closest_points_2007": Look("closest points (2007)", "#3e1ae8", "#7853fc"),
+    "vector_field": Look("vector field", "#850760", "#b03ead"),
+    "sdf_0.25": Look("distance field, 0.25 mm", "#615503", "#dad00b"),
+    "sdf_0.5": Look("distance field, 0.5 mm", "#283a03", "#b6d287"),
+    "sdf_1": Look("distance field, 1 mm", "#3c9345", "#3c982a"),
+    "fcl_continuous": Look("FCL, continuous", "#3d020d", "#e66072"),
+    "bullet_sweep": Look("Bullet, sweep", "#5e099b", "#ecdcee"),
 }
 
 #: The modes that others are compared with: their boxes are fuller, and their names bold.

@@ -38,6 +38,39 @@ const withoutMaps = {
   },
 };
 
+/** Parts of three.js's shaders for materials, lights and surfaces that no page has. */
+const unusedShaders =
+  /^(alphahash|backgroundCube|batching|bumpmap|clearcoat|cube|displacementmap|distance|emissivemap|envmap|equirect|gradientmap|iridescence|lightmap|lightprobes|lights_(physical|toon)|mesh(matcap|normal|physical|toon)|metalnessmap|morph|normalmap|points|roughnessmap|shadow|skin|specularmap|sprite|tonemapping|transmission)/;
+
+/** Removes shaders that no page uses from three.js, and blanks from the others. */
+const smallShaders = {
+  name: "small shaders",
+  setup(bundler) {
+    bundler.onLoad({ filter: /three[\\/]build[\\/]three\.module\.js$/ }, async ({ path }) => {
+      const text = await readFile(path, "utf8");
+      const names = new Map(
+        [...text.matchAll(/^\t(\w+): ([\w$]+),?$/gm)].map(([, name, variable]) => [variable, name]),
+      );
+      const contents = text.replaceAll(
+        /^((?:var|const) ([\w$]+) = )("(?:[^"\\]|\\.)*");$/gm,
+        (line, start, variable, shader) => {
+          const name = names.get(variable);
+          if (name === undefined) return line;
+          if (unusedShaders.test(name)) return `${start}"";`;
+          const short = shader
+            .replaceAll(/(\\n)(\\[nt])+/g, "$1")
+            .replaceAll("( ", "(")
+            .replaceAll(" )", ")")
+            .replaceAll(", ", ",")
+            .replaceAll(/ ([*<>=]=?) /g, "$1");
+          return `${start}${short};`;
+        },
+      );
+      return { contents };
+    });
+  },
+};
+
 /** Returns the text of esbuild's bundle of an entry, and the packages in it. */
 async function bundle(entry, modules = {}) {
   const { outputFiles, metafile } = await build({
@@ -51,7 +84,7 @@ async function bundle(entry, modules = {}) {
     format: "iife",
     legalComments: "inline",
     alias: modules,
-    plugins: [withoutMaps],
+    plugins: [withoutMaps, smallShaders],
     define: { "import.meta.url": '""' },
     external: ["module", "fs", "path", "url"],
     logOverride: { "empty-import-meta": "silent" },
@@ -61,7 +94,8 @@ async function bundle(entry, modules = {}) {
     .filter(([, { bytesInOutput }]) => bytesInOutput > 0)
     .map(([file]) => file.match(/^.*node_modules\/(@[^/]+\/)?[^/]+/)?.[0])
     .filter((folder) => folder !== undefined);
-  return { text: outputFiles[0].text, packages };
+  // The lines of a minified text are those of shaders.
+  return { text: outputFiles[0].text.replaceAll(/\n[ \t]+/g, "\n"), packages };
 }
 
 /** Returns a script element. No text in it can end the element. */

@@ -203,7 +203,7 @@ void add_compare(CLI::App& app, CompareOptions& options) {
   add_number(command, "--poses", options.extent.poses, 6, 1'000'000,
              "Poses for the indices, under each rule");
   add_number(command, "--problems", options.extent.problems, 10, 1'000'000,
-             "Recorded problems for the solvers");
+             "Recorded problems for the solvers, the same number from each rule");
   add_number(
       command, "--pairs", options.extent.pairs, 10, 1'000'000,
       "Pairs of tool and triangle for the narrow phases, of each relation: apart, overlapping, "

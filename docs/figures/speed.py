@@ -138,11 +138,8 @@ def sweep_table(rows):
         if row["solver"] == "active_set" and row["activation"] == "paper":
             kept.setdefault(row["index"], {})[row["triangles"]] = row
     sizes = sorted({size for by_size in kept.values() for size in by_size})
-    # Older records have no time of the exact test by itself.
-    stages = [stage for stage in ("collect_us", "exact_us", "query_us", "step_us") if any(stage in row for row in rows)]
-    names = {"collect_us": "candidates", "exact_us": "exact test", "query_us": "query", "step_us": "step"}
-    cell = lambda row: " / ".join(median(row, stage) for stage in stages) if row else "-"
-    return table(["index", *(f"{size:,} triangles, µs: {' / '.join(names[stage] for stage in stages)}" for size in sizes)],
+    cell = lambda row: f"{median(row, 'collect_us')} + {median(row, 'exact_us')}" if row else "-"
+    return table(["µs: candidates + exact test", *(f"{size:,} triangles" for size in sizes)],
                  [[f"`{index}`", *(cell(by_size.get(size)) for size in sizes)] for index, by_size in kept.items()])
 
 

@@ -11,11 +11,11 @@
 //     judge_path MESH PATH
 //
 // The judge of campaigns judges the path of an instrument, with independent kinematics and
-// distances. The verdict counts the cycles, and those that begin elsewhere than the last one ended
-// (jumps). It counts the cycles that come closer than margin - band, have the mesh in a body, or
-// break joint limits. It has the least distance, the path length of the tip, and the largest turn
-// of the jaw from its start [rad]. It also counts cycles near the surface that make less than half
-// of the desired motion (held).
+// distances. An open jaw is two bodies. The verdict counts the cycles, and those that begin
+// elsewhere than the last one ended (jumps). It counts the cycles that come closer than margin -
+// band, have the mesh in a body, or break joint limits. It has the least distance, the path length
+// of the tip, and the largest turn of the jaw from its start [rad]. It also counts cycles near the
+// surface that make less than half of the desired motion (held).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,6 +25,7 @@
 #include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -98,6 +99,22 @@ keepout::Pose base_of(const Json& head) {
   return base;
 }
 
+/// Opens the jaw, the last body, by an angle: then it is two bodies. [deg]
+void open_jaw(keepout::oracle::JudgedRobot& robot, double opening) {
+  if (opening == 0.0) return;
+  const keepout::oracle::JudgedBody jaw = robot.bodies.back();
+  robot.bodies.pop_back();
+  for (const double half : {-0.5, 0.5}) {
+    const double angle = half * opening * std::numbers::pi / 180.0;
+    const Vec3& end = jaw.points.back().position;
+    robot.bodies.push_back(jaw);
+    // The last joint turns about z.
+    robot.bodies.back().points.back().position =
+        Vec3(std::cos(angle) * end.x() - std::sin(angle) * end.y(),
+             std::sin(angle) * end.x() + std::cos(angle) * end.y(), end.z());
+  }
+}
+
 Json judged_path(const MeshPointer& mesh, std::istream& path) {
   const Json head = head_of(path);
   if (keepout::index_cache_file(*mesh, {}).stem().string() != head.at("digest")) {
@@ -109,6 +126,8 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
   const keepout::Instrument instrument = robot.make(base_of(head));
   const double tolerance =
       keepout::make_instrument_constraint(mesh, instrument, {.options = options}).tolerance();
+  keepout::oracle::JudgedRobot judged = robot.judged();
+  open_jaw(judged, head.value("opening", 0.0));
   const auto tree = std::make_shared<const keepout::oracle::TriangleTree>(mesh);
   const std::size_t joints = static_cast<std::size_t>(instrument.chain().size());
   std::optional<keepout::oracle::RobotJudge> judge;
@@ -131,7 +150,7 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
     const auto increment = numbers.begin() + static_cast<std::ptrdiff_t>(joints);
     const std::vector<double> from(numbers.begin(), increment);
     if (!judge) {
-      judge.emplace(keepout::oracle::JudgedScene{robot.judged(), base_of(head), {{tree}}},
+      judge.emplace(keepout::oracle::JudgedScene{judged, base_of(head), {{tree}}},
                     instrument.chain(), random, from, options, tolerance);
       tip = tip_now();
       first_way = jaw_now();

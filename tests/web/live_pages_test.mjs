@@ -14,6 +14,7 @@ import { execFileSync } from "node:child_process";
 import { readdirSync, readFileSync, renameSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, test } from "node:test";
+import { differing, linesOf, replayedPath, stepsText } from "./paths.mjs";
 import {
   assertAccessible,
   assertAlone,
@@ -208,33 +209,8 @@ async function rub(seconds = 4) {
   await desk.mouse.up();
 }
 
-/** Returns the numbers in the lines of a path. */
-const linesOf = ({ text }) =>
-  text
-    .split("\n")
-    .filter((line) => line !== "" && !line.startsWith("#"))
-    .map((line) => line.split(" ").map(Number));
-
 /** Runs the command in the head of a path. Returns the rows of STEPS.csv. */
-function replayed({ file, text }, mesh, rule) {
-  const line = text.split("\n").find((one) => one.startsWith("#   keepout replay "));
-  const words = line
-    .match(/'[^']*'|\S+/g)
-    .slice(2) // past "# keepout"
-    .map((word) => ({ THIS_FILE: file, RULE: rule })[word] ?? word);
-  words[1] = mesh;
-  run(keepout, ...words);
-  const [, ...rows] = readFileSync(join(folder, "steps.csv"), "utf8").trim().split("\n");
-  return rows.map((row) => row.split(","));
-}
-
-/** Returns the number of cycles in which the tool positions of path and replay are not bitwise identical. */
-function differing(lines, rows) {
-  assert.equal(rows.length, lines.length);
-  return lines.filter((line, i) =>
-    [0, 1, 2].some((axis) => !Object.is(line[3 + axis], Number(rows[i][2 + axis]))),
-  ).length;
-}
+const replayed = (path, mesh, rule) => replayedPath(keepout, folder, path, mesh, rule);
 
 test("a drag into the skull: limited, out of it, and the same as keepout replay", async () => {
   const begin = performance.now();
@@ -315,14 +291,7 @@ test("the same drag without a fixture goes in", firefoxLong, async () => {
   await desk.click("#again");
   await sleep(500);
   await rub(2);
-  const rows = linesOf(await savedPath());
-  // Writes the motions between the tips in the format of replay.
-  const steps = rows.slice(1).map((line, i) => {
-    const tip = rows[i].slice(3);
-    const motion = tip.map((value, axis) => line[3 + axis] - value);
-    return [i, "free", ...tip, ...motion, ...motion].join(",");
-  });
-  writeFileSync(join(folder, "free.csv"), `head\n${steps.join("\n")}\n`);
+  writeFileSync(join(folder, "free.csv"), stepsText(linesOf(await savedPath())));
   const verdict = judged("free.csv", "0");
   assert.ok(verdict.inside > 100, `${verdict.inside} motions end inside`);
   assert.ok(verdict.crossing > 0);
@@ -330,25 +299,6 @@ test("the same drag without a fixture goes in", firefoxLong, async () => {
 });
 
 test("a tip led by keys", () => ledByKeys("ArrowLeft", "#newtons", "0.00 N"));
-
-test(
-  "counterexamples: the paper's rule goes through, the certified one stays out",
-  firefoxLong,
-  async () => {
-    await desk.click("#fail");
-    await desk.waitForSelector("#failures[open] #examples button");
-    const examples = await desk.$$("#examples button");
-    assert.equal(examples.length, 3);
-    for (const example of examples) {
-      await example.click();
-      const captions = await desk.$$eval("#duel figcaption span", (all) =>
-        all.map((one) => one.textContent),
-      );
-      assert.deepEqual(captions, ["goes through the surface", "stays out"]);
-    }
-    await desk.click("#failures .close");
-  },
-);
 
 /** Returns a function that drops a file with these bytes on the page, by real input. */
 async function dropInput() {
@@ -462,8 +412,12 @@ test(
     desk = await openInstrument(large);
     await leadIn();
     assert.equal(await textOf(desk, "#status b"), "limited");
-    assert.match(await textOf(desk, "#status span"), /the surface is in the way/);
+    assert.match(
+      await textOf(desk, "#status span"),
+      /^The (shaft|wrist|jaw) touches the bone and stops: 0\.2\d mm of clearance remains\.$/,
+    );
     assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
+    assert.match(await textOf(desk, ".callout"), /^(shaft|wrist|jaw) 0\.2\d mm$/);
     assert.match(await textOf(desk, "#clearance"), /^0\.2\d mm$/);
     await desk.screenshot({ path: join(folder, "dragged.png") });
     await desk.mouse.up();
@@ -479,6 +433,55 @@ test(
     const stricter = path.text.replace(`"margin":${margin}`, `"margin":${margin + 0.3}`);
     writeFileSync(join(folder, "stricter.txt"), stricter);
     assert.ok(judged("stricter.txt").below > 0, "the judge sees nothing");
+
+    // The page opens the path again.
+    await (await desk.$("#file")).uploadFile(join(folder, path.file));
+    await assertReplayed();
+    writeFileSync(join(folder, "cut.txt"), path.text.slice(0, -30));
+    await (await desk.$("#file")).uploadFile(join(folder, "cut.txt"));
+    await says(desk, "#toast", "cut off");
+  },
+);
+
+test(
+  "keys choose the mode while the hand pushes: none goes in, certified does not",
+  firefoxLong,
+  async () => {
+    await desk.click("#again");
+    await sleep(500);
+    await leadIn(1.5);
+    await desk.keyboard.press("1");
+    await desk.waitForFunction(() => document.querySelector("#status b").textContent === "inside");
+    assert.match(await textOf(desk, "#status span"), /deep in the bone: nothing stops it/);
+    assert.equal(await desk.$eval(".callout", ({ className }) => className), "callout bad");
+    await desk.screenshot({ path: join(folder, "unguarded.png") });
+    await desk.mouse.up();
+    await desk.click("#again");
+    await desk.keyboard.press("2");
+    await leadIn(1.5);
+    await desk.waitForFunction(() => document.querySelector("#held").textContent === "by the jaw");
+    assert.match(await textOf(desk, "#status span"), /only the tip is guarded/);
+    await desk.mouse.up();
+    await desk.keyboard.press("3");
+    assert.ok(await desk.$eval("#rules input[value=certified]", (radio) => radio.checked));
+  },
+);
+
+test(
+  "the wheel pushes the hand only a little past the jaw, and the page says so",
+  firefoxLong,
+  async () => {
+    await desk.click("#again");
+    await sleep(500);
+    const { x, y } = await handAt(desk);
+    await desk.mouse.move(x, y);
+    await desk.mouse.down();
+    for (let i = 0; i < 40; ++i) await desk.mouse.wheel({ deltaY: -200 });
+    await sleep(2500);
+    const ahead = Number.parseFloat(await textOf(desk, "#hand-off"));
+    assert.ok(ahead < 25, `the hand is ${ahead} mm ahead of the jaw`);
+    if (ahead > 5) assert.match(await textOf(desk, "#whereabouts"), /The hand is behind the bone/);
+    await desk.mouse.up();
   },
 );
 

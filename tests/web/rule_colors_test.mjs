@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * Tests that readers with red-green color blindness can tell the colors of the rules apart, in light and dark:
+ * Tests that readers with red-green color blindness see the colors of the rules apart, in light and dark:
  *
  *   rule_colors_test.mjs CSS
  */
@@ -11,7 +11,7 @@ import { test } from "node:test";
 const css = readFileSync(process.argv[2], "utf8");
 const colors = [...css.matchAll(/--rule-([\w-]+): light-dark\((#\w{6}), (#\w{6})\)/g)];
 
-/** What is seen, approximately, as a matrix in linear RGB. */
+/** Approximate vision, as a matrix in linear RGB. */
 const views = {
   usual: [1, 0, 0, 0, 1, 0, 0, 0, 1],
   protanopia: [0.1124, 0.8876, 0, 0.1124, 0.8876, 0, 0.004, -0.004, 1],

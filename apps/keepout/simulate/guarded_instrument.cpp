@@ -57,10 +57,35 @@ Columns<RunTally> mode_columns(bool has_guides) {
 
 constexpr const char* columns_meaning =
     R"(close: cycles in which a body was closer than its certified clearance; an independent judge
-examines five poses of each. in mesh: of these, cycles in which the mesh reached into the body;
-deepest: the depth in mm, at most the radius. refused: cycles without a proved motion; limits:
+examines five poses of each. in mesh: of these, cycles in which the body reached into the mesh;
+deepest: the depth in mm; beside an open mesh at most the radius. refused: cycles without a proved motion; limits:
 cycles that broke a joint limit; guides, if any: cycles that left a guide by more than guaranteed.
 )";
+
+/// Returns the depth of the deepest point of a segment inside a closed surface, accurate to 0.01
+/// mm. Negative if no point of the segment is inside. [mm]
+double deepest(const oracle::SafetyOracle& surface, const oracle::Segment& segment) {
+  const auto depth_at = [&](double t) {
+    const Vec3 point = segment.from + t * (segment.to - segment.from);
+    const double distance = surface.distance(point);
+    return surface.inside(point).value_or(false) ? distance : -distance;
+  };
+  const double length = (segment.to - segment.from).norm();
+  double best = std::max(depth_at(0.0), depth_at(1.0));
+  // Along the segment the depth changes at most as fast as the place. So a part holds no point that
+  // is deeper than its middle by more than half of its length.
+  std::vector<std::array<double, 2>> parts{{0.0, 1.0}};
+  while (!parts.empty()) {
+    const auto [from, to] = parts.back();
+    parts.pop_back();
+    const double middle = 0.5 * (from + to), depth = depth_at(middle);
+    best = std::max(best, depth);
+    if (depth + 0.5 * (to - from) * length <= best + 0.01) continue;
+    parts.push_back({from, middle});
+    parts.push_back({middle, to});
+  }
+  return best;
+}
 
 /// Returns the cycles of a stroke in one mode, and the number of the worst cycle.
 Json run_json(const std::string& mode, const std::vector<Cycle>& cycles) {
@@ -164,8 +189,9 @@ class GuardedInstrument final : public SimulatedTool {
     cycle.is_breach = verdict.limits_broken;
     cycle.is_guide_left = verdict.is_guide_left;
     for (std::size_t b = 0; b < body_names.size(); ++b) {
-      cycle.clearances[b] = judge_->least()[b];
-      cycle.places[b] = judge_->oracle().axis(b).to;
+      const oracle::Segment axis = judge_->oracle().axis(b);
+      cycle.places[b] = axis.to;
+      cycle.clearances[b] = std::min(judge_->least()[b], clearance_inside(b, axis));
     }
     return cycle;
   }
@@ -247,6 +273,17 @@ class GuardedInstrument final : public SimulatedTool {
   }
 
  private:
+  /// Returns the negative depth of a body whose axis is inside the surface, in part or as a whole.
+  /// Infinite if the axis is outside, or the surface has no inside. [mm]
+  double clearance_inside(std::size_t body, const oracle::Segment& axis) const {
+    const double radius = joints_->instrument().bodies()[body].radius;
+    const oracle::SafetyOracle& surface = on_->scene.oracle();
+    const bool is_cut = judge_->least()[body] <= -radius;
+    if (!is_cut && !surface.inside(axis.to).value_or(false)) return Cycle::far;
+    const double depth = deepest(surface, axis);
+    return depth < 0.0 ? Cycle::far : -(radius + depth);
+  }
+
   const SimulateOptions& options_;
   double margin_;  // [mm]
   std::vector<Guide> guides_;

@@ -59,8 +59,8 @@ struct StrokeStart {
 /// The cycles in which a body was too close.
 struct BodyTally {
   std::size_t below = 0;    // closer than required
-  std::size_t in_mesh = 0;  // of these: cycles in which the mesh reached into the body
-  double deepest = 0.0;     // of these: the greatest depth, at most the body's radius [mm]
+  std::size_t in_mesh = 0;  // of these: cycles in which the body reached into the mesh
+  double deepest = 0.0;     // of these: the greatest depth [mm]
 
   void add(double clearance, double required);
 };

@@ -23,6 +23,7 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/index/query.h"
 #include "keepout/mesh/diagnostics.h"
 #include "keepout/mesh/load_mesh.h"
 #include "keepout/status.h"
@@ -141,6 +142,23 @@ val findings(const Anatomy& anatomy) {
   });
 }
 
+/// Returns true if the surface is between two positions, or touches the segment between them.
+bool is_between(const Anatomy& anatomy, double x, double y, double z, double u, double v,
+                double w) {
+  constexpr double touch = 0.01;  // [mm]
+  const Vec3 from(x, y, z);
+  const Vec3 way = Vec3(u, v, w) - from;
+  const double length = way.norm();
+  keepout::NearestTriangle nearest(*anatomy.mesh, *anatomy.index);
+  // No surface is nearer than the distance, so this advance crosses none.
+  for (double along = 0.0; along < length;) {
+    const double distance = nearest(from + (along / length) * way).closest.distance;
+    if (distance < touch) return true;
+    along += distance;
+  }
+  return false;
+}
+
 /// See make_tool().
 Tool* tool_on(Anatomy& anatomy, const val& settings) {
   return or_error([&] { return make_tool(anatomy, settings).release(); });
@@ -157,16 +175,14 @@ val drawn(const keepout::Guide& guide) {
 
 /// Returns the constant properties of a tool. They are the count of numbers of a position, the
 /// curvature allowance [mm], the period of a cycle [s], and names and radii of bodies [mm]. Also
-/// returns the link of the last body's end and its position in the link's frame, and the guides.
+/// returns the point that follows the hand, as a link and a position in its frame, and the guides.
 val facts(const Tool& tool) {
   const auto body = [](const keepout::Body& each) {
     return object("name", each.name, "radius", each.radius);
   };
-  const auto& ends = tool.bodies.back().points;
-  const keepout::LinkPoint end = ends.empty() ? keepout::LinkPoint{} : ends.back();
   return object("positions", tool.positions, "asked", tool.asked, "band", tool.band, "period",
-                tool.period, "bodies", list(tool.bodies, body), "link", end.link, "end",
-                list(end.position), "guides", list(tool.guides, drawn));
+                tool.period, "bodies", list(tool.bodies, body), "link", tool.end.link, "end",
+                list(tool.end.position), "guides", list(tool.guides, drawn));
 }
 
 /// Returns the numbers of the last cycle in their memory layout, as a view that is valid until the
@@ -195,6 +211,19 @@ val follow(Tool& tool, double x, double y, double z, double i, double j, double 
 val step(Tool& tool, double x, double y, double z, double u, double v, double w) {
   tool.step({x, y, z}, {u, v, w});
   return last(tool);
+}
+
+/// See Tool::contact(). Returns both points (6), or an empty list.
+val contact(Tool& tool, std::size_t body) {
+  const std::optional<Contact> found = tool.contact(body);
+  val numbers = val::array();
+  for (const Vec3& point :
+       found ? std::array{found->core, found->surface} : std::array<Vec3, 2>{}) {
+    for (const double number : point) {
+      if (found) numbers.call<void>("push", number);
+    }
+  }
+  return numbers;
 }
 
 /// Returns all planes of the last step of a tip, relative to the tip before it.
@@ -244,13 +273,15 @@ EMSCRIPTEN_BINDINGS(keepout) {
   class_<Anatomy>("Anatomy")
       .function("surface", &surface)
       .function("findings", &findings)
-      .function("clearance", &Anatomy::clearance);
+      .function("clearance", &Anatomy::clearance)
+      .function("isBetween", &is_between);
   class_<Tool>("Tool")
       .function("facts", &facts)
       .function("place", &place)
       .function("follow", &follow)
       .function("step", &step)
       .function("clearance", &Tool::clearance)
+      .function("contact", &contact)
       .function("planes", &planes);
   function("anatomyOfSurface", &anatomy_of_surface, allow_raw_pointers());
   function("anatomyOfFile", &anatomy_of_file, allow_raw_pointers());

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,12 @@ struct Cycle {
   double cores[6 * keepout::Instrument::most_bodies];  // both ends of each body, after the cycle
 };
 
+/// A point of a body's core, and the point of the surface that is nearest to it. [mm]
+struct Contact {
+  keepout::Vec3 core;
+  keepout::Vec3 surface;
+};
+
 /// A tool that follows a hand and that keepout constrains: the ball of a tip, or an instrument.
 struct Tool {
   virtual ~Tool() = default;
@@ -50,20 +57,28 @@ struct Tool {
   /// Runs one step: of a tip from a position by an increment, of an instrument by a twist of the
   /// flange, which is its linear and its angular part.
   virtual void step(const keepout::Vec3& first, const keepout::Vec3& second) = 0;
-  /// Returns the distance from the surface of a body to the mesh; NaN if it is unknown. [mm]
+  /// Returns the distance from the surface of a body to the mesh; NaN if it is unknown. It is below
+  /// 0 if the body intersects the mesh; then it is the depth, without a limit if the mesh is
+  /// watertight. For a body of an instrument it is accurate to 0.05 mm and a hundredth. [mm]
   virtual double clearance(std::size_t body) = 0;
+  /// Returns where a body is nearest to the surface, or deepest in it; empty if it is unknown.
+  virtual std::optional<Contact> contact(std::size_t) { return std::nullopt; }
 
   std::size_t positions = 3;  // numbers of a position
   std::size_t asked = 3;      // numbers of Cycle::asked
   double band = 0.0;          // curvature allowance [mm]
   double period = 0.001;      // of a cycle [s]
   std::vector<keepout::Body> bodies;
+  keepout::LinkPoint end;  // the point that follows the hand
   std::vector<keepout::Guide> guides;
   Cycle cycle = {};
   std::span<const keepout::HalfSpace>
       planes;  // of the last step of a tip, relative to the tip before it
   std::span<const std::uint32_t> active;  // numbers of the planes that limit its motion
 };
+
+/// Makes the instrument of a robot: see make_tool().
+std::unique_ptr<Tool> make_instrument(Anatomy& anatomy, const emscripten::val& settings);
 
 /// Makes a tool with the settings that src/engine/keepout.ts declares. With a port it is the
 /// instrument of a robot; without, it is the ball of a tip at the origin, with a rule. Throws

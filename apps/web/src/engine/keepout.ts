@@ -36,6 +36,8 @@ export interface Anatomy {
   surface(): { vertices: Float64Array; corners: Uint32Array };
   findings(): Findings;
   clearance(...place: Vec3): number;
+  /** Returns true if the surface is between two places (6 numbers). */
+  isBetween(...places: readonly number[]): boolean;
   delete(): void;
 }
 
@@ -66,10 +68,13 @@ export interface StatusWords {
 /** The ball of a tip, or a whole instrument. */
 export type Subject = "tip" | "instrument";
 
-/** The activation rule of a tip; with "none" the tip follows the hand anywhere. */
-export type Rule = "none" | "all_faces" | "paper" | "certified";
+/**
+ * The activation rule of a tip; with "none" the tip follows the hand anywhere. An instrument has
+ * "none", "tip_only", which guards a ball at the end of its jaw, and "certified".
+ */
+export type Rule = "none" | "all_faces" | "paper" | "certified" | "tip_only";
 
-/** Settings of a tool. A rule and both radii apply to a tip only. */
+/** Settings of a tool. The radius of a tool applies to a tip only. */
 export interface ToolSettings {
   readonly rule: Rule;
   /** Radius of the motion sphere: the longest motion of the tip in a cycle. [mm] */
@@ -82,6 +87,8 @@ export interface ToolSettings {
   readonly maxStep: number;
   /** Texts of guidance constraints, as `--guide` takes them. A tip has them only under a rule. */
   readonly guides: readonly string[];
+  /** The angle between the jaws, of an instrument only. [deg] */
+  readonly opening?: number;
 }
 
 /** The robot of an instrument, and its link 0: position, and rows of the rotation (12). */
@@ -120,7 +127,7 @@ export interface ToolFacts {
   readonly band: number; // [mm]
   readonly period: number; // [s]
   readonly bodies: readonly { readonly name: string; readonly radius: number }[];
-  /** The end of the last body: its link, and its position in the link's frame. [mm] */
+  /** The point that follows the hand: its link, and its position in the link's frame. [mm] */
   readonly link: number;
   readonly end: Vec3;
   readonly guides: readonly Guide[];
@@ -167,6 +174,8 @@ interface EngineTool {
   follow(...hand: readonly number[]): Float64Array;
   step(...asked: readonly number[]): Float64Array;
   clearance(body: number): number;
+  /** The point of a body's core that is nearest to the surface, and that point of the surface. */
+  contact(body: number): number[];
   planes(): Plane[];
   delete(): void;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Cycle, Frame, Tool, ToolSettings } from "../engine/keepout.ts";
+import type { Cycle, Frame, Tool, ToolSettings, Vec3 } from "../engine/keepout.ts";
 import { type PathFormat, PathRecord, pathFormat } from "./path_record.ts";
 
 /** The time in which the hand covers 63 % of a jump of the pointer. [cycles] */
@@ -22,9 +22,18 @@ export class ControlLoop {
   last: Cycle;
   hand: Frame;
   tool: Tool;
+  /** True if another loop runs the same cycles: then the path has a line for each cycle. */
+  isPaired = false;
+  /** If set, returns where a motion of a tip crosses the surface; such motions are counted. */
+  wall: ((from: Vec3, to: Vec3) => Vec3 | null) | null = null;
+  crossings = 0;
+  /** The number of times that the tool was placed. */
+  placed = 0;
+  crossedAt: Vec3 | null = null;
   private readonly format: PathFormat;
   private pointer: Frame | null = null;
-  private replay: { lines: Float64Array; next: number; differs: number } | null = null;
+  private replay: { lines: Float64Array; next: number; differs: number; isHeld: boolean } | null =
+    null;
 
   constructor(
     private readonly make: (settings: ToolSettings) => Tool,
@@ -55,7 +64,7 @@ export class ControlLoop {
     this.place(this.last.positions);
     // A replay restarts with the new settings.
     if (replay !== null) {
-      this.startReplay(replay.lines);
+      this.startReplay(replay.lines, replay.isHeld);
       return;
     }
     this.hand = hand;
@@ -68,6 +77,9 @@ export class ControlLoop {
     this.hand = this.last.flange;
     this.pointer = this.replay = null;
     this.record.clear();
+    ++this.placed;
+    this.crossings = 0;
+    this.crossedAt = null;
   }
 
   /** Sets where the pointer holds the hand; null: it has released the hand. Ends a replay. */
@@ -78,10 +90,13 @@ export class ControlLoop {
     this.pointer = pointer;
   }
 
-  /** Repeats a recorded path, from the tool's first position. (n, width), n > 0 */
-  startReplay(lines: Float64Array): void {
+  /**
+   * Repeats a recorded path, from the tool's first position. (n, width), n > 0. `isHeld`: true if the hand then
+   * stays where it is.
+   */
+  startReplay(lines: Float64Array, isHeld: boolean): void {
     this.place(this.format.start([...lines.subarray(0, this.format.width)]));
-    this.replay = { lines, next: 0, differs: -1 };
+    this.replay = { lines, next: 0, differs: -1, isHeld };
   }
 
   /**
@@ -102,16 +117,36 @@ export class ControlLoop {
       this.hand = between(this.hand, this.pointer ?? before.flange, 1 / handSmoothing);
       this.last = tool.follow(this.hand);
     }
-    const line = format.line(before, this.last);
-    this.record.add(line, before.status <= lastOk);
-    ++this.cycles;
-    if (this.last.held > 0) ++this.limited;
+    const line = this.count(before);
     if (replay === null) return null;
     const isSame = line.every((value, i) => Object.is(value, recorded?.[i]));
     if (!isSame && replay.differs < 0) replay.differs = replay.next;
     if (width * ++replay.next < replay.lines.length) return null;
     this.replay = null;
+    if (replay.isHeld) this.pointer = this.hand;
     return { cycles: replay.next, differs: replay.differs };
+  }
+
+  /** Runs one cycle with the hand of another loop. */
+  follow(hand: Frame): void {
+    const before = this.last;
+    this.hand = hand;
+    this.last = this.tool.follow(hand);
+    this.count(before);
+  }
+
+  /** Records and counts the last cycle. Returns its line. */
+  private count(before: Cycle): readonly number[] {
+    const line = this.format.line(before, this.last);
+    this.record.add(line, !this.isPaired && before.status <= lastOk);
+    ++this.cycles;
+    if (this.last.held > 0) ++this.limited;
+    const place = this.wall?.(before.flange.place, this.last.flange.place);
+    if (place) {
+      ++this.crossings;
+      this.crossedAt = place;
+    }
+    return line;
   }
 
   discard(): void {

@@ -22,13 +22,14 @@ export function runCounterexamples(
         Float64Array.from(example.vertices.flat()),
         Uint32Array.from(example.triangles.flat()),
       );
-      const ends = (["paper", "certified"] as const).map((rule): Vec3 => {
+      const ends = (["paper", "certified"] as const).map((rule) => {
         const { radius, tip, desired } = example;
         const settings = { rule, radius, toolRadius: 0, margin, maxStep: radius, guides: [] };
         const tool = new Tool(keepout, anatomy, settings, null);
         const { motion } = tool.step([...tip, ...desired]);
         tool.made.delete();
-        return tip.map((value, i) => value + (motion[i] as number)) as unknown as Vec3;
+        const place = tip.map((value, i) => value + (motion[i] as number)) as unknown as Vec3;
+        return { place, clearance: anatomy.clearance(...place) };
       });
       anatomy.delete();
       return { example, ends };

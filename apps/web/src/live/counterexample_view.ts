@@ -1,115 +1,157 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Counterexample, Vec3 } from "../engine/keepout.ts";
+import { Capsule } from "../page/capsule.ts";
 import { colorOf } from "../page/color_of.ts";
-import { make } from "../page/elements.ts";
 import { colors } from "./markers.ts";
-import { element } from "./page.ts";
+import { set } from "./page.ts";
+import { Panes } from "./panes.ts";
 import type { FromWorker } from "./protocol.ts";
+import { crossingMark } from "./second_tool.ts";
+import type { SideHead } from "./side_head.ts";
+import { crossing } from "./wall.ts";
 
 type Shown = Extract<FromWorker, { kind: "counterexamples" }>;
+type Trial = Shown["examples"][number];
 
-/**
- * The name of each counterexample, and why the rule of Li et al. (2020) fails (docs/activation.md).
- */
-const words: Readonly<Record<string, readonly [title: string, why: string]>> = {
-  CE2_boundary: [
-    "At a rim",
+/** Why the rule of Li et al. (2020) fails on each counterexample (docs/activation.md). */
+const reasons: Readonly<Record<string, string>> = {
+  CE2_boundary:
     "The tip is just beside the rim of an open surface. The edge that it is nearest to has no " +
-      "neighbor, so none of the conditions of Li et al. holds. Their rule adds no plane, and the motion goes through.",
-  ],
-  CE5_closed_octahedron: [
-    "In a closed solid",
+    "neighbor, so none of the conditions of Li et al. holds. Their rule adds no plane, and the motion goes through.",
+  CE5_closed_octahedron:
     "The nearest point of the triangle ahead lies on a ridge. Li et al.’s rule leaves the triangle to its " +
-      "neighbor there. The neighbor’s plane does not cover it: the tool ends inside.",
-  ],
-  CE6c_larger_saddle: [
-    "Over a saddle",
+    "neighbor there. The neighbor’s plane does not cover it: the tool ends inside.",
+  CE6c_larger_saddle:
     "The commanded motion is free, and the certified rule returns it unchanged. Li et al.’s rule adds the " +
-      "plane of a triangle that is not in the way. The motion along that plane meets another triangle.",
-  ],
+    "plane of a triangle that is not in the way. The motion along that plane meets another triangle.",
 };
+/** The colors of a counterexample's triangles on the free side and on the forbidden side. */
+const faces = { free: colors.bone, forbidden: "#8f4a4e" } as const;
 
 /** Duration of the motion, and of the rest after it. [ms] */
-const way = 1600;
-const rest = 1400;
+const way = 2400;
+const rest = 1600;
 
 /**
- * The dialog that plays counterexamples side by side: on the left under the rule of Li et al.
- * (2020), on the right under the certified rule.
+ * Plays counterexamples in the two panes of a container: in the first one under the rule of Li et al. (2020), in the
+ * second one under the certified rule. One camera sees both; a drag turns it.
  */
 export class CounterexampleView {
-  private readonly dialog = element("failures", HTMLDialogElement);
-  private readonly duel = element("duel", HTMLElement);
-  private readonly figures = [...this.duel.querySelectorAll("figure")];
+  isOpen = false;
+  private readonly panes: Panes;
+  private readonly camera = new three.PerspectiveCamera(30, 1, 0.01, 1000);
   private renderer: three.WebGLRenderer | null = null;
+  private controls: OrbitControls | null = null;
   private stages: Stage[] = [];
-  private shown: Shown["examples"] = [];
-  private margin = 0;
-  private begun = 0;
+  private shown: Shown | null = null;
+  private isPaused = false;
+  private clock = { at: 0, played: 0 };
 
-  /** Opens the dialog, at first with the first counterexample. */
-  open({ examples, margin }: Shown): void {
-    if (this.dialog.open) return;
-    this.shown = examples;
-    this.margin = margin;
-    this.dialog.showModal();
-    if (this.renderer === null) {
-      this.renderer = new three.WebGLRenderer({ antialias: true, alpha: true });
-      this.duel.prepend(this.renderer.domElement);
-    }
-    element("examples", HTMLElement).replaceChildren(
-      ...examples.map(({ example }, i) => {
-        const title = words[example.name]?.[0] ?? example.name;
-        const button = make("button", { type: "button" }, title);
-        button.onclick = () => this.choose(i);
-        return button;
-      }),
-    );
-    this.choose(0);
-    requestAnimationFrame(() => this.play());
+  constructor(
+    private readonly container: HTMLElement,
+    private readonly heads: readonly SideHead[],
+  ) {
+    this.panes = new Panes(container);
+    this.panes.count = 2;
   }
 
-  private choose(number: number): void {
-    const chosen = this.shown[number];
-    if (chosen === undefined) return;
-    const buttons = element("examples", HTMLElement).querySelectorAll("button");
-    for (const [i, button] of buttons.entries()) {
-      button.setAttribute("aria-pressed", String(i === number));
-    }
-    const tools = ["--rule-paper", "--rule-certified"].map(colorOf);
-    this.stages = chosen.ends.map((end, i) => new Stage(chosen.example, end, tools[i] as string));
-    this.stages.forEach((stage, i) => {
-      const caption = this.figures[i]?.querySelector("span");
-      if (!caption) return;
-      caption.className = stage.goesThrough ? "bad" : "good";
-      caption.textContent = stage.goesThrough ? "goes through the surface" : "stays out";
+  open(shown: Shown): void {
+    this.shown = shown;
+    const renderer = this.prepare();
+    renderer.domElement.hidden = false;
+    if (!this.isOpen) requestAnimationFrame(() => this.play());
+    this.isOpen = true;
+  }
+
+  close(): void {
+    this.isOpen = false;
+    if (this.renderer) this.renderer.domElement.hidden = true;
+  }
+
+  pause(isPaused: boolean): void {
+    this.isPaused = isPaused;
+  }
+
+  /** Shows the counterexample of this name. */
+  choose(name: string): void {
+    const trial = this.shown?.examples.find(({ example }) => example.name === name);
+    if (trial === undefined || this.shown === null) return;
+    const { example, ends } = trial;
+    this.stages = ends.map(({ place }, i) => {
+      const color = colorOf(i === 0 ? "--rule-paper" : "--rule-certified");
+      return new Stage(example, place, color);
     });
-    element("why", HTMLElement).textContent =
-      `${words[chosen.example.name]?.[1] ?? ""} The margin is ${this.margin}, and ` +
-      `the commanded motion is ${Math.hypot(...chosen.example.desired).toFixed(2)} long.`;
-    this.begun = performance.now();
+    this.stages.forEach((stage, i) => {
+      const { clearance } = ends[i] as Trial["ends"][number];
+      const isIn = stage.crossedAt !== null;
+      const words = isIn ? "goes through the surface" : "stays out";
+      this.heads[i]?.show(words, isIn ? "stopped" : "free", clearance, 3);
+    });
+    const asked = Math.hypot(...example.desired).toFixed(2);
+    set(
+      "duel-words",
+      `${reasons[name] ?? ""} One step: the hand asks for ${asked} mm (dashed), the margin is ` +
+        `${this.shown.margin} mm. The forbidden side is red.`,
+    );
+    const [first] = this.stages;
+    if (first !== undefined) this.aim(example, first, (ends[0] as Trial["ends"][number]).place);
+    this.clock = { at: performance.now(), played: 0 };
+  }
+
+  /** Looks at the place where the motion crosses a triangle, from its side, with the free side above. */
+  private aim({ tip, desired }: Counterexample, { crossedAt, normal }: Stage, end: Vec3): void {
+    const target = vector(crossedAt ?? tip);
+    const { camera } = this;
+    camera.up.copy(normal);
+    const side = vector(end).sub(vector(tip)).cross(normal).normalize();
+    const length = Math.max(5 * vector(end).distanceTo(target), 0.35 * vector(desired).length());
+    camera.position.copy(
+      side
+        .addScaledVector(normal, 0.4)
+        .normalize()
+        .multiplyScalar(2 * length),
+    );
+    camera.position.add(target);
+    const renderer = this.prepare();
+    this.controls?.dispose(); // they keep the first direction that is up
+    this.controls = new OrbitControls(camera, renderer.domElement);
+    this.controls.target.copy(target);
+    this.controls.update();
+  }
+
+  private prepare(): three.WebGLRenderer {
+    if (this.renderer === null) {
+      this.renderer = new three.WebGLRenderer({ antialias: true, alpha: true });
+      this.renderer.setScissorTest(true);
+      this.renderer.domElement.id = "trials";
+      this.container.prepend(this.renderer.domElement);
+    }
+    return this.renderer;
   }
 
   private play(): void {
-    const { renderer } = this;
-    if (!this.dialog.open || renderer === null) return;
-    const now = performance.now() - this.begun;
+    if (!this.isOpen) return;
+    const renderer = this.prepare();
+    const now = performance.now();
+    if (!this.isPaused) this.clock.played += now - this.clock.at;
+    this.clock.at = now;
     const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    const share = isStill ? 1 : Math.min((now % (way + rest)) / way, 1);
-    const box = this.duel.getBoundingClientRect();
+    const share = isStill ? 1 : Math.min((this.clock.played % (way + rest)) / way, 1);
+    const { clientWidth, clientHeight } = this.container;
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    renderer.setSize(box.width, box.height);
-    renderer.setScissorTest(true);
-    this.stages.forEach((stage, i) => {
-      const figure = this.figures[i];
-      if (figure === undefined) return;
-      const { left, bottom, width, height } = figure.getBoundingClientRect();
-      const area = [left - box.left, box.bottom - bottom, width, height] as const;
+    renderer.setSize(clientWidth, clientHeight);
+    this.panes.areas().forEach(({ x, y, width, height }, i) => {
+      const area = [x, clientHeight - y - height, width, height] as const;
       renderer.setViewport(...area);
       renderer.setScissor(...area);
-      stage.arrange(share * share * (3 - 2 * share), isStill ? 0 : now / 1000, width / height);
-      renderer.render(stage.scene, stage.camera);
+      this.camera.aspect = width / height;
+      this.camera.updateProjectionMatrix();
+      const stage = this.stages[i];
+      if (stage === undefined) return;
+      stage.arrange(share * share * (3 - 2 * share), this.camera);
+      renderer.render(stage.scene, this.camera);
     });
     requestAnimationFrame(() => this.play());
   }
@@ -118,93 +160,86 @@ export class CounterexampleView {
 /** One counterexample under one rule. */
 class Stage {
   readonly scene = new three.Scene();
-  readonly camera = new three.PerspectiveCamera(30, 1, 0.01, 1000);
-  /** True if the motion of the tip crosses a triangle. */
-  readonly goesThrough: boolean;
-  private readonly tip: three.Mesh;
-  private readonly begin: three.Vector3;
-  private readonly end: three.Vector3;
-  private readonly reach: number;
+  /** The place where the motion of the tip crosses a triangle, or null. */
+  readonly crossedAt: Vec3 | null;
+  /** The normal of that triangle, into the free side. */
+  readonly normal = new three.Vector3(0, 0, 1);
+  private readonly tip = new Capsule();
+  private readonly lights = new three.Group();
+  private readonly radius: number;
 
-  constructor(example: Counterexample, end: Vec3, tool: string) {
-    this.begin = vector(example.tip);
-    this.end = vector(end);
-    const wanted = this.begin.clone().add(vector(example.desired));
-    // The motion fills the view; the mesh may be larger.
-    this.reach = this.begin.distanceTo(wanted);
+  constructor(
+    example: Counterexample,
+    private readonly end: Vec3,
+    tool: string,
+    private readonly begin = example.tip,
+  ) {
+    const from = vector(begin);
+    const wanted = from.clone().add(vector(example.desired));
+    this.radius = from.distanceTo(wanted) * 0.02;
+    const corners = example.triangles.flat();
+    const vertices = example.vertices.flat();
+    this.crossedAt = crossing({ vertices, corners }, begin, end);
+    const crossed = example.triangles.find((one) =>
+      crossing({ vertices, corners: one }, begin, end),
+    );
+    if (crossed !== undefined) {
+      const [a, b, c] = crossed.map((corner) => vector(example.vertices[corner] as Vec3));
+      new three.Triangle(a, b, c).getNormal(this.normal);
+    }
 
     const geometry = new three.BufferGeometry().setFromPoints(example.vertices.map(vector));
-    geometry.setIndex(example.triangles.flat());
+    geometry.setIndex(corners);
     const flat = geometry.toNonIndexed();
     flat.computeVertexNormals();
-    const bone = new three.Mesh(
-      flat,
-      new three.MeshStandardMaterial({
-        color: colors.bone,
-        roughness: 0.8,
-        side: three.DoubleSide,
-        transparent: true,
-        opacity: 0.82,
-      }),
-    );
-    const rims = new three.LineSegments(
-      new three.WireframeGeometry(flat),
-      new three.LineBasicMaterial({ color: "#7d6f5c" }),
-    );
-
-    const ball = this.reach * 0.035;
-    this.tip = new three.Mesh(
-      new three.SphereGeometry(ball, 32, 16),
-      new three.MeshStandardMaterial({ color: tool, roughness: 0.35 }),
-    );
-    const asked = new three.Line(
-      new three.BufferGeometry().setFromPoints([this.begin, wanted]),
-      new three.LineDashedMaterial({ color: colors.hand, dashSize: ball, gapSize: ball * 0.7 }),
-    );
-    asked.computeLineDistances();
-    const gone = new three.Line(
-      new three.BufferGeometry().setFromPoints([this.begin, this.end]),
-      new three.LineBasicMaterial({ color: tool }),
-    );
-    for (const line of [asked, gone]) {
-      line.material.depthTest = false;
-      line.renderOrder = 1;
+    // Seen from the forbidden side, a triangle has another color.
+    for (const [color, side] of [
+      [faces.free, three.FrontSide],
+      [faces.forbidden, three.BackSide],
+    ] as const) {
+      this.scene.add(new three.Mesh(flat, new three.MeshLambertMaterial({ color, side })));
     }
-    const key = new three.DirectionalLight("#ffffff", 2.2);
-    key.position.set(2, -1, 3);
-    this.scene.add(bone, rims, this.tip, asked, gone, key, new three.AmbientLight("#ffffff", 1.3));
+    const rims = new three.LineBasicMaterial({ color: "#5d5142" });
+    this.scene.add(new three.LineSegments(new three.WireframeGeometry(flat), rims));
 
-    const way = this.end.clone().sub(this.begin);
-    const caster = new three.Raycaster(this.begin, way.clone().normalize(), 0, way.length());
-    const crossings = caster.intersectObject(bone);
-    this.goesThrough = crossings.length > 0;
-    for (const { point } of crossings) {
-      const mark = new three.Mesh(
-        new three.SphereGeometry(ball * 0.7, 24, 12),
-        new three.MeshBasicMaterial({ color: colors.hand, depthTest: false, transparent: true }),
-      );
-      mark.position.copy(point);
-      mark.renderOrder = 2;
+    const dash = { dashSize: this.radius, gapSize: 0.7 * this.radius };
+    this.addLine(from, wanted, new three.LineDashedMaterial({ color: colors.hand, ...dash }));
+    this.addLine(from, vector(end), new three.LineBasicMaterial({ color: tool }));
+    this.tip.paint(tool);
+    this.scene.add(...this.tip.parts);
+    if (this.crossedAt !== null) {
+      const mark = crossingMark();
+      mark.position.copy(vector(this.crossedAt));
+      mark.scale.setScalar(0.6 * this.radius);
       this.scene.add(mark);
     }
+    const key = new three.DirectionalLight("#ffffff", 2.6);
+    key.position.set(-1.6, 1, 0.3);
+    this.lights.add(key, new three.HemisphereLight("#ffffff", "#6b6259", 0.7));
+    this.scene.add(this.lights);
   }
 
-  /** Shows the motion at the fraction `share`. The view turns with the seconds. */
-  arrange(share: number, seconds: number, aspect: number): void {
-    this.tip.position.lerpVectors(this.begin, this.end, share);
-    const middle = this.begin.clone().lerp(this.end, 0.7);
-    const turn = 0.5 * Math.sin(0.4 * seconds) + 0.6;
-    const side = this.end
-      .clone()
-      .sub(this.begin)
-      .cross(new three.Vector3(0.2, 0.3, 1))
-      .normalize();
-    const eye = side.applyAxisAngle(new three.Vector3(0, 0, 1), turn).setZ(0.45);
-    this.camera.up.set(0, 0, 1);
-    this.camera.position.copy(middle).addScaledVector(eye, this.reach * 2.6);
-    this.camera.aspect = aspect;
-    this.camera.lookAt(middle);
-    this.camera.updateProjectionMatrix();
+  /** Shows the motion at the fraction `share`. The lights are fixed to the view. */
+  arrange(share: number, camera: three.Camera): void {
+    const place = vector(this.begin).lerp(vector(this.end), share);
+    this.tip.place(place, place, this.radius);
+    this.lights.quaternion.copy(camera.quaternion);
+  }
+
+  /** Draws a line, faintly where a triangle hides it. */
+  private addLine(
+    from: three.Vector3,
+    to: three.Vector3,
+    material: three.LineBasicMaterial | three.LineDashedMaterial,
+  ): void {
+    const geometry = new three.BufferGeometry().setFromPoints([from, to]);
+    const hidden = material.clone();
+    hidden.depthTest = false;
+    hidden.transparent = true;
+    hidden.opacity = 0.25;
+    for (const one of [hidden, material]) {
+      this.scene.add(new three.Line(geometry, one).computeLineDistances());
+    }
   }
 }
 

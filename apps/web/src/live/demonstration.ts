@@ -12,7 +12,7 @@ export interface Course {
   readonly across: Vec3;
   /** The distance of the tool from the surface at the start. */
   readonly distance: number;
-  /** How far the hand moves beyond the contact, and to each side. */
+  /** The distances that the hand moves beyond the contact, and to each side. */
   readonly depth: number;
   readonly width: number;
 }

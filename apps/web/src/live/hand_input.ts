@@ -48,6 +48,7 @@ const turns: Readonly<Record<string, Vec3>> = {
 export class HandInput {
   private hand: Frame = { place: [0, 0, 0], turn: unturned };
   private pointer: number | null = null;
+  private pane = 0; // in which the pointer has grabbed the hand
   private grip: { dx: number; dy: number } = { dx: 0, dy: 0 };
   private finger = { x: 0, y: 0 }; // position of a second one [px]
   private readonly fingers = new TwoFingers();
@@ -106,9 +107,11 @@ export class HandInput {
     }
     const isSecond = event.pointerType === "touch" && this.fingers.count > 1;
     if (event.button !== 0 || isSecond) return;
+    const pane = this.scene.panes.under(event);
     const { place } = this.hand;
-    const { dx, dy } = this.offset(event);
-    const pixels = Math.hypot(dx * 0.5 * this.view.clientWidth, dy * 0.5 * this.view.clientHeight);
+    const { dx, dy } = this.offset(event, pane);
+    const { width, height } = this.scene.panes.area();
+    const pixels = Math.hypot(dx * 0.5 * width, dy * 0.5 * height);
     const near = event.pointerType === "mouse" ? reach.mouse : reach.touch;
     if (pixels > Math.max(near, this.scene.ballRadius(place))) return;
     event.stopPropagation();
@@ -117,6 +120,7 @@ export class HandInput {
     this.view.setPointerCapture(event.pointerId);
     this.view.classList.add("dragging");
     this.pointer = event.pointerId;
+    this.pane = pane;
     this.grip = { dx, dy };
     this.go({});
   }
@@ -131,7 +135,7 @@ export class HandInput {
     event.stopPropagation();
     if (pinch !== null && !this.canTurn) {
       this.scene.pinch(this.hand.place, pinch);
-      if (event.pointerId === this.pointer) this.grip = this.offset(event);
+      if (event.pointerId === this.pointer) this.grip = this.offset(event, this.pane);
       return;
     }
     if (event.pointerId !== this.pointer) {
@@ -140,14 +144,14 @@ export class HandInput {
       this.turnBy([pixelTurn * (event.clientY - y), pixelTurn * (event.clientX - x), 0]);
       return;
     }
-    const at = this.inView(event);
+    const at = this.inView(event, this.pane);
     const { dx, dy } = this.grip;
     this.go({ place: this.scene.unproject(at.x + dx, at.y + dy, this.hand.place) });
   }
 
   /** Returns the way from a pointer to the hand, in the view. */
-  private offset(event: PointerEvent): { dx: number; dy: number } {
-    const at = this.inView(event);
+  private offset(event: PointerEvent, pane: number): { dx: number; dy: number } {
+    const at = this.inView(event, pane);
     const hand = this.scene.project(this.hand.place);
     return { dx: hand.x - at.x, dy: hand.y - at.y };
   }
@@ -228,13 +232,9 @@ export class HandInput {
     this.hold(this.hand);
   }
 
-  /** Returns a position in the view, from -1 to 1 in both directions. */
-  inView(event: MouseEvent): { x: number; y: number } {
-    const box = this.view.getBoundingClientRect();
-    return {
-      x: (2 * (event.clientX - box.left)) / box.width - 1,
-      y: 1 - (2 * (event.clientY - box.top)) / box.height,
-    };
+  /** Returns a position in a pane of the view, from -1 to 1 in both directions. */
+  inView(event: MouseEvent, pane = this.scene.panes.under(event)): { x: number; y: number } {
+    return this.scene.panes.within(event, pane);
   }
 }
 

@@ -1,11 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The page of `keepout live`, for the ball of a tip or for an instrument: connects its parts. */
-import type { Findings, Frame, Rule, ToolFacts, ToolSettings, Vec3 } from "../engine/keepout.ts";
+import type {
+  Findings,
+  Frame,
+  Rule,
+  StatusWords,
+  ToolFacts,
+  ToolSettings,
+  Vec3,
+} from "../engine/keepout.ts";
 import { colorOf } from "../page/color_of.ts";
 import { grouped, saveFile } from "../page/elements.ts";
+import { tissueOf, tissues } from "../page/tissue.ts";
+import { anatomyWords } from "./anatomy_words.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
-import { CounterexampleView } from "./counterexample_view.ts";
 import { type Course, Demonstration } from "./demonstration.ts";
+import { Duel } from "./duel.ts";
 import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
 import { type GuideKind, GuidePanel } from "./guide_panel.ts";
@@ -22,16 +32,14 @@ import {
   set,
   toast,
 } from "./page.ts";
-import {
-  instrumentPathText,
-  type PathHeader,
-  parsePath,
-  pathText,
-  replayCommand,
-} from "./path_file.ts";
+import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file.ts";
 import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
+import { makeWorker } from "./rival.ts";
+import { addRobotControls } from "./robot_controls.ts";
+import { firstPositions, parseRobotPath, robotPathText } from "./robot_path.ts";
+import { RobotScene } from "./robot_scene.ts";
 import { SettingsPanel } from "./settings_panel.ts";
 import type { StartLine } from "./start_place.ts";
 import { ToolScene } from "./tool_scene.ts";
@@ -41,8 +49,10 @@ import { addViewKeys } from "./view_keys.ts";
 const largestTool = 0.03;
 /** Below this extent a mesh may be in meters: MeshFindings::meters_below. [mm] */
 const metersBelow = 3;
-/** The rules of the keys 1 to 4. */
-const rules: readonly Rule[] = ["none", "all_faces", "paper", "certified"];
+/** The rules of the keys 1, 2, 3 and 4. */
+const rules: readonly Rule[] = isTip
+  ? ["none", "all_faces", "paper", "certified"]
+  : ["none", "tip_only", "certified"];
 
 // The page has the elements for both tools.
 for (const part of document.querySelectorAll<HTMLElement>("[data-tool]")) {
@@ -57,6 +67,7 @@ let settings: ToolSettings = {
   margin: page.margin,
   maxStep: page.max_step,
   guides: page.guides,
+  ...(isTip ? {} : { opening: 30 }),
 };
 /** The tool radius that the command or the user has chosen. [mm] */
 let chosenRadius = settings.toolRadius;
@@ -67,13 +78,18 @@ let triangles = 0;
 let facts: ToolFacts | null = null;
 let state: State | null = null;
 let readings: Readings | null = null;
+/** The mode with two scenes; null for an instrument. */
+let duel: Duel | null = null;
+let statusWords: readonly StatusWords[] = [];
 /** A path to replay once its mesh is loaded. */
 let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = null;
+/** The port of an instrument: that of the page, or that of an opened path. */
+let portBase: readonly number[] | null = null;
 
 // The worker starts before the scene exists.
-const worker = new Worker(
-  URL.createObjectURL(new Blob([embeddedText("worker")], { type: "text/javascript" })),
-);
+const worker = makeWorker();
+/** Computes the shading of the anatomy beside the control loop. */
+let shader: Worker | null = null;
 worker.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
 worker.onerror = () => toast("keepout itself has failed in this page: reload it.");
 
@@ -81,6 +97,10 @@ const subject = isTip ? "tip" : "instrument";
 tell({ kind: "start", engine: embeddedText("engine"), subject });
 const meshes = new MeshList(load);
 const grip = element("grip", HTMLElement);
+/** The hand in the other pane of the mode with two scenes. */
+const otherGrip = grip.cloneNode() as HTMLElement;
+otherGrip.id = "other-grip";
+grip.after(otherGrip);
 page.meshes.forEach((mesh, i) => {
   const source = { kind: "embedded", mesh, data: embeddedText(`mesh-${i}`) } as const;
   meshes.offer("In this page", { source, command: mesh.command_name });
@@ -89,7 +109,8 @@ meshes.choose();
 
 const view = element("view", HTMLElement);
 const room = () => roomBetweenCards(view);
-const scene = made(() => new ToolScene(view, room, placeGrip, isTip));
+const robotScene = isTip ? null : made(() => new RobotScene(view, room, placeGrip));
+const scene = robotScene ?? made(() => new ToolScene(view, room, placeGrip, true));
 reportGraphics(element("picture", HTMLCanvasElement));
 const find = element("find", HTMLButtonElement);
 find.onclick = () => state !== null && scene.lookAt(state.hand.place);
@@ -101,13 +122,14 @@ const input = new HandInput(scene, view, !isTip, (hand) => {
 
 addViewKeys(view, scene.motion);
 
-function tell(message: ToWorker): void {
-  worker.postMessage(message);
+function tell(message: ToWorker, transfer: Transferable[] = []): void {
+  worker.postMessage(message, transfer);
 }
 
 const handlers: Handlers<FromWorker> = {
   ready({ statuses, shapes }) {
     readings = new Readings(statuses);
+    statusWords = statuses;
     // A generated mesh has no port for an instrument.
     for (const name of isTip ? shapes : []) {
       meshes.offer("Generated", { source: { kind: "shape", name }, command: name });
@@ -115,15 +137,21 @@ const handlers: Handlers<FromWorker> = {
   },
   surface(surface) {
     input.drop();
-    scene.show(surface);
+    showSurface(surface);
     chart.clear();
     state = null;
     shown = awaited;
     if (shown !== null) meshes.select(shown);
     document.title = `${surface.name} – keepout live`;
-    set("hint", `drag me into ${wordFor(surface.name)}`);
+    set("hint", `drag me into ${anatomyWords(surface.name).surface}`);
     triangles = surface.corners.length / 3;
+    readings?.name(surface.name);
     if (isTip && pendingPath === null) fitTool();
+  },
+  shaded({ shading }) {
+    scene.refine(shading);
+    shader?.terminate();
+    shader = null;
   },
   findings({ findings }) {
     showFindings(findings, triangles, meshOf(shown)?.warnings ?? []);
@@ -133,6 +161,7 @@ const handlers: Handlers<FromWorker> = {
     endLoading();
     begin();
     play();
+    duel?.loaded();
   },
   tool(tool) {
     facts = tool.facts;
@@ -141,6 +170,7 @@ const handlers: Handlers<FromWorker> = {
   state: (message) => show(message.state),
   path: ({ use, lines, settings: madeWith }) => takePath(use, lines, madeWith),
   replayed({ cycles, differs }) {
+    if (duel?.ended()) return;
     const what = isTip ? "the tool" : "the joints";
     toast(
       differs < 0
@@ -149,7 +179,7 @@ const handlers: Handlers<FromWorker> = {
             `on ${what} went another way than on record.`,
     );
   },
-  counterexamples: (message) => failures?.open(message),
+  counterexamples: (message) => duel?.openTrials(message),
   settings(message) {
     settings = message.settings;
     showSettings();
@@ -164,6 +194,19 @@ const handlers: Handlers<FromWorker> = {
   },
 };
 
+/** Shows an anatomy at once; another worker computes how it takes the light. */
+function showSurface(surface: Parameters<Handlers<FromWorker>["surface"]>[0]): void {
+  const isShape = awaited?.source.kind === "shape";
+  const tissue = isShape ? tissues.shape : tissueOf(surface.name);
+  scene.show(surface, tissue);
+  shader?.terminate();
+  shader = makeWorker();
+  shader.onmessage = ({ data }: MessageEvent<FromWorker>) => handled(handlers, data);
+  const { positions, corners } = surface;
+  const message: ToWorker = { kind: "shade", positions, corners, creases: tissue.creases };
+  shader.postMessage(message);
+}
+
 function endLoading(): void {
   awaited = null;
   element("loading", HTMLElement).hidden = true;
@@ -171,8 +214,11 @@ function endLoading(): void {
 
 /** Places an instrument where the command has placed it, and a tip beside the anatomy. */
 function begin(): void {
-  const positions = meshOf(shown)?.start?.positions;
-  if (positions !== undefined) tell({ kind: "place", positions });
+  const start = meshOf(shown)?.start;
+  const isOpened = start?.base.join() !== portBase?.join();
+  if (isOpened && pendingPath !== null && facts !== null) {
+    tell({ kind: "place", positions: firstPositions(pendingPath.lines, facts) });
+  } else if (start !== undefined) tell({ kind: "place", positions: start.positions });
   else startOn(scene.linesBeside());
 }
 
@@ -220,6 +266,7 @@ function show(now: State): void {
   scene.update(now);
   chart.add(now.time, now.handClearance, Math.min(...now.clearances));
   readings?.show(now, settings, facts, scene.frames);
+  duel?.show(now, statusWords);
 }
 
 // The first seconds.
@@ -260,14 +307,14 @@ function courseOf({ flange, cores, clearances }: State): Course {
 }
 
 function showLesson(phase: Parameters<ConstructorParameters<typeof Demonstration>[3]>[0]): void {
-  const word = wordFor(shown === null ? "" : nameOf(shown));
+  const word = anatomyWords(shown === null ? "" : nameOf(shown)).surface;
   const words = {
     approach: "The hand (red) moves, and the tool follows it.",
     press: `The hand goes into ${word}. The tool stops ${settings.margin} mm before it.`,
     slide: "The tool slides along the surface.",
     back: "The hand comes out again.",
   };
-  const yours = isTip ? `drag the red ring into ${word}.` : "drag the jaw.";
+  const yours = isTip ? `drag the red ring into ${word}.` : "drag the jaws.";
   set(lesson, phase === null ? `Your turn: ${yours}` : words[phase]);
   lesson.hidden = false;
   if (phase === null) grip.classList.add("new");
@@ -280,18 +327,13 @@ function endDemonstration(): void {
   lesson.hidden = true;
 }
 
-/** Returns what the visitor drags the tool into. */
-function wordFor(mesh: string): string {
-  const [, word] = /(brain|liver|aneurysm|airway)/.exec(mesh) ?? [];
-  if (word !== undefined) return `the ${word}`;
-  return /skull|femur|bone/.test(mesh) ? "the bone" : "it";
-}
-
 /** Puts the ring around the hand. */
 function placeGrip(): void {
   if (state === null) return;
   const { place } = state.hand;
   grip.style.transform = scene.shift(place);
+  otherGrip.style.transform = scene.shift(place, 0);
+  otherGrip.hidden = grip.hidden;
   const at = scene.project(place);
   const open = scene.openView();
   find.hidden = grip.hidden || (at.z < 1 && Math.abs(at.x) <= open.x + 0.02 && Math.abs(at.y) <= 1);
@@ -320,16 +362,18 @@ function load(choice: Choice): void {
     settings = { ...settings, guides: guides.forAnother(settings.guides) };
     showSettings();
   }
-  const base = meshOf(choice)?.start?.base;
-  const port = page.robot !== undefined && base ? { robot: page.robot, base } : null;
+  portBase = pendingPath?.header?.base ?? meshOf(choice)?.start?.base ?? null;
+  const port = page.robot !== undefined && portBase ? { robot: page.robot, base: portBase } : null;
   tell({ kind: "load", source: choice.source, settings, port });
+  duel?.loading(choice);
 }
 
 async function openFile(file: File): Promise<void> {
   if (/\.(txt|csv)$/i.test(file.name)) {
     if (isReading()) return;
     try {
-      pendingPath = parsePath(await file.text());
+      const text = await file.text();
+      pendingPath = isTip ? parsePath(text) : parseRobotPath(text, settings);
     } catch (error) {
       toast(`${file.name}: ${(error as Error).message}`);
       return;
@@ -338,6 +382,10 @@ async function openFile(file: File): Promise<void> {
     return;
   }
   pendingPath = null;
+  if (!isTip) {
+    toast("An instrument needs a port, which the command places: keepout live MESH --robot psm.");
+    return;
+  }
   load({
     source: {
       kind: "file",
@@ -355,17 +403,18 @@ async function openFile(file: File): Promise<void> {
  */
 function adopt(header: PathHeader | null): void {
   if (header !== null) {
-    const isShown = header.mesh === shown?.command;
-    const choice = isShown ? undefined : meshes.called(header.mesh);
-    if (!isShown && choice === undefined) {
+    const choice = header.mesh === shown?.command ? shown : meshes.called(header.mesh);
+    const isOther = header.base !== undefined && meshOf(choice ?? null)?.digest !== header.digest;
+    if (choice === undefined || choice === null || isOther) {
       pendingPath = null;
-      toast(`This path is over ${header.mesh}, which is not in this page: open that file first.`);
+      const place = isTip ? "open that file first" : "make a page with it";
+      toast(`This path is over ${header.mesh}, which is not in this page: ${place}.`);
       return;
     }
     settings = header.settings;
     showSettings();
     tell({ kind: "settings", settings });
-    if (choice !== undefined) {
+    if (choice !== shown || header.base?.join() !== portBase?.join()) {
       load(choice); // it is replayed after loading
       return;
     }
@@ -375,7 +424,7 @@ function adopt(header: PathHeader | null): void {
 
 function replay(lines: Float64Array): void {
   input.drop();
-  tell({ kind: "replay", lines });
+  tell({ kind: "replay", lines, isHeld: false });
 }
 
 /** Replays the opened path, if there is one. */
@@ -391,12 +440,11 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
     return;
   }
   const { keepout, robot } = page;
-  const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_");
+  const both = duel?.isOn ? `-${madeWith.rule}` : "";
+  const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_") + both;
   const mesh = meshOf(shown);
-  if (robot !== undefined && mesh !== undefined) {
-    const { margin, maxStep, guides } = madeWith;
-    const made = { keepout, robot, margin, maxStep, guides };
-    const text = instrumentPathText(made, mesh, facts, lines);
+  if (robot !== undefined && mesh !== undefined && portBase !== null) {
+    const text = robotPathText({ keepout, robot }, madeWith, mesh, portBase, facts, lines);
     saveFile(`keepout-path-${robot}-${name}.txt`, text, "text/plain");
     toast(`${grouped(lines.length / (2 * facts.positions + 6))} cycles saved.`);
     return;
@@ -429,16 +477,15 @@ function showSettings(): void {
   panel.show(settings);
   guides.show(settings);
   chart.setMargin(settings.margin);
+  scene.setMargin(settings.margin, settings.rule !== "none");
   showColors();
 }
 
 /** Shows the tool in the color of its rule. */
 function showColors(): void {
-  document.documentElement.style.setProperty(
-    "--tool",
-    `var(--rule-${settings.rule.replaceAll("_", "-")})`,
-  );
+  document.documentElement.style.setProperty("--tool", `var(--rule-${settings.rule})`);
   scene.paintTool(colorOf("--tool"));
+  duel?.paint();
 }
 
 function change(part: Partial<ToolSettings>): void {
@@ -450,28 +497,51 @@ function change(part: Partial<ToolSettings>): void {
 
 element("again", HTMLButtonElement).onclick = () => {
   input.drop();
-  begin();
+  const base = meshOf(shown)?.start?.base;
+  if (base !== undefined && base.join() !== portBase?.join() && shown !== null) load(shown);
+  else begin();
 };
 for (const use of ["save", "replay"] as const) {
   element(use, HTMLButtonElement).onclick = () => tell({ kind: "ask for path", use });
 }
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showColors);
 document.addEventListener("visibilitychange", () => {
-  tell({ kind: "pause", paused: document.hidden });
+  tell({ kind: "pause", paused: document.hidden || duel?.isStill === true });
 });
-if (!isTip) {
+takeFiles((file) => void openFile(file));
+// The keys choose a rule, also while the pointer drags the hand.
+document.addEventListener("keydown", (event) => {
+  const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
+  const rule = rules[Number(event.key) - 1];
+  if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
+  if (duel?.isOn) duel.chooseRule(rule);
+  else change({ rule });
+});
+if (robotScene !== null) {
+  addRobotControls(robotScene);
   view.ariaLabel =
     "The anatomy and the instrument, with the hand in red. Arrow keys lead its jaw across the view, " +
     "Page Up and Page Down into it and out of it; A, D, W, S, Q and E turn it; with Shift slowly; " +
     "Escape releases it. I, J, K and L turn the view, plus and minus zoom.";
 }
-const failures = isTip ? addTipControls() : null;
+duel = isTip ? addTipControls() : null;
 showSettings();
 
-/** Adds files, double-clicks and counterexamples, which the page of an instrument does not have. */
-function addTipControls(): CounterexampleView {
-  takeFiles((file) => void openFile(file));
-  element("fail", HTMLButtonElement).onclick = () => tell({ kind: "ask for counterexamples" });
+/** Adds double-clicks and the mode with two scenes, which the page of an instrument does not have. */
+function addTipControls(): Duel {
+  const two = new Duel({
+    scene,
+    tell,
+    change,
+    load,
+    settings: () => settings,
+    drop: () => input.drop(),
+    shown: () => shown,
+    isLoading: () => awaited !== null,
+    sample: (name) => meshes.sample(name),
+    savePath: (lines, madeWith) => takePath("save", lines, madeWith),
+  });
+  element("fail", HTMLButtonElement).onclick = () => two.playStroke();
 
   // A double-click on the anatomy places the tool there.
   view.addEventListener("dblclick", (event) => {
@@ -482,13 +552,5 @@ function addTipControls(): CounterexampleView {
     startOn([line]);
   });
 
-  // The keys choose a rule, also while the pointer drags the hand.
-  document.addEventListener("keydown", (event) => {
-    const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
-    const rule = rules[Number(event.key) - 1];
-    if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
-    change({ rule });
-  });
-
-  return new CounterexampleView();
+  return two;
 }

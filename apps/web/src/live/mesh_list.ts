@@ -54,4 +54,10 @@ export class MeshList {
   called(command: string): Choice | undefined {
     return this.choices.find((choice) => choice.command === command);
   }
+
+  /** Returns a sample mesh in the page, which may come from its file, or a generated mesh. */
+  sample(name: string): Choice | undefined {
+    const isIt = (choice: Choice) => meshOf(choice)?.name === `${name}.stl`;
+    return this.called(name) ?? this.choices.find(isIt);
+  }
 }

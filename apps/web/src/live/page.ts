@@ -42,8 +42,8 @@ export function set(where: string | Element | null, text: string): void {
   if (place && place.textContent !== text) place.textContent = text;
 }
 
-export const millimetres = (length: number): string =>
-  `${length.toFixed(2).replace("-", "\u2212")} mm`;
+export const millimetres = (length: number, digits = 2): string =>
+  `${length.toFixed(digits).replace("-", "\u2212")} mm`;
 
 /**
  * Returns the fraction of the view's width between the columns of cards; on a phone they are below

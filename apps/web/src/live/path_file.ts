@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import type { Rule, ToolFacts, ToolSettings } from "../engine/keepout.ts";
-import type { EmbeddedMesh } from "./protocol.ts";
+import type { Rule, ToolSettings } from "../engine/keepout.ts";
 
-/** The settings of a path of a tip, in its file as JSON, after "# path: ". */
+/** The settings of a path. In the file of a tip they are JSON, after "# path: ". */
 export interface PathHeader {
   readonly keepout: string;
   /** As for `keepout replay`: a file, or the name of a sample mesh. */
   readonly mesh: string;
   readonly settings: ToolSettings;
+  /** The digest of the mesh if it is known, and the port; of an instrument only. */
+  readonly digest?: string | undefined;
+  readonly base?: readonly number[];
 }
 
-const mark = "# path: ";
+/** Stands before the header of a path. */
+export const mark = "# path: ";
 const decimal = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
 const rules: readonly string[] = ["none", "all_faces", "paper", "certified"] satisfies Rule[];
 
@@ -32,25 +35,8 @@ export function pathText(header: PathHeader, lines: Float64Array): string {
   ].join("\n");
 }
 
-/**
- * Returns the path of an instrument; its header contains the settings. Numbers keep all their bits.
- */
-export function instrumentPathText(
-  made: Pick<ToolSettings, "margin" | "maxStep" | "guides"> & { keepout: string; robot: string },
-  { command_name, digest, start }: EmbeddedMesh,
-  { positions: joints, band, period }: ToolFacts,
-  lines: Float64Array,
-): string {
-  const header = { ...made, mesh: command_name, digest, base: start?.base, band, period };
-  return [
-    "# A path of keepout live --robot, a line for each cycle of a millisecond: where the joints were [rad,",
-    `# mm] (${joints}), by how much they went (${joints}), and what was asked of the flange: how it should move [mm]`,
-    "# (3) and turn [rad] (3). A cycle like the one before is left out.",
-    ...headerAndRows(header, lines, 2 * joints + 6),
-  ].join("\n");
-}
-
-function headerAndRows(header: object, lines: Float64Array, width: number): string[] {
+/** Returns the lines of a path: its header as JSON, and its numbers in rows. */
+export function headerAndRows(header: object, lines: Float64Array, width: number): string[] {
   const rows = [mark + JSON.stringify(header)];
   for (let i = 0; i < lines.length; i += width) {
     rows.push([...lines.subarray(i, i + width)].map(numberText).join(" "));

@@ -7,6 +7,7 @@ import type {
   Frame,
   Plane,
   Port,
+  Rule,
   StatusWords,
   Subject,
   ToolFacts,
@@ -15,7 +16,9 @@ import type {
 } from "../engine/keepout.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
 import type { PackedSurface } from "../page/embedded_surface.ts";
+import type { Shading } from "../page/shading.ts";
 import type { CycleClock } from "./cycle_clock.ts";
+import type { Surroundings } from "./robot_surroundings.ts";
 import type { StartLine } from "./start_place.ts";
 
 /** A mesh that `keepout live` has put into the page: see apps/keepout/live. */
@@ -52,6 +55,13 @@ export type ToWorker =
       readonly port: Port | null;
     }
   | { readonly kind: "settings"; readonly settings: ToolSettings }
+  /** Computes how a surface takes the light; needs no engine. See page/shading.ts. */
+  | {
+      readonly kind: "shade";
+      readonly positions: Float32Array;
+      readonly corners: Uint32Array;
+      readonly creases: boolean;
+    }
   /** Places the tip or the joints; starts a new path. */
   | { readonly kind: "place"; readonly positions: readonly number[] }
   /** Places a tip on one of these lines, at a distance from the anatomy: see startPlace(). [mm] */
@@ -63,8 +73,14 @@ export type ToWorker =
     }
   /** The hand; null: it is released, and the spring pulls it to the tool. */
   | { readonly kind: "hand"; readonly hand: Frame | null }
-  /** Repeats a recorded path: see path_record.ts. */
-  | { readonly kind: "replay"; readonly lines: Float64Array }
+  /** Repeats a recorded path: see path_record.ts. `isHeld`: true if the hand stays at its end. */
+  | { readonly kind: "replay"; readonly lines: Float64Array; readonly isHeld: boolean }
+  /** Sends each cycle to a follower that listens to this port, and has this rule; null: to none. */
+  | { readonly kind: "lead"; readonly port: MessagePort | null; readonly rule: Rule }
+  /** Gives the follower another rule; the path starts anew on both sides. */
+  | { readonly kind: "rule of the follower"; readonly rule: Rule }
+  /** Runs the cycles that arrive at this port. */
+  | { readonly kind: "follow"; readonly port: MessagePort }
   | { readonly kind: "ask for path"; readonly use: "save" | "replay" }
   | { readonly kind: "ask for counterexamples" }
   /** The simulation pauses while the page is hidden. */
@@ -92,13 +108,23 @@ export interface State extends Cycle, Pick<CycleClock, "lost" | "stepTime" | "ra
    * Distance of each body's surface from the mesh; for a tip below 0 inside, NaN if unknown. [mm]
    */
   readonly clearances: readonly number[];
-  /** The same for a ball at the hand, with the radius of the last body. [mm] */
+  /**
+   * The same for a ball at the hand, with the radius of the last body. It is below 0 as well if the
+   * surface is between an instrument and its hand. [mm]
+   */
   readonly handClearance: number;
+  /** The surroundings of an instrument; null for a tip. */
+  readonly surroundings: Surroundings | null;
   /** The planes that limit the motion of a tip. */
   readonly planes: readonly Plane[];
   /** The number of cycles since the anatomy was loaded, and of those that were limited. */
   readonly cycles: number;
   readonly limited: number;
+  /** Motions of a tip through an open surface since it was placed, and where; beside another tool only. */
+  readonly crossings: number;
+  /** The number of times that the tool was placed. */
+  readonly placed: number;
+  readonly crossedAt: Vec3 | null;
 }
 
 export type FromWorker =
@@ -108,6 +134,7 @@ export type FromWorker =
       readonly statuses: readonly StatusWords[];
     }
   | ({ readonly kind: "surface"; readonly name: string } & CenteredSurface)
+  | { readonly kind: "shaded"; readonly shading: Shading }
   | { readonly kind: "findings"; readonly findings: Findings }
   /** The index is built: a tool can be placed. */
   | { readonly kind: "guarded" }
@@ -127,9 +154,12 @@ export type FromWorker =
       readonly margin: number;
       /**
        * `ends`: the ends of a step under the rule of Li et al. (2020), and under the certified
-       * rule.
+       * rule, and their distances from the surface.
        */
-      readonly examples: readonly { example: Counterexample; ends: readonly Vec3[] }[];
+      readonly examples: readonly {
+        example: Counterexample;
+        ends: readonly { place: Vec3; clearance: number }[];
+      }[];
     }
   /** The settings that stay in force when others were rejected. */
   | { readonly kind: "settings"; readonly settings: ToolSettings }

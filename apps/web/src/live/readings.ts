@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { MathUtils, Quaternion } from "three";
-import { type StatusWords, spring, type ToolFacts, type ToolSettings } from "../engine/keepout.ts";
+import {
+  type Rule,
+  type StatusWords,
+  spring,
+  type ToolFacts,
+  type ToolSettings,
+} from "../engine/keepout.ts";
 import { grouped, make } from "../page/elements.ts";
+import { type AnatomyWords, anatomyWords } from "./anatomy_words.ts";
 import { element, isTip, millimetres, set } from "./page.ts";
 import type { State } from "./protocol.ts";
+import { reachedBody } from "./robot_surroundings.ts";
+import { robotStatusShown, whereabouts } from "./robot_words.ts";
 import { statusShown } from "./status_words.ts";
-
-/**
- * The number of the limited body: the nearest to the surface while one of its rows is active; else
- * -1.
- */
-export const heldBody = ({ held, nearest, byMesh, guides }: State): number =>
-  held > 0 && (byMesh || guides === 0) ? nearest : -1;
 
 /** The card with keepout's readings. The page of each tool has some of the figures. */
 export class Readings {
@@ -19,14 +21,21 @@ export class Readings {
   private readonly figure = element("clearance", HTMLElement);
   private readonly bodies = new Map<string, HTMLElement>();
   private spokenAt = 0;
+  private words: AnatomyWords = anatomyWords("");
   private frames = { at: performance.now(), count: 0 };
 
   constructor(private readonly statuses: readonly StatusWords[]) {}
 
+  /** Sets the name of the anatomy, for sentences. */
+  name(mesh: string): void {
+    this.words = anatomyWords(mesh);
+  }
+
   /** `frames`: the number of frames since the beginning. */
   show(state: State, settings: ToolSettings, facts: ToolFacts, frames: number): void {
     const isGuarded = settings.rule !== "none";
-    this.showStatus(state, isGuarded);
+    this.showStatus(state, settings.rule, facts);
+    set("whereabouts", whereabouts(state, settings.rule, this.words));
     this.showClearances(state, facts);
     this.showGuides(state, facts);
     const newtons = Math.hypot(...state.force);
@@ -51,9 +60,11 @@ export class Readings {
   }
 
   /** Shows the outcome of the last cycle, in a chip and in words. */
-  private showStatus(state: State, isGuarded: boolean): void {
+  private showStatus(state: State, rule: Rule, facts: ToolFacts): void {
     const name = this.statuses[state.status]?.name ?? "unknown";
-    const { chip, sentence, mood } = statusShown(name, state, isGuarded);
+    const { chip, sentence, mood } = isTip
+      ? statusShown(name, state, rule !== "none")
+      : robotStatusShown(name, state, facts, rule, this.words);
     this.status.className = mood;
     set(this.status.querySelector("b"), chip);
     set(this.status.querySelector("span"), sentence);
@@ -84,14 +95,16 @@ export class Readings {
       return;
     }
     set("clearance-words", `from the ${bodies[clearances.indexOf(least)]?.name} to the surface`);
-    const held = heldBody(state);
+    const held = state.held > 0 ? reachedBody(state, clearances) : -1;
     const nothing = state.guides > 0 ? "by a guide" : "nothing";
     set("held", held < 0 ? nothing : `by the ${bodies[held]?.name}`);
-    bodies.forEach(({ name }, i) => {
+    // Both jaws have one row.
+    for (const name of new Set(bodies.map((body) => body.name))) {
+      const of = clearances.filter((_, i) => bodies[i]?.name === name);
       const row = this.rowOf(name);
-      set(row, millimetres(clearances[i] as number));
-      row.className = i === held ? "held" : "";
-    });
+      set(row, millimetres(Math.min(...of)));
+      row.className = name === bodies[held]?.name ? "held" : "";
+    }
   }
 
   /** Returns the row with the clearance of a body. */

@@ -2,10 +2,16 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Vec3 } from "../engine/keepout.ts";
+import { anatomyMaterial, paintTissue } from "../page/anatomy_material.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
-import { makeGraphics, surfaceGeometry } from "../page/graphics.ts";
+import { makeGraphics, setShading, surfaceGeometry } from "../page/graphics.ts";
+import { PictureQuality } from "../page/picture_quality.ts";
+import type { Shading } from "../page/shading.ts";
 import { StillPicture } from "../page/still_picture.ts";
-import { colors, Spring, Trail } from "./markers.ts";
+import { type Tissue, tissues } from "../page/tissue.ts";
+import { ToolShade } from "../page/tool_shade.ts";
+import { Spring, Trail } from "./markers.ts";
+import { type Area, Panes } from "./panes.ts";
 import type { State } from "./protocol.ts";
 import type { Pinch } from "./two_fingers.ts";
 import { ViewMotion } from "./view_motion.ts";
@@ -13,20 +19,24 @@ import { ViewMotion } from "./view_motion.ts";
 /** The anatomy with the hand and a tool, which a derived class draws. */
 export abstract class Scene {
   readonly camera = new three.PerspectiveCamera(32, 1, 0.1, 10_000);
+  /** The parts of the view, all seen by the same camera; the tool is in the last one. */
+  readonly panes: Panes;
+  /** Drawn in the first of two panes, instead of the moving parts. */
+  protected beside: three.Scene | null = null;
   private readonly renderer: three.WebGLRenderer;
   protected readonly controls: OrbitControls;
   /** Moves the view by keys and by two fingers. */
   readonly motion: ViewMotion;
   private readonly still: StillPicture;
-  protected readonly anatomy: three.Mesh<three.BufferGeometry, three.MeshLambertMaterial>;
+  protected readonly anatomy: three.Mesh<three.BufferGeometry, three.ShaderMaterial>;
   protected readonly moving = new three.Scene();
   protected readonly spring = new Spring();
   protected readonly trail = new Trail();
   /** The displayed state; null: no tool yet. */
   private moment: State | null = null;
   private readonly lit: three.Group[] = [];
-  /** The most pixels drawn per pixel of the screen, along a side. */
-  private readonly finest: number;
+  protected readonly shade = new ToolShade();
+  private readonly quality: PictureQuality;
   protected corners = new Uint32Array();
   private origin = new three.Vector3();
   protected size = 100; // of the anatomy's box: its diagonal [mm]
@@ -46,17 +56,17 @@ export abstract class Scene {
     // The still picture smooths its own edges.
     const { renderer, isSlow } = makeGraphics(false);
     this.renderer = renderer;
-    this.finest = isSlow ? 0.6 : 1;
+    this.quality = new PictureQuality(isSlow ? 1 : 0);
     this.renderer.domElement.id = "picture";
     container.prepend(this.renderer.domElement);
+    this.panes = new Panes(container);
     this.camera.up.set(0, 0, 1);
 
     const light = new three.Scene();
-    const material = new three.MeshLambertMaterial({ color: colors.bone, side: three.DoubleSide });
-    this.anatomy = new three.Mesh(new three.BufferGeometry(), material);
+    this.anatomy = new three.Mesh(new three.BufferGeometry(), anatomyMaterial(tissues.shape, null));
     this.anatomy.frustumCulled = false;
-    light.add(this.anatomy, this.lights());
-    this.still = new StillPicture(light, this.camera, isSlow ? 0 : 4);
+    light.add(this.anatomy);
+    this.still = new StillPicture(light, this.camera, 0, this.shade);
 
     this.moving.add(this.lights(), this.spring.line, this.trail.line);
     this.moving.visible = false;
@@ -75,7 +85,8 @@ export abstract class Scene {
   }
 
   /** Shows another anatomy from one side, in the size of the view. */
-  show({ positions, corners, origin, size }: CenteredSurface): void {
+  show({ positions, corners, origin, size }: CenteredSurface, tissue: Tissue): void {
+    paintTissue(this.anatomy.material, tissue);
     this.anatomy.geometry.dispose();
     this.anatomy.geometry = surfaceGeometry(positions, corners);
     this.corners = corners;
@@ -93,9 +104,16 @@ export abstract class Scene {
     this.resize();
   }
 
+  /** Refines the shading of the shown anatomy. */
+  refine(shading: Shading): void {
+    setShading(this.anatomy.geometry, shading);
+    this.outdate();
+  }
+
   /** Shows this state from now on. */
   update(moment: State): void {
     const { place } = moment.flange;
+    if (moment.placed !== this.moment?.placed) this.trail.clear();
     if (this.moment?.flange.place.some((value, i) => value !== place[i])) {
       this.trail.add(this.inside(place));
     }
@@ -122,6 +140,9 @@ export abstract class Scene {
 
   /** Returns half the width and height of the open part, in those of the view. */
   openView(): { x: number; y: number } {
+    // With two panes no card covers the view; at the top of each pane are its readings.
+    if (this.panes.count === 2)
+      return { x: 0.9, y: Math.max(1 - 130 / this.panes.area().height, 0.4) };
     return { x: this.room(), y: Math.max(1 - 60 / this.container.clientHeight, 0.3) };
   }
 
@@ -143,7 +164,7 @@ export abstract class Scene {
   ballRadius(place: Vec3): number {
     const depth = this.inside(place).distanceTo(this.camera.position);
     const halfHeight = depth * Math.tan((0.5 * this.camera.fov * Math.PI) / 180);
-    return (0.5 * this.container.clientHeight * this.toolRadius) / halfHeight;
+    return (0.5 * this.panes.area().height * this.toolRadius) / halfHeight;
   }
 
   /** Returns the position in the view, from -1 to 1 in both directions, and the depth. */
@@ -151,11 +172,24 @@ export abstract class Scene {
     return this.inside(place).project(this.camera);
   }
 
-  /** Like project(), but as a CSS translation from the upper left. */
-  shift(place: Vec3): string {
+  /** Like project(), but as a CSS translation from the upper left of the view, in one of its panes. */
+  shift(place: Vec3, pane = this.panes.count - 1): string {
     const { x, y } = this.project(place);
-    const { clientWidth, clientHeight } = this.container;
-    return `translate(${0.5 * (1 + x) * clientWidth}px, ${0.5 * (1 - y) * clientHeight}px)`;
+    const { x: left, y: top, width, height } = this.panes.area(pane);
+    return `translate(${left + 0.5 * (1 + x) * width}px, ${top + 0.5 * (1 - y) * height}px)`;
+  }
+
+  /** Looks at a place from a direction, and from so far that a length fits into a pane. [mm] */
+  lookFrom(place: Vec3, direction: Vec3, length: number): void {
+    const halfAngle = (0.5 * this.camera.fov * Math.PI) / 180;
+    const distance = length / (2 * Math.tan(halfAngle) * Math.min(1, this.camera.aspect));
+    this.controls.target.copy(this.inside(place));
+    this.camera.position
+      .set(...direction)
+      .normalize()
+      .multiplyScalar(distance)
+      .add(this.controls.target);
+    this.controls.update();
   }
 
   /** Returns the position under a point of the view, at the depth of another position. */
@@ -176,9 +210,12 @@ export abstract class Scene {
   redraw(): void {
     if (this.isDue) return;
     this.isDue = true;
-    requestAnimationFrame(() => {
+    requestAnimationFrame((begin) => {
       this.isDue = false;
       this.draw();
+      requestAnimationFrame((end) => {
+        if (this.quality.add(end - begin)) this.resize();
+      });
     });
   }
 
@@ -199,10 +236,23 @@ export abstract class Scene {
     this.fitDepths();
     for (const lights of this.lit) lights.quaternion.copy(this.camera.quaternion);
     if (this.moment !== null) this.arrange(this.moment);
-    this.still.draw(this.renderer);
-    this.renderer.render(this.moving, this.camera);
+    const areas = this.panes.areas();
+    areas.forEach((area, i) => {
+      this.choose(area);
+      this.still.draw(this.renderer);
+      const moving = i < areas.length - 1 ? this.beside : this.moving;
+      if (moving !== null) this.renderer.render(moving, this.camera);
+    });
     ++this.drawn;
     this.onDraw();
+  }
+
+  /** Draws from now on into this part of the view only. */
+  private choose({ x, y, width, height }: Area): void {
+    const part = [x, this.container.clientHeight - y - height, width, height] as const;
+    this.renderer.setViewport(...part);
+    this.renderer.setScissor(...part);
+    this.renderer.setScissorTest(true);
   }
 
   /** Sets the range of visible depths, so that it holds the anatomy and a tool beside it. */
@@ -217,14 +267,17 @@ export abstract class Scene {
     this.still.outdate();
   }
 
-  private resize(): void {
+  protected resize(): void {
     const { clientWidth: width, clientHeight: height } = this.container;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(
-      Math.min(window.devicePixelRatio, 2, this.finest * window.devicePixelRatio),
-    );
+    const { name, scale, samples, shade } = this.quality.quality;
+    this.container.dataset.picture = name;
+    const pane = this.panes.area();
+    // The shade of one tool would show on the anatomy of both.
+    this.still.adjust(samples, shade && this.panes.count === 1);
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2, scale * devicePixelRatio));
     this.renderer.setSize(width, height);
-    this.camera.aspect = width / height;
+    this.camera.aspect = pane.width / pane.height;
     this.camera.updateProjectionMatrix();
     if (this.moment !== null) this.keepInSight(this.inside(this.moment.flange.place));
     this.outdate();

@@ -10,6 +10,7 @@ export class SettingsPanel {
       ["tool-radius", "toolRadius"],
       ["margin", "margin"],
       ["radius", "radius"],
+      ["opening", "opening"],
     ] as const
   )
     .filter(([id]) => document.getElementById(id))
@@ -29,12 +30,14 @@ export class SettingsPanel {
     for (const radio of this.radios) radio.checked = radio.value === settings.rule;
     for (const { slider, key } of this.sliders) {
       // The page's initial value may be beyond the range of the slider.
-      slider.min = String(Math.min(Number(slider.min), settings[key]));
-      slider.max = String(Math.max(Number(slider.max), settings[key]));
-      slider.value = String(settings[key]);
-      slider.ariaValueText = `${settings[key]} mm`;
+      const value = settings[key] ?? 0;
+      slider.min = String(Math.min(Number(slider.min), value));
+      slider.max = String(Math.max(Number(slider.max), value));
+      slider.value = String(value);
+      const text = key === "opening" ? `${value}°` : `${value} mm`;
+      slider.ariaValueText = text;
       const output = slider.parentElement?.querySelector("output");
-      if (output) output.textContent = `${settings[key]} mm`;
+      if (output) output.textContent = text;
     }
   }
 }

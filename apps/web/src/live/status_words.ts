@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { State } from "./protocol.ts";
 
-/** What a status means for the user of the page. The names are those of docs/safety.md. */
+/** The meaning of a status for the user of the page. The names are those of docs/safety.md. */
 const words: Readonly<Record<string, string>> = {
   free: "the tool follows the hand",
   recovering: "the tool was closer than its margin, and moves away",

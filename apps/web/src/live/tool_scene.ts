@@ -3,12 +3,15 @@ import * as three from "three";
 import type { ToolFacts, Vec3 } from "../engine/keepout.ts";
 import { Capsule } from "../page/capsule.ts";
 import type { CenteredSurface } from "../page/centered_surface.ts";
+import { colorOf } from "../page/color_of.ts";
+import type { Tissue } from "../page/tissue.ts";
 import type { GuideKind } from "./guide_panel.ts";
 import { GuideShapes } from "./guide_shapes.ts";
+import { coloredWithin, MarginView } from "./margin_view.ts";
 import { colors, sheet } from "./markers.ts";
 import type { State } from "./protocol.ts";
-import { heldBody } from "./readings.ts";
 import { Scene } from "./scene.ts";
+import type { SecondTool } from "./second_tool.ts";
 import type { StartLine } from "./start_place.ts";
 
 /** The largest number of drawn active planes. */
@@ -26,24 +29,26 @@ const gripRadius = 4;
 
 /**
  * The anatomy with a tool, the commanded place of its last body, and the planes that limit the
- * motion of a tip. A tip is a tool of one body, a ball; an instrument passes through a port.
+ * motion of a tip. A tip is a tool of one body, a ball. RobotScene draws an instrument.
  */
 export class ToolScene extends Scene {
-  private bodies: Capsule[] = [];
-  private radii: readonly number[] = [];
-  private wanted = new Capsule();
+  protected bodies: Capsule[] = [];
+  protected radii: readonly number[] = [];
+  protected wanted = new Capsule();
   private readonly planes = Array.from({ length: mostPlanes }, () => sheet(colors.plane));
-  private readonly guides = new GuideShapes();
+  protected readonly guides = new GuideShapes();
   private readonly edges = new three.LineSegments(
     new three.BufferGeometry(),
     new three.LineBasicMaterial({ color: colors.plane, depthTest: false, transparent: true }),
   );
-  private readonly port = new three.Mesh(
-    new three.TorusGeometry(9, 1.6, 12, 40),
-    new three.MeshStandardMaterial({ color: colors.steel, roughness: 0.5 }),
-  );
-  private toolColor = "";
-  /** True until the view is turned to the jaw of an instrument. */
+  private readonly margin: MarginView;
+  private guard = { margin: 0, isGuarded: false };
+  protected toolColor = "";
+  protected alarm = "";
+  /** The names of the bodies; none for a tip. */
+  private names: readonly string[] = [];
+  private second: SecondTool | null = null;
+  /** True until the first view of an anatomy is chosen. */
   private isNew = true;
 
   /** `isBall`: true for a tip. */
@@ -51,23 +56,47 @@ export class ToolScene extends Scene {
     container: HTMLElement,
     room: () => number,
     onDraw: () => void,
-    private readonly isBall: boolean,
+    protected readonly isBall: boolean,
   ) {
     super(container, room, onDraw);
     this.moving.add(this.edges, ...this.planes, this.guides.group);
-    if (!isBall) this.moving.add(this.port);
     this.spring.line.renderOrder = isBall ? 1 : 3;
+    this.margin = new MarginView(container);
+    this.moving.add(this.margin.group);
   }
 
-  override show(surface: CenteredSurface): void {
+  override show(surface: CenteredSurface, tissue: Tissue): void {
     this.isNew = true;
-    super.show(surface);
+    this.margin.show(surface, tissue);
+    super.show(surface, tissue);
+  }
+
+  /** Takes the margin, and whether a rule keeps it. [mm] */
+  setMargin(margin: number, isGuarded: boolean): void {
+    this.guard = { margin, isGuarded };
+    this.redraw();
   }
 
   /** Gives tool and trail the color of a rule. */
   paintTool(color: string): void {
     this.toolColor = color;
+    this.alarm = colorOf("--alarm");
     this.trail.paint(color);
+    this.margin.paint(color);
+    this.redraw();
+  }
+
+  /** Shows a second tip in a pane of its own, beside this one; null: one pane. */
+  pair(second: SecondTool | null): void {
+    this.second = second;
+    this.beside = second?.scene ?? null;
+    this.panes.count = second === null ? 1 : 2;
+    this.resize();
+  }
+
+  /** Shows the second tip in this state. */
+  updateSecond(state: State): void {
+    this.second?.update(state, this.inside(state.flange.place));
     this.redraw();
   }
 
@@ -78,10 +107,11 @@ export class ToolScene extends Scene {
       body.dispose();
     }
     this.radii = bodies.map(({ radius }) => radius);
+    this.names = this.isBall ? [] : bodies.map(({ name }) => name);
     // Created first, so that the hand is drawn below a tool at the same position.
     this.wanted = new Capsule(this.isBall ? 0.35 : 0.6);
     this.wanted.paint(colors.hand);
-    this.bodies = bodies.map(() => new Capsule());
+    this.bodies = bodies.map(() => new Capsule(this.isBall ? 1 : 0.4));
     this.moving.add(...[this.wanted, ...this.bodies].flatMap(({ parts }) => parts));
     this.toolRadius = this.isBall ? (this.radii[0] ?? 1) : gripRadius;
     this.guides.show(guides, (place) => this.inside(place), 0.4 * this.extent());
@@ -118,13 +148,17 @@ export class ToolScene extends Scene {
   }
 
   /** Returns the initially visible size. [mm] */
-  private extent(): number {
+  protected extent(): number {
     return this.isBall ? this.size : Math.min(this.size, seenAtFirst);
   }
 
+  /** Turns the view of another anatomy to the tool. */
+  protected firstView(moment: State): void {
+    this.keepInSight(this.inside(moment.flange.place));
+  }
+
   override update(moment: State): void {
-    if (this.isNew && this.isBall) this.keepInSight(this.inside(moment.flange.place));
-    else if (this.isNew) this.lookAtJaw(moment);
+    if (this.isNew) this.firstView(moment);
     this.isNew = false;
     super.update(moment);
   }
@@ -205,60 +239,16 @@ export class ToolScene extends Scene {
     }
   }
 
-  /**
-   * Turns the view to the jaw, from beside the shaft, where the anatomy hides it least; among equal
-   * directions from the highest.
-   */
-  private lookAtJaw({ cores, flange }: State): void {
-    const tip = this.inside(flange.place);
-    const port = this.pointOf(cores, 0);
-    const back = port.clone().sub(tip).normalize();
-    const aside = new three.Vector3(-back.y, back.x, 0);
-    if (aside.lengthSq() < 1e-6) aside.set(1, 0, 0);
-    aside.normalize();
-    const up = back.clone().cross(aside);
-    const distance =
-      (seenAtFirst / (2 * Math.tan((0.5 * this.camera.fov * Math.PI) / 180))) *
-      Math.max(1, 0.8 / (this.camera.aspect * this.room()));
-    const caster = new three.Raycaster();
-    const seen = (from: three.Vector3) =>
-      [0, 0.3, 0.8].filter((share) => {
-        const point = tip.clone().lerp(port, share);
-        const way = from.clone().sub(point);
-        caster.far = way.length();
-        caster.set(point, way.normalize());
-        return caster.intersectObject(this.anatomy).length === 0;
-      }).length;
-    const places = [0, 1, 2, 3, 4, 5, 6, 7]
-      .map((eighth) => {
-        const angle = (eighth * Math.PI) / 4;
-        const way = aside.clone().multiplyScalar(Math.cos(angle));
-        way.addScaledVector(up, Math.sin(angle)).addScaledVector(back, 0.5).normalize();
-        return tip.clone().addScaledVector(way, distance);
-      })
-      .sort((a, b) => b.z - a.z);
-    let [best, most] = [places[0] as three.Vector3, -1];
-    for (const place of places) {
-      const count = seen(place);
-      if (count > most) [best, most] = [place, count];
-      if (count === 3) break;
-    }
-    this.controls.target.copy(tip).lerp(port, 0.12);
-    this.camera.position.copy(best);
-    this.controls.update();
-  }
-
   protected arrange(moment: State): void {
     const { hand, flange, cores } = moment;
     const [tip, wish] = [this.inside(flange.place), this.inside(hand.place)];
     const seen = tip.distanceTo(this.camera.position);
     const last = this.bodies.length - 1;
-    const held = this.isBall ? -1 : heldBody(moment);
     const radiusOf = (body: number) =>
       Math.max(this.radii[body] ?? 0, this.isBall ? smallestBall * seen : 0);
     this.bodies.forEach((body, i) => {
       body.place(this.pointOf(cores, 2 * i), this.pointOf(cores, 2 * i + 1), radiusOf(i));
-      body.paint(i === held ? colors.plane : i === last ? this.toolColor : colors.steel);
+      body.paint(this.toolColor);
     });
 
     // The last body is fixed in the frame of the flange, and in that of the hand.
@@ -273,12 +263,41 @@ export class ToolScene extends Scene {
     this.wanted.show(this.isBall || wish.distanceTo(tip) > 0.3 || Math.abs(turn.w) < 0.9995);
     const [wide, least] = this.isBall ? [0.16 * radius, 0.1 * radius] : [0.35, 0.3];
     this.spring.stretch(wish, tip, wide, least);
-
-    this.port.position.copy(this.pointOf(cores, 0));
-    const along = this.pointOf(cores, 1).sub(this.port.position).normalize();
-    this.port.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), along);
-    this.showPlanes(moment, tip, Math.max(4 * radius, 0.03 * seen));
+    this.showPlanes(moment, tip, Math.max(2.2 * radius, 0.02 * seen));
     this.guides.mark(moment.guides);
+    if (this.panes.count === 1) {
+      this.showMargin(
+        moment,
+        this.bodies.map((_, i) => radiusOf(i)),
+      );
+    } else this.margin.hide();
+    const other = this.second?.state;
+    if (!other) return;
+    const crossed = other.crossedAt && this.inside(other.crossedAt);
+    const [otherTip, otherHand] = [other.flange.place, other.hand.place].map((place) =>
+      this.inside(place),
+    );
+    this.second?.arrange(
+      otherTip as three.Vector3,
+      otherHand as three.Vector3,
+      radiusOf(last),
+      crossed,
+    );
+  }
+
+  /** `drawn`: the drawn radius of each body. */
+  protected showMargin({ cores, clearances, held, byMesh }: State, drawn: readonly number[]): void {
+    const bodies = this.radii.map((radius, i) => ({
+      from: this.pointOf(cores, 2 * i),
+      to: this.pointOf(cores, 2 * i + 1),
+      radius,
+    }));
+    const isHeld = held > 0 && byMesh;
+    const { names } = this;
+    const tool = { ...this.guard, bodies, names, clearances, isHeld };
+    this.margin.update(tool, this.camera, drawn);
+    const sun = new three.Vector3(-0.45, 0.62, 0.64).transformDirection(this.camera.matrixWorld);
+    this.shade.place(bodies, sun, coloredWithin(this.size), this.alarm);
   }
 
   /**
@@ -317,7 +336,7 @@ export class ToolScene extends Scene {
   }
 
   /** Returns a point of a list of positions, three numbers each. */
-  private pointOf(places: readonly number[], i: number): three.Vector3 {
+  protected pointOf(places: readonly number[], i: number): three.Vector3 {
     return this.inside(places.slice(3 * i, 3 * i + 3) as unknown as Vec3);
   }
 }

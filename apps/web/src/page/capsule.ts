@@ -2,7 +2,7 @@
 import * as three from "three";
 
 /** The axis is along y. Vertices above the middle belong to one end, all others to the other. */
-const geometry = new three.CapsuleGeometry(1, 1, 16, 48);
+export const unitCapsule = new three.CapsuleGeometry(1, 1, 16, 48);
 
 /**
  * A capsule: a body of an instrument, or a ball if the axis has no length. It shines faintly
@@ -23,7 +23,7 @@ export class Capsule {
   constructor(opacity = 1) {
     const part = (isHidden: boolean) => {
       const own = { ...this.uniforms, opacity: { value: isHidden ? 0.3 : opacity } };
-      const made = new three.Mesh(geometry, capsuleMaterial(own));
+      const made = new three.Mesh(unitCapsule, capsuleMaterial(own));
       made.material.depthFunc = isHidden ? three.GreaterDepth : three.LessEqualDepth;
       made.material.depthWrite = !isHidden && opacity === 1;
       made.renderOrder = isHidden ? 1 : 2;
@@ -63,21 +63,24 @@ export class Capsule {
   }
 }
 
+/** Places the vertices of `unitCapsule`, and passes on their normals in the view. */
+export const capsuleVertices = `
+  uniform vec3 from, to;
+  uniform float radius;
+  uniform mat3 axes;
+  varying vec3 bent;
+  void main() {
+    vec3 place = (position.y > 0.0 ? to : from) + radius * (axes * normal);
+    bent = normalMatrix * (axes * normal);
+    gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
+  }`;
+
 /** Lit like paths, from the upper left of the view. */
 const capsuleMaterial = (uniforms: Record<string, three.IUniform>) =>
   new three.ShaderMaterial({
     transparent: true,
     uniforms,
-    vertexShader: `
-      uniform vec3 from, to;
-      uniform float radius;
-      uniform mat3 axes;
-      varying vec3 bent;
-      void main() {
-        vec3 place = (position.y > 0.0 ? to : from) + radius * (axes * normal);
-        bent = normalMatrix * (axes * normal);
-        gl_Position = projectionMatrix * viewMatrix * vec4(place, 1.0);
-      }`,
+    vertexShader: capsuleVertices,
     fragmentShader: `
       uniform vec3 color;
       uniform float opacity;

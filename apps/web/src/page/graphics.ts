@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
+import type { Shading } from "./shading.ts";
 
 /** A WebGL renderer, which draws over the earlier content. */
 export interface Graphics {
@@ -21,11 +22,22 @@ export function makeGraphics(antialias: boolean): Graphics {
   return { renderer, isSlow: /swiftshader|llvmpipe|software/i.test(String(name)) };
 }
 
-/** Returns a surface with smooth shading: (n, 3) coordinates and (m, 3) corners. */
+/** Returns a surface with plain shading: (n, 3) coordinates and (m, 3) corners. */
 export function surfaceGeometry(positions: Float32Array, corners: Uint32Array) {
   const geometry = new three.BufferGeometry();
   geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
   geometry.setIndex(new three.BufferAttribute(corners, 1));
   geometry.computeVertexNormals();
+  setAmbience(geometry, new Uint8Array(positions.length / 3).fill(255));
   return geometry;
 }
+
+/** Gives a surface its shading. */
+export function setShading(geometry: three.BufferGeometry, { normals, ambience }: Shading): void {
+  geometry.setAttribute("normal", new three.BufferAttribute(normals, 3));
+  setAmbience(geometry, ambience);
+}
+
+const setAmbience = (geometry: three.BufferGeometry, ambience: Uint8Array): void => {
+  geometry.setAttribute("ambience", new three.BufferAttribute(ambience, 1, true));
+};

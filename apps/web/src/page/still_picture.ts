@@ -2,6 +2,13 @@
 import * as three from "three";
 import { FullScreenQuad } from "three/addons/postprocessing/Pass.js";
 
+/** Changes the picture of the still parts each time it is shown. */
+export interface Overlay {
+  readonly uniforms: Record<string, three.IUniform>;
+  /** GLSL with a function `vec3 over(vec3 color, vec3 place)`, in linear light and the scene. */
+  readonly code: string;
+}
+
 /**
  * A picture of the still parts, with depths, which is drawn again only when the view changes. While
  * the tool is dragged, an anatomy of half a million triangles then costs no more than a rectangle.
@@ -10,6 +17,8 @@ import { FullScreenQuad } from "three/addons/postprocessing/Pass.js";
 export class StillPicture {
   private readonly target: three.WebGLRenderTarget;
   private readonly sheet: FullScreenQuad;
+  private readonly material: three.ShaderMaterial;
+  private readonly toScene = new three.Matrix4();
   private isOutdated = true;
 
   /** `samples`: per pixel, for smooth edges. */
@@ -17,16 +26,20 @@ export class StillPicture {
     private readonly scene: three.Scene,
     private readonly camera: three.Camera,
     samples: number,
+    overlay: Overlay | null = null,
   ) {
     this.target = new three.WebGLRenderTarget(1, 1, {
       samples,
       type: three.HalfFloatType,
       depthTexture: new three.DepthTexture(1, 1),
     });
-    const material = new three.ShaderMaterial({
+    this.material = new three.ShaderMaterial({
+      defines: overlay === null ? {} : { OVERLAY: "" },
       uniforms: {
         picture: { value: this.target.texture },
         depths: { value: this.target.depthTexture },
+        toScene: { value: this.toScene },
+        ...overlay?.uniforms,
       },
       vertexShader: `
         varying vec2 place;
@@ -36,17 +49,26 @@ export class StillPicture {
         }`,
       fragmentShader: `
         uniform sampler2D picture;
-        uniform sampler2D depths;
+        uniform highp sampler2D depths;
+        uniform mat4 toScene;
         varying vec2 place;
+        #ifdef OVERLAY
+          ${overlay?.code ?? ""}
+        #endif
         void main() {
           gl_FragColor = texture2D(picture, place);
-          gl_FragDepth = texture2D(depths, place).r;
+          float depth = texture2D(depths, place).r;
+          gl_FragDepth = depth;
+          #ifdef OVERLAY
+            vec4 at = toScene * (2.0 * vec4(place, depth, 1.0) - 1.0);
+            gl_FragColor.rgb = over(gl_FragColor.rgb, at.xyz / at.w) * step(1e-3, gl_FragColor.a);
+          #endif
           #include <colorspace_fragment>
         }`,
       depthFunc: three.AlwaysDepth,
       blending: three.NoBlending,
     });
-    this.sheet = new FullScreenQuad(material);
+    this.sheet = new FullScreenQuad(this.material);
   }
 
   /** Marks the picture as outdated. */
@@ -54,16 +76,32 @@ export class StillPicture {
     this.isOutdated = true;
   }
 
-  /** Fills the view with the picture and its depths. */
+  /** Makes the picture finer or lighter. `samples`: per pixel. `overlay`: true to apply it. */
+  adjust(samples: number, overlay: boolean): void {
+    if (samples !== this.target.samples) {
+      this.target.dispose();
+      this.target.samples = samples;
+      this.outdate();
+    }
+    if (overlay === "OVERLAY" in this.material.defines) return;
+    if (overlay) this.material.defines.OVERLAY = "";
+    else delete this.material.defines.OVERLAY;
+    this.material.needsUpdate = true;
+  }
+
+  /** Fills the renderer's viewport with the picture and its depths. */
   draw(renderer: three.WebGLRenderer): void {
-    const size = renderer.getDrawingBufferSize(new three.Vector2());
     if (this.isOutdated) {
-      this.target.setSize(size.x, size.y);
+      const { z: width, w: height } = renderer.getCurrentViewport(new three.Vector4());
+      this.target.setSize(width, height);
       renderer.setRenderTarget(this.target);
       renderer.clear();
       renderer.render(this.scene, this.camera);
       renderer.setRenderTarget(null);
       this.isOutdated = false;
+      this.toScene
+        .multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse)
+        .invert();
     }
     renderer.clear();
     this.sheet.render(renderer);

@@ -2,11 +2,16 @@
 import * as three from "three";
 import { type CenteredSurface, centered } from "../page/centered_surface.ts";
 import { decodeSurface } from "../page/embedded_surface.ts";
+import { type Shading, shade } from "../page/shading.ts";
+import { type Tissue, tissueOf } from "../page/tissue.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 
 /** The mesh of a record, relative to the middle of its box. */
 export interface Anatomy extends CenteredSurface {
   readonly isClosed: boolean;
+  readonly tissue: Tissue;
+  /** Computed in pauses, after the first pictures. */
+  readonly shading: Promise<Shading>;
   /** Converts a place of the record to such a position. */
   readonly placed: (place: Place) => three.Vector3;
 }
@@ -16,11 +21,26 @@ export async function unpackedAnatomy(mesh: RecordedMesh): Promise<Anatomy> {
   const { vertices, corners } = await decodeSurface(mesh.drawn, mesh.drawn.packed);
   const surface = centered(vertices, corners);
   const middle = new three.Vector3(...surface.origin);
+  const tissue = tissueOf(mesh.name);
   return {
     ...surface,
     isClosed: mesh.surface === "closed",
+    tissue,
+    shading: inPauses(shade(surface.positions, surface.corners, tissue.creases)),
     placed: (place) => new three.Vector3(...place).sub(middle),
   };
+}
+
+/** Does a work in parts of some milliseconds, between which the page answers to the user. */
+async function inPauses<Result>(work: Generator<void, Result>): Promise<Result> {
+  for (;;) {
+    await new Promise((done) => setTimeout(done));
+    const end = performance.now() + 12;
+    do {
+      const { done, value } = work.next();
+      if (done) return value;
+    } while (performance.now() < end);
+  }
 }
 
 /**

@@ -4,6 +4,7 @@ import type * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { drawn, make } from "../page/elements.ts";
 import { type Graphics, makeGraphics } from "../page/graphics.ts";
+import type { Shading } from "../page/shading.ts";
 import type { Anatomy, Outlook } from "./anatomy.ts";
 import { type Mark, placeMarks, scaleBar } from "./marks.ts";
 import { GraphicsPainter, type Layer, type Painter } from "./painting.ts";
@@ -72,6 +73,7 @@ export class AnatomyView {
   ) {
     const { signal } = this.end;
     const { camera } = outlook;
+    let shaded: Shading | null = null;
     const begin = (): Painter => {
       const graphics = sharedGraphics();
       this.isSlow = graphics?.isSlow ?? true;
@@ -82,9 +84,17 @@ export class AnatomyView {
         this.outdate();
       };
       graphics.renderer.domElement.addEventListener("webglcontextlost", lost, { signal });
-      return new GraphicsPainter(graphics, anatomy, corners, camera, isCut);
+      const painter = new GraphicsPainter(graphics, anatomy, corners, camera, isCut);
+      if (shaded !== null) painter.shade(shaded);
+      return painter;
     };
     this.painter = begin();
+    void anatomy.shading.then((shading) => {
+      if (signal.aborted) return;
+      shaded = shading;
+      this.painter.shade(shading);
+      this.outdate();
+    });
     const dark = window.matchMedia("(prefers-color-scheme: dark)");
     dark.addEventListener("change", () => this.outdate(), { signal });
     const printing = () => {

@@ -3,7 +3,7 @@
 
 import * as three from "three";
 import { make } from "../page/elements.ts";
-import { type Anatomy, lookAtAll, unpackedAnatomy } from "./anatomy.ts";
+import { type Anatomy, lookAtAll, type Outlook, unpackedAnatomy, verticesOf } from "./anatomy.ts";
 import { AnatomyView, hint } from "./anatomy_view.ts";
 import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
@@ -58,8 +58,16 @@ function reached({ bodies }: RobotSimulationRecord): (Node | string)[][] {
   });
 }
 
-/** True if a depth is all that a body of this radius can have: the real depth may be larger. */
-const isAll = (depth: number, radius: number): boolean => depth >= radius - 1e-5;
+/** True if some depth is larger than the radius of its body, so that no radius limits the depths. */
+const isUnlimited = ({ bodies }: RobotSimulationRecord): boolean =>
+  entries("/rows").some((row) =>
+    bodies.some(
+      ({ name, radius_mm }) => Number(valueAt(`${row}/${name}_deepest_mm`)) > radius_mm + 1e-5,
+    ),
+  );
+
+/** True if a depth is the radius of its body, which limits depths: the real depth may be larger. */
+const isAll = (depth: number, radius: number): boolean => Math.abs(depth - radius) <= 1e-5;
 
 /** Returns the content of a cell with a depth. */
 function depthOf(from: string, radius: number): (Node | string)[] {
@@ -67,7 +75,8 @@ function depthOf(from: string, radius: number): (Node | string)[] {
   return [...(isAll(depth, radius) ? ["at least "] : []), shown(from, millimetres)];
 }
 
-function figures({ bodies }: RobotSimulationRecord): HTMLElement {
+function figures(record: RobotSimulationRecord): HTMLElement {
+  const { bodies } = record;
   const columns: Column[] = [
     { heading: "mesh", from: "/mesh" },
     { heading: "speed", from: "/speed" },
@@ -88,7 +97,10 @@ function figures({ bodies }: RobotSimulationRecord): HTMLElement {
     [
       "Cycles in which a body was closer than what is certified, ",
       shown("/certified_mm", millimetres),
-      "; of them those in which the mesh reached into it; and how far, which is at most the body's radius. An independent judge sees several poses of each cycle. A body that is all behind the surface, farther than its radius, counts as clear.",
+      "; of them those in which the mesh reached into it; and how far. An independent judge examines several poses of each cycle.",
+      isUnlimited(record)
+        ? ""
+        : " A depth is at most the body's radius, and a body wholly behind the surface counts as clear.",
     ],
     entries("/rows"),
     columns,
@@ -103,6 +115,12 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   const option = (value: number, from: string) =>
     show(make("option", { value: String(value) }), from);
   const moment = make("select", { "aria-label": "moment" });
+  const range = make(
+    "select",
+    { "aria-label": "view" },
+    make("option", { value: "whole" }, "the whole anatomy and the port"),
+    make("option", { value: "tip" }, "the tip"),
+  );
   const content = make("div");
   const runs = entries(`${strokes[0]}/runs`);
   moment.append(...runs.map((from, run) => option(run, `${from}/mode`)));
@@ -110,12 +128,15 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   let view: ReturnType<typeof strokeView> | null = null;
   const options = strokes.map((from, stroke) => option(stroke, `${from}/manner`));
   const chooser = strokeChooser(options, 0, (stroke) => {
-    view = strokeView(record, anatomy, mesh.strokes[stroke] as Stroke, strokes[stroke] as string);
+    const chosen = mesh.strokes[stroke] as Stroke;
+    const outlook = range.value === "whole" ? wholeView : tipView;
+    view = strokeView(record, anatomy, chosen, strokes[stroke] as string, outlook(anatomy, chosen));
     content.replaceChildren(view.element);
     view.go(Number(moment.value));
     return view;
   });
   moment.addEventListener("change", () => view?.go(Number(moment.value)));
+  range.addEventListener("change", () => chooser.dispatchEvent(new Event("change")));
   return section(
     shown(`/meshes/${number}/name`),
     lead(
@@ -123,9 +144,11 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
       chooser,
       ", at first at the worst moment of ",
       moment,
+      ". Shown: ",
+      range,
       ". ",
       make("b", {}, "Red"),
-      " is the body that the mesh reaches into farthest, also where the surface hides it.",
+      " is the body that the mesh reaches into farthest, also where the surface hides it. The gray ball is the port; the shaft above it is not guarded.",
     ),
     content,
     hint(runs.length),
@@ -142,9 +165,10 @@ function strokeView(
   anatomy: Anatomy,
   stroke: Stroke,
   from: string,
+  outlook: Outlook,
 ) {
   const group = pictureGrid(stroke.runs.length);
-  const view = new AnatomyView(group, anatomy, anatomy.corners, outlook(anatomy, stroke));
+  const view = new AnatomyView(group, anatomy, anatomy.corners, outlook);
   const followed = stroke.runs.map((run, number) => {
     const layer: Layer = { lengths: [], cut: null };
     const now = make("span", { class: "now" });
@@ -164,9 +188,10 @@ function strokeView(
           to: places[body + 1] as three.Vector3,
           radius: radius_mm,
           color: isDeepest ? "--alarm" : ruleColor(run.mode),
-          hidden: isDeepest ? 0.6 : 0.1,
+          hidden: isDeepest ? 0.6 : 0.2,
         };
       });
+      layer.bodies = [...layer.bodies, ...portMarks(places)];
       const at = `${from}/runs/${number}/clearance_mm/${cycle}/${nearest}`;
       const how = (mm: number) => (mm < 0 ? deep(mm) : millimetres(mm));
       if (Number.isFinite(least)) {
@@ -189,8 +214,39 @@ function strokeView(
   };
 }
 
+/** The length of the drawn shaft above the port, and the radii of both marks. [mm] */
+const [abovePort, shaftRadius, portRadius] = [45, 4, 7];
+
+/** Returns the marks of the port, and the shaft above it. */
+function portMarks([port, wrist]: readonly three.Vector3[]): Body[] {
+  if (port === undefined || wrist === undefined) return [];
+  const up = port.clone().sub(wrist).setLength(abovePort).add(port);
+  const gray = { color: "--soft", hidden: 0.1 };
+  return [
+    { from: port, to: port, radius: portRadius, ...gray },
+    { from: port, to: up, radius: shaftRadius, ...gray },
+  ];
+}
+
+/** Views the whole anatomy with the port, from the front, turned to the side of the tip. */
+function wholeView(anatomy: Anatomy, stroke: Stroke): Outlook {
+  const up = new three.Vector3(0, 0, 1);
+  const places = verticesOf(anatomy).filter((_, i) => i % 50 === 0);
+  const middle = new three.Box3().setFromPoints(places).getCenter(new three.Vector3());
+  const [port, tip] = [anatomy.placed(stroke.port), lastPlace(anatomy, stroke)];
+  places.push(port, port.clone().sub(tip).setLength(abovePort).add(port), tip);
+  const aside = tip.sub(middle).setZ(0);
+  const toward = new three.Vector3(-0.15, 0.95, 0.28);
+  if (aside.lengthSq() > 0) toward.addScaledVector(aside.normalize(), 0.35);
+  return lookAtAll(places, toward.normalize(), up, anatomy);
+}
+
+/** Returns the place of the tip at the end of the first mode. */
+const lastPlace = ({ placed }: Anatomy, { port, runs }: Stroke): three.Vector3 =>
+  placed(runs[0]?.places.at(-1)?.at(-1) ?? port);
+
 /** Views the tip in all modes, obliquely along the shaft. */
-function outlook(anatomy: Anatomy, stroke: Stroke) {
+function tipView(anatomy: Anatomy, stroke: Stroke): Outlook {
   const up = new three.Vector3(0, 0, 1);
   const places = stroke.runs.flatMap((run) =>
     run.places.flatMap((_, cycle) =>

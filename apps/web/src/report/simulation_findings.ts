@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-/** What differs between the runs of a simulation, in sentences and in a line of numbers. */
+/** The differences between the runs of a simulation, in sentences and in a line of numbers. */
 import { grouped } from "../page/elements.ts";
 import { entries, valueAt } from "./record.ts";
 import { differences, numbersLine } from "./report_page.ts";

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as three from "three";
+import { hatching } from "../page/anatomy_material.ts";
 import { colorOf } from "../page/color_of.ts";
 import type { Anatomy } from "./anatomy.ts";
 import { type Cut, restBehind } from "./cut.ts";
-import { hatching, type Layer, materials, type Painter } from "./painting.ts";
+import type { Layer, Painter } from "./painting.ts";
 
 /** A rendered surface: the picture, and the depths, from -1 to 1. */
 interface Seen {
@@ -21,7 +22,7 @@ const byte = (light: number): number => 255 * Math.min(1, light) ** (1 / 2.2);
  * pixel of the page.
  */
 export function seen(
-  { positions, isClosed }: Anatomy,
+  { positions, isClosed, tissue }: Anatomy,
   corners: Uint32Array,
   camera: three.OrthographicCamera,
   [width, height]: readonly [number, number],
@@ -58,7 +59,7 @@ export function seen(
     triangle.getNormal(normal).applyQuaternion(toEye);
     if (!isFree) normal.negate();
     const light = 0.22 + 0.06 * normal.y + 0.86 * Math.max(0, (normal.dot(key) + 0.15) / 1.15);
-    const [red, green, blue] = isFree ? materials.bone : materials.hollow;
+    const [red, green, blue] = isFree ? tissue.base : tissue.hollow;
     for (let y = top; y <= bottom; ++y) {
       for (let x = left; x <= right; ++x) {
         const u = ((x + 0.5 - ax) * (cy - ay) - (cx - ax) * (y + 0.5 - ay)) / area;
@@ -75,7 +76,7 @@ export function seen(
           continue;
         depths[pixel] = depth;
         const lit = (x + y) % (scale * hatching.period) < scale * hatching.line ? 0.8 : 1;
-        const [r, g, b_] = isSection ? materials.section : [red, green, blue];
+        const [r, g, b_] = isSection ? tissue.section : [red, green, blue];
         const share = isSection ? lit : light;
         picture.data[4 * pixel] = byte(share * r);
         picture.data[4 * pixel + 1] = byte(share * g);
@@ -102,6 +103,9 @@ export class StillPainter implements Painter {
   outdate(): void {
     this.last = null;
   }
+
+  // A triangle has one color.
+  shade(): void {}
 
   dispose(): void {}
 
