@@ -133,9 +133,10 @@ async function savedPath(tab = desk) {
     await sleep(50);
     const name = readdirSync(folder).find((one) => !before.has(one) && one.endsWith(".txt"));
     if (name === undefined) continue;
+    const text = readFileSync(join(folder, name), "utf8");
+    if (text === "") continue; // Firefox makes the file before it fills it
     const file = `path-${before.size}.txt`; // the next one has the same name
     renameSync(join(folder, name), join(folder, file));
-    const text = readFileSync(join(folder, file), "utf8");
     return { file, text, header: JSON.parse(text.match(/^# path: (.*)$/m)[1]) };
   }
   assert.fail("no path was saved");
@@ -228,7 +229,8 @@ test("a drag into the skull: limited, out of it, and the same as keepout replay"
   const kept = toolRadius + margin;
   note(`${lines.length} cycles kept, ${limited} of them limited`);
   const verdict = judged("steps.csv", String(kept));
-  assert.ok(limited >= 1000, `${limited} limited cycles`);
+  // Firefox moves the pointer less often, and a cycle like the one before is left out.
+  assert.ok(limited >= (isFirefox ? 300 : 1000), `${limited} limited cycles`);
   assert.deepEqual([verdict.inside, verdict.crossing, verdict.nearer], [0, 0, 0]);
   assert.ok(
     verdict.nearest !== null && verdict.nearest < kept + 0.01,
