@@ -205,7 +205,7 @@ const openTip = testPage("tip", {});
 
 /** Drags the tip's grip into the anatomy, and up and down there. */
 async function rub(seconds = 4) {
-  await dragged(seconds, (t) => [-130 * Math.min(1, 3 * t), 60 * Math.sin(14 * t)]);
+  await dragged(seconds, (t) => [-200 * Math.min(1, 3 * t), 60 * Math.sin(14 * t)]);
   await desk.mouse.up();
 }
 
@@ -393,9 +393,12 @@ testLooks("tip", {});
 
 const openInstrument = testPage("instrument", firefoxLong, "--robot", "psm");
 
-/** Drags the jaw down into the anatomy and sideways there; does not release it. */
+/** Drags the jaws into the forehead and sideways there; does not release them. */
 const leadIn = (seconds = 6) =>
-  dragged(seconds, (t) => [90 * Math.sin(9 * t), 260 * Math.min(1, 3 * t)]);
+  dragged(seconds, (t) => {
+    const done = Math.min(1, 3 * t);
+    return [-110 * done + 40 * Math.sin(9 * t), 130 * done];
+  });
 
 /** Returns the path and its verdict. Fails unless the whole path is clear of the anatomy. */
 async function clearPath(tab = desk) {
