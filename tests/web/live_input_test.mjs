@@ -106,7 +106,7 @@ test("a change of the status is announced once, and others at most every second"
   const live = await tab.$$eval('[aria-live], [role="status"], [role="alert"], output', (all) =>
     all.filter((one) => !one.closest('[aria-hidden="true"]')).map(({ id }) => id),
   );
-  assert.deepEqual(live.sort(), ["lesson", "loading", "spoken", "toast"]);
+  assert.deepEqual(live.sort(), ["lesson", "loading", "sides-words", "spoken", "toast"]);
 });
 
 /** Moves two fingers from and to these places. Returns them. */

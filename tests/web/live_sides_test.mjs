@@ -54,7 +54,7 @@ async function openPage(mesh, viewport) {
 
 /** Returns the texts above the two scenes. */
 const heads = () =>
-  tab.$$eval("#duel .side", (sides) =>
+  tab.$$eval("#sides .side", (sides) =>
     sides.map((side) =>
       [".chip", ".gap"].map((part) => side.querySelector(part).textContent).join("; "),
     ),
@@ -64,7 +64,7 @@ const heads = () =>
 const bothRun = () =>
   tab.waitForFunction(
     () =>
-      [...document.querySelectorAll("#duel .gap")].every(({ textContent }) =>
+      [...document.querySelectorAll("#sides .gap")].every(({ textContent }) =>
         textContent.includes("mm"),
       ),
     { timeout: 150_000 },
@@ -72,7 +72,7 @@ const bothRun = () =>
 
 /** Saves both paths of a mesh. Returns them: that of the rule of Li et al., and the certified one. */
 async function savedPaths(mesh) {
-  await tab.$eval("#duel-save", (button) => button.click()); // on a phone it is not shown
+  await tab.$eval("#sides-save", (button) => button.click()); // on a phone it is not shown
   const paths = ["paper", "certified"].map((rule) => `keepout-path-${mesh}-${rule}.txt`);
   for (let i = 0; i < 300 && !paths.every((file) => existsSync(join(folder, file))); ++i) {
     await sleep(50);
@@ -93,12 +93,12 @@ function judged(mesh, name, lines, kept) {
 async function testStroke(name, mesh) {
   await tab.$eval("#fail", (button) => button.click());
   await tab.waitForFunction(
-    () => document.querySelector("#duel-words").textContent.includes("adds no plane"),
+    () => document.querySelector("#sides-words").textContent.includes("adds no plane"),
     { timeout: 120_000 },
   );
   assert.match((await heads())[0], /^went through the wall; /);
   assert.match((await heads())[1], /^limited; 0\.20 mm/);
-  await tab.click("#duel-pause");
+  await tab.click("#sides-pause");
   await tab.screenshot({ path: join(folder, `${name}.png`) });
   const [paper, certified] = await savedPaths(name);
 
@@ -129,11 +129,11 @@ test("two scenes by keys: both tools follow, and the left one has no fixture", a
   assert.ok(!(await tab.$eval("#other-grip", ({ hidden }) => hidden)));
   await tab.focus("#view");
   await tab.keyboard.press("1");
-  assert.equal(await tab.$eval("#rival-rule", ({ value }) => value), "none");
+  assert.equal(await tab.$eval("#sides-rule", ({ value }) => value), "none");
   await tab.keyboard.down("ArrowLeft");
   await tab.waitForFunction(
     () => {
-      const parts = [...document.querySelectorAll("#duel :is(.chip, .gap)")];
+      const parts = [...document.querySelectorAll("#sides :is(.chip, .gap)")];
       const words = parts.map(({ textContent }) => textContent).join();
       return /^inside,−.*,limited,0\.20 mm/.test(words);
     },
@@ -150,24 +150,24 @@ test("a stroke through the wall of a tube: one hand, and the judge agrees", asyn
 });
 
 test("counterexamples: the rule of Li et al. goes through, the certified one stays out", async () => {
-  const box = await tab.$eval("#duel", (one) => {
+  const box = await tab.$eval("#sides", (one) => {
     const { x, y, width, height } = one.getBoundingClientRect();
     return { x, y, width, height };
   });
   const picture = () => tab.screenshot({ encoding: "base64", clip: box });
-  const names = await tab.$$eval("#duel-show optgroup option", (all) =>
+  const names = await tab.$$eval("#sides-show optgroup option", (all) =>
     all.map(({ value }) => value),
   );
   assert.equal(names.length, 3);
   for (const name of names) {
-    await tab.select("#duel-show", name);
+    await tab.select("#sides-show", name);
     await tab.waitForFunction(
-      () => document.querySelector("#duel .chip").textContent === "goes through the surface",
+      () => document.querySelector("#sides .chip").textContent === "goes through the surface",
     );
     const [left, right] = await heads();
     assert.match(left, /^goes through the surface; −?\d\.\d{3} mm/);
     assert.match(right, /^stays out; \d\.\d{3} mm/);
-    assert.match(await textOf(tab, "#duel-words"), /asks for \d\.\d\d mm .* margin is 0\.001 mm/);
+    assert.match(await textOf(tab, "#sides-words"), /asks for \d\.\d\d mm .* margin is 0\.001 mm/);
     await tab.screenshot({ path: join(folder, `${name}.png`) });
   }
   const before = await picture();
@@ -177,9 +177,9 @@ test("counterexamples: the rule of Li et al. goes through, the certified one sta
   await tab.mouse.up();
   await sleep(300);
   assert.notEqual(await picture(), before, "a drag does not turn the scenes");
-  await tab.click("#duel-pause");
-  assert.equal(await textOf(tab, "#duel-pause"), "Play");
-  await tab.select("#duel-show", "hand");
+  await tab.click("#sides-pause");
+  assert.equal(await textOf(tab, "#sides-pause"), "Play");
+  await tab.select("#sides-show", "hand");
   await bothRun();
 });
 
@@ -188,7 +188,7 @@ for (const scheme of ["light", "dark"]) {
 }
 
 test("one scene again: the anatomy and the settings of before", async () => {
-  await tab.focus("#duel-close");
+  await tab.focus("#sides-close");
   await tab.keyboard.press("Enter");
   await tab.waitForFunction(() => document.title.startsWith("cube.obj"), { timeout: 30_000 });
   assert.ok(await tab.$eval(".column", (one) => one.checkVisibility()));
@@ -207,7 +207,7 @@ test("a stroke through the wall of an aneurysm, on a phone", async (context) => 
     const rows = replayedPath(keepout, folder, path, aneurysm, rule);
     assert.equal(differing(linesOf(path), rows), 0, rule);
   }
-  const boxes = await tab.$$eval("#duel .side, #duel-bar", (all) =>
+  const boxes = await tab.$$eval("#sides .side, #sides-bar", (all) =>
     all.map((one) => one.getBoundingClientRect().top),
   );
   assert.ok(boxes[0] < boxes[1] - 200 && boxes[1] < boxes[2] - 200, `tops at ${boxes}`);

@@ -91,7 +91,7 @@ export class CounterexampleView {
     });
     const asked = Math.hypot(...example.desired).toFixed(2);
     set(
-      "duel-words",
+      "sides-words",
       `${reasons[name] ?? ""} One step: the hand asks for ${asked} mm (dashed), the margin is ` +
         `${this.shown.margin} mm. The forbidden side is red.`,
     );

@@ -7,7 +7,7 @@ import type { Tissue } from "../page/tissue.ts";
 import { clearanceColors, type ToolBody } from "../page/tool_shade.ts";
 import { millimetres, set } from "./page.ts";
 
-/** What the magnifier shows, in the scene. */
+/** The contact that the magnifier shows, in the scene. */
 export interface Contact {
   /** The nearest point of the surface, and the direction from there to the tool. */
   readonly point: three.Vector3;
@@ -45,7 +45,7 @@ export class Magnifier {
   private solid = "";
   private edge = "";
   private readonly font = `600 12px ${getComputedStyle(document.body).fontFamily}`;
-  /** What is drawn now. */
+  /** The text and colors of the present picture. */
   private drawn = "";
 
   constructor() {
@@ -135,7 +135,7 @@ export class Magnifier {
       let from = 0;
       for (const { x, nx } of crossings) {
         if (isIn && nx > 0) pen.rect(from, y - 0.5, x - from, 1.05);
-        // Of a surface that is not closed, or meets itself, the direction counts.
+        // If a surface is open or meets itself, the direction decides.
         isIn = nx < 0;
         from = x;
       }

@@ -15,7 +15,6 @@ import { tissueOf, tissues } from "../page/tissue.ts";
 import { anatomyWords } from "./anatomy_words.ts";
 import { ClearanceChart } from "./clearance_chart.ts";
 import { type Course, Demonstration } from "./demonstration.ts";
-import { Duel } from "./duel.ts";
 import { takeFiles } from "./file_input.ts";
 import { showFindings } from "./findings.ts";
 import { type GuideKind, GuidePanel } from "./guide_panel.ts";
@@ -36,11 +35,12 @@ import { type PathHeader, parsePath, pathText, replayCommand } from "./path_file
 import { tenMinutes } from "./path_record.ts";
 import { type FromWorker, type Handlers, handled, type State, type ToWorker } from "./protocol.ts";
 import { Readings } from "./readings.ts";
-import { makeWorker } from "./rival.ts";
 import { addRobotControls } from "./robot_controls.ts";
 import { firstPositions, parseRobotPath, robotPathText } from "./robot_path.ts";
 import { RobotScene } from "./robot_scene.ts";
+import { makeWorker } from "./second_engine.ts";
 import { SettingsPanel } from "./settings_panel.ts";
+import { SideBySide } from "./side_by_side.ts";
 import type { StartLine } from "./start_place.ts";
 import { ToolScene } from "./tool_scene.ts";
 import { addViewKeys } from "./view_keys.ts";
@@ -79,7 +79,7 @@ let facts: ToolFacts | null = null;
 let state: State | null = null;
 let readings: Readings | null = null;
 /** The mode with two scenes; null for an instrument. */
-let duel: Duel | null = null;
+let sideBySide: SideBySide | null = null;
 let statusWords: readonly StatusWords[] = [];
 /** A path to replay once its mesh is loaded. */
 let pendingPath: { header: PathHeader | null; lines: Float64Array } | null = null;
@@ -161,7 +161,7 @@ const handlers: Handlers<FromWorker> = {
     endLoading();
     begin();
     play();
-    duel?.loaded();
+    sideBySide?.loaded();
   },
   tool(tool) {
     facts = tool.facts;
@@ -170,7 +170,7 @@ const handlers: Handlers<FromWorker> = {
   state: (message) => show(message.state),
   path: ({ use, lines, settings: madeWith }) => takePath(use, lines, madeWith),
   replayed({ cycles, differs }) {
-    if (duel?.ended()) return;
+    if (sideBySide?.ended()) return;
     const what = isTip ? "the tool" : "the joints";
     toast(
       differs < 0
@@ -179,7 +179,7 @@ const handlers: Handlers<FromWorker> = {
             `on ${what} went another way than on record.`,
     );
   },
-  counterexamples: (message) => duel?.openTrials(message),
+  counterexamples: (message) => sideBySide?.openTrials(message),
   settings(message) {
     settings = message.settings;
     showSettings();
@@ -266,7 +266,7 @@ function show(now: State): void {
   scene.update(now);
   chart.add(now.time, now.handClearance, Math.min(...now.clearances));
   readings?.show(now, settings, facts, scene.frames);
-  duel?.show(now, statusWords);
+  sideBySide?.show(now, statusWords);
 }
 
 // The first seconds.
@@ -365,7 +365,7 @@ function load(choice: Choice): void {
   portBase = pendingPath?.header?.base ?? meshOf(choice)?.start?.base ?? null;
   const port = page.robot !== undefined && portBase ? { robot: page.robot, base: portBase } : null;
   tell({ kind: "load", source: choice.source, settings, port });
-  duel?.loading(choice);
+  sideBySide?.loading(choice);
 }
 
 async function openFile(file: File): Promise<void> {
@@ -440,7 +440,7 @@ function takePath(use: "save" | "replay", lines: Float64Array, madeWith: ToolSet
     return;
   }
   const { keepout, robot } = page;
-  const both = duel?.isOn ? `-${madeWith.rule}` : "";
+  const both = sideBySide?.isOn ? `-${madeWith.rule}` : "";
   const name = nameOf(shown).replaceAll(/[^\w.-]/g, "_") + both;
   const mesh = meshOf(shown);
   if (robot !== undefined && mesh !== undefined && portBase !== null) {
@@ -485,7 +485,7 @@ function showSettings(): void {
 function showColors(): void {
   document.documentElement.style.setProperty("--tool", `var(--rule-${settings.rule})`);
   scene.paintTool(colorOf("--tool"));
-  duel?.paint();
+  sideBySide?.paint();
 }
 
 function change(part: Partial<ToolSettings>): void {
@@ -506,7 +506,7 @@ for (const use of ["save", "replay"] as const) {
 }
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", showColors);
 document.addEventListener("visibilitychange", () => {
-  tell({ kind: "pause", paused: document.hidden || duel?.isStill === true });
+  tell({ kind: "pause", paused: document.hidden || sideBySide?.isStill === true });
 });
 takeFiles((file) => void openFile(file));
 // The keys choose a rule, also while the pointer drags the hand.
@@ -514,7 +514,7 @@ document.addEventListener("keydown", (event) => {
   const isTyping = event.target instanceof HTMLInputElement && event.target.type === "text";
   const rule = rules[Number(event.key) - 1];
   if (rule === undefined || isTyping || event.altKey || event.ctrlKey || event.metaKey) return;
-  if (duel?.isOn) duel.chooseRule(rule);
+  if (sideBySide?.isOn) sideBySide.chooseRule(rule);
   else change({ rule });
 });
 if (robotScene !== null) {
@@ -524,12 +524,12 @@ if (robotScene !== null) {
     "Page Up and Page Down into it and out of it; A, D, W, S, Q and E turn it; with Shift slowly; " +
     "Escape releases it. I, J, K and L turn the view, plus and minus zoom.";
 }
-duel = isTip ? addTipControls() : null;
+sideBySide = isTip ? addTipControls() : null;
 showSettings();
 
 /** Adds double-clicks and the mode with two scenes, which the page of an instrument does not have. */
-function addTipControls(): Duel {
-  const two = new Duel({
+function addTipControls(): SideBySide {
+  const two = new SideBySide({
     scene,
     tell,
     change,

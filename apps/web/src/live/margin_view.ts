@@ -36,7 +36,7 @@ export const coloredWithin = (size: number): number =>
  * magnifier. Figures are those of the engine; only the place of the contact is computed here.
  */
 export class MarginView {
-  /** What belongs into the scene. */
+  /** The parts that belong to the scene. */
   readonly group = new three.Group();
   private readonly shell = new three.Mesh(unitCapsule, shellMaterial());
   private readonly plane = sheet("#ffffff");

@@ -5,7 +5,7 @@ import type { Tissue } from "./tissue.ts";
 /** Lines of a hatched section: distance and width. [px of the page] */
 export const hatching = { period: 15, line: 1.7 } as const;
 
-/** What a picture with cuts needs besides: the curtain, whose part before it is removed. */
+/** For a picture with cuts: the curtain, whose part before it is removed. */
 export interface CutOptions {
   readonly isClosed: boolean;
   readonly depths: three.Texture;

@@ -15,7 +15,7 @@ export interface Nearest {
  * the mesh form a block with a box.
  */
 export class NearTriangles {
-  /** Of each block: the least x, y and z, and the largest ones. */
+  /** The least x, y and z of each block, and the largest ones. */
   private readonly boxes: Float32Array;
   private readonly triangle = new three.Triangle();
   /** The triangle that was nearest last: at first the next one is often the same. */

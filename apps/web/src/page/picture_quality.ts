@@ -34,7 +34,7 @@ const firstPatience = 10_000;
 export class PictureQuality {
   private level: number;
   private readonly frames: number[] = [];
-  /** How long frames have been quick. [ms] */
+  /** The time for which frames have been quick. [ms] */
   private quickFor = 0;
   private patience = firstPatience;
   private isTrial = false;

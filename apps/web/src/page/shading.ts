@@ -5,7 +5,7 @@
 export interface Shading {
   /** Normals, three coordinates each; zero at a sharp edge, where each triangle has its own. */
   readonly normals: Float32Array<ArrayBuffer>;
-  /** How much light from all around reaches the vertex: 0 none, 255 all. */
+  /** The share of the surrounding light that reaches the vertex: 0 none, 255 all. */
   readonly ambience: Uint8Array<ArrayBuffer>;
 }
 
@@ -14,7 +14,7 @@ const cells = 120;
 /** The directions from which light comes, over the whole sphere. */
 const directions = 40;
 /**
- * Where a ray of light is tested, in cells, and the grid for it. A grid has cells that are twice as
+ * The places where a ray of light is tested, in cells, and their grid. A grid has cells that are twice as
  * large as those of the one before, so that no ray jumps over a thin wall.
  */
 const stops = [2.2, 3.2, 4.2, 6, 8, 12, 16, 20];

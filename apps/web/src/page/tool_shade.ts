@@ -14,7 +14,7 @@ const most = 4;
 
 /**
  * The color of the surface by its distance from the tool, near to far. They differ in lightness and
- * are blue, which no tissue is, so that readers with color blindness can tell them apart.
+ * are blue, which no tissue is, so readers with color blindness see them apart.
  */
 export const clearanceColors = ["#1b0b5c", "#2446b8", "#2f8fd6", "#7cc7e8", "#cdeaf2"] as const;
 

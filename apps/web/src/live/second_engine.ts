@@ -11,7 +11,7 @@ import {
 } from "./protocol.ts";
 
 /** Handlers of the page for messages of the second engine. */
-export interface RivalEvents {
+export interface SecondEngineEvents {
   /** The anatomy is read: it can follow. */
   readonly ready: () => void;
   readonly state: (state: State, statuses: readonly StatusWords[]) => void;
@@ -26,11 +26,11 @@ export function makeWorker(): Worker {
 }
 
 /** The second engine, which runs each cycle of the first one under another rule: see lockstep.ts. */
-export class Rival {
+export class SecondEngine {
   isReady = false;
   private worker: Worker | null = null;
 
-  constructor(private readonly on: RivalEvents) {}
+  constructor(private readonly on: SecondEngineEvents) {}
 
   /** Reads an anatomy. */
   load(source: Source, settings: ToolSettings): void {

@@ -9,7 +9,7 @@ import { CounterexampleView } from "./counterexample_view.ts";
 import type { Choice } from "./mesh_list.ts";
 import { element, set, toast } from "./page.ts";
 import type { FromWorker, State, ToWorker } from "./protocol.ts";
-import { Rival } from "./rival.ts";
+import { SecondEngine } from "./second_engine.ts";
 import { SecondTool } from "./second_tool.ts";
 import { SideHead } from "./side_head.ts";
 import { statusShown } from "./status_words.ts";
@@ -17,7 +17,7 @@ import { linesOf, settingsOf, type WallStroke, wallStrokes } from "./strokes.ts"
 import type { ToolScene } from "./tool_scene.ts";
 
 /** The page around the mode. */
-export interface DuelHost {
+export interface SideBySideHost {
   readonly scene: ToolScene;
   readonly tell: (message: ToWorker, transfer?: Transferable[]) => void;
   readonly settings: () => ToolSettings;
@@ -33,15 +33,15 @@ export interface DuelHost {
 
 const yours = "Drag the red ring in either scene: both tools get the same hand.";
 
-export class Duel {
-  private readonly heads = [...document.querySelectorAll("#duel .side")].map(
+export class SideBySide {
+  private readonly heads = [...document.querySelectorAll("#sides .side")].map(
     (side) => new SideHead(side),
   );
-  private readonly rule = element("rival-rule", HTMLSelectElement);
-  private readonly shows = element("duel-show", HTMLSelectElement);
-  private readonly pauseButton = element("duel-pause", HTMLButtonElement);
+  private readonly rule = element("sides-rule", HTMLSelectElement);
+  private readonly shows = element("sides-show", HTMLSelectElement);
+  private readonly pauseButton = element("sides-pause", HTMLButtonElement);
   private readonly second = new SecondTool();
-  private readonly rival: Rival;
+  private readonly secondEngine: SecondEngine;
   private readonly trials: CounterexampleView;
   private statuses: readonly StatusWords[] = [];
   /** The page before the mode; null: the mode is off. */
@@ -52,20 +52,20 @@ export class Duel {
   private due: WallStroke | null = null;
   private playing: WallStroke | null = null;
 
-  constructor(private readonly host: DuelHost) {
-    this.rival = new Rival({
+  constructor(private readonly host: SideBySideHost) {
+    this.secondEngine = new SecondEngine({
       ready: () => this.pair(),
       state: (state, statuses) => this.showSecond(state, statuses),
       path: (lines, settings) => this.host.savePath(lines, settings),
       failed: toast,
     });
-    this.trials = new CounterexampleView(element("duel", HTMLElement), this.heads);
+    this.trials = new CounterexampleView(element("sides", HTMLElement), this.heads);
     element("compare", HTMLButtonElement).onclick = () => this.enter();
-    element("duel-close", HTMLButtonElement).onclick = () => this.leave();
-    element("duel-play", HTMLButtonElement).onclick = () => this.playStroke();
-    element("duel-save", HTMLButtonElement).onclick = () => {
+    element("sides-close", HTMLButtonElement).onclick = () => this.leave();
+    element("sides-play", HTMLButtonElement).onclick = () => this.playStroke();
+    element("sides-save", HTMLButtonElement).onclick = () => {
       this.host.tell({ kind: "ask for path", use: "save" });
-      this.rival.askForPath();
+      this.secondEngine.askForPath();
     };
     this.pauseButton.onclick = () => this.pause(!this.isPaused);
     this.rule.onchange = () => this.chooseRule(this.rule.value as Rule);
@@ -89,7 +89,7 @@ export class Duel {
     this.host.scene.pair(this.second);
     this.paint();
     this.host.change({ rule: "certified" });
-    set("duel-words", yours);
+    set("sides-words", yours);
     this.shows.value = "hand";
     this.rule.focus();
     const shown = this.host.shown();
@@ -104,7 +104,7 @@ export class Duel {
     this.isPaired = false;
     this.pause(false);
     this.host.tell({ kind: "lead", port: null, rule: "none" });
-    this.rival.stop();
+    this.secondEngine.stop();
     this.second.clear();
     document.body.classList.remove("two");
     this.host.scene.pair(null);
@@ -131,7 +131,7 @@ export class Duel {
     if (!this.isOn) return;
     this.isPaired = false;
     this.second.clear();
-    this.rival.load(source, this.host.settings());
+    this.secondEngine.load(source, this.host.settings());
   }
 
   /** The page has read an anatomy, and placed its tool. */
@@ -158,7 +158,7 @@ export class Duel {
   /** A replay has ended. Returns true if it was a stroke of this mode. */
   ended(): boolean {
     if (this.playing === null) return false;
-    set("duel-words", `${this.playing.why} ${yours}`);
+    set("sides-words", `${this.playing.why} ${yours}`);
     this.playing = null;
     return true;
   }
@@ -177,9 +177,9 @@ export class Duel {
 
   /** Connects both engines once both have read the anatomy. */
   private pair(): void {
-    if (!this.isOn || !this.rival.isReady || this.host.isLoading() || this.isPaired) return;
+    if (!this.isOn || !this.secondEngine.isReady || this.host.isLoading() || this.isPaired) return;
     this.isPaired = true;
-    const port = this.rival.listen();
+    const port = this.secondEngine.listen();
     this.host.tell({ kind: "lead", port, rule: this.rule.value as Rule }, [port]);
     if (this.due !== null) this.begin();
   }
@@ -195,7 +195,7 @@ export class Duel {
     this.chooseRule("paper");
     this.host.scene.lookFrom(stroke.target, stroke.direction, stroke.length);
     this.second.clear();
-    set("duel-words", stroke.begin);
+    set("sides-words", stroke.begin);
     this.host.tell({ kind: "replay", lines: linesOf(stroke), isHeld: true });
   }
 
@@ -207,7 +207,7 @@ export class Duel {
     }
     this.trials.close();
     this.rule.disabled = false;
-    set("duel-words", yours);
+    set("sides-words", yours);
     this.pause(false);
   }
 
