@@ -31,8 +31,8 @@ export const coloredWithin = (size: number): number =>
   size >= 100 ? 5 : Number((0.05 * size).toPrecision(1));
 
 /**
- * Makes the margin visible while the tool is near the surface: a translucent shell around the tool,
- * the nearest point of the surface with its tangent plane, the clearance in words, and the
+ * Makes the margin visible while the tool is near the surface. It draws a translucent shell around
+ * the tool, the nearest point of the surface with its tangent plane, the clearance in words, and the
  * magnifier. Figures are those of the engine; only the place of the contact is computed here.
  */
 export class MarginView {

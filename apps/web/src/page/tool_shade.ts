@@ -19,7 +19,7 @@ const most = 4;
 export const clearanceColors = ["#1b0b5c", "#2446b8", "#2f8fd6", "#7cc7e8", "#cdeaf2"] as const;
 
 /**
- * What the tool does to the picture of the still anatomy: its soft shadow, and the color of the
+ * The marks of the tool on the picture of the still anatomy: its soft shadow, and the color of the
  * clearance around it. Only some numbers change with the tool; nothing of the mesh is sent again.
  */
 export class ToolShade implements Overlay {
