@@ -186,7 +186,7 @@ test("callout and magnifier appear near the surface, with the engine's clearance
   const [callout, clearance] = [await textOf(tab, ".callout"), await textOf(tab, "#clearance")];
   assert.equal(callout, `clearance ${clearance}`);
   assert.match(clearance, /^0\.2\d mm$/);
-  assert.match(await textOf(tab, ".magnifier b"), /^\d+(\.\d)?× section$/);
+  assert.match(await textOf(tab, ".magnifier b"), /^\d+(\.\d)?×, margin 0\.20 mm$/);
   const painted = await tab.$eval(".magnifier canvas", (canvas) => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     return new Set(new Uint32Array(data.buffer)).size;

@@ -418,7 +418,7 @@ test(
     assert.equal(await textOf(desk, "#status b"), "limited");
     assert.match(
       await textOf(desk, "#status span"),
-      /^The (shaft|wrist|jaw) touches the bone and stops: 0\.2\d mm of clearance remains\.$/,
+      /^The bone stops the (shaft|wrist|jaw): 0\.2\d mm of clearance remains\.$/,
     );
     assert.match(await textOf(desk, "#held"), /^by the (shaft|wrist|jaw)$/);
     assert.match(await textOf(desk, ".callout"), /^(shaft|wrist|jaw) 0\.2\d mm$/);
