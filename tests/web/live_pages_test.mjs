@@ -461,6 +461,7 @@ test(
     await desk.screenshot({ path: join(folder, "unguarded.png") });
     await desk.mouse.up();
     await desk.click("#again");
+    await sleep(500);
     await desk.keyboard.press("2");
     await leadIn(1.5);
     await desk.waitForFunction(() => document.querySelector("#held").textContent === "by the jaw");
