@@ -2,7 +2,7 @@
 /**
  * Tests how a page of `keepout live` shows the margin, and how it chooses the quality of the picture:
  *
- *   live_margin_test.mjs KEEPOUT FOLDER [BROWSER]
+ *   live_margin_test.mjs KEEPOUT FOLDER
  *
  * The tool is pressed on a cube. The callout must have the engine's clearance. Modules of the page that need no
  * browser are tested alone.
@@ -14,11 +14,11 @@ import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { empty, launched, note, opened, packages, root, sleep, textOf } from "./tabs.mjs";
 
-const [keepout, folder, browserPath] = process.argv.slice(2);
+const [keepout, folder] = process.argv.slice(2);
 empty(folder);
 const file = join(root, "tests/install/cube.obj");
 execFileSync(keepout, ["live", file, "--no-open", "--out", "page.html"], { cwd: folder });
-const browser = await launched(browserPath);
+const browser = await launched();
 after(() => browser.close());
 const tab = await opened(browser, join(folder, "page.html"), { width: 1000, height: 640 });
 
