@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command keepout verify: options, shards, files.
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "apps/command_process.h"
@@ -45,6 +47,11 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
   const std::string both = "cube.stl terrain.stl --steps 5250 --seed 3 ";
   const Outcome whole = succeeded(run(both + "--json whole.json"));
   EXPECT_CONTAINS(whole.output, "No breach in 5,250 steps");
+  const double trajectories = read("whole.json")["total"]["trajectories"];
+  const std::string account = read("whole.json")["account"].dump();
+  const std::string stated = account.substr(account.find("at most ") + 8);
+  const double bound = std::stod(stated) / 100;  // no breach in all trajectories: probability 5 %
+  EXPECT_NEAR(std::pow(1 - bound, trajectories), 0.05, 0.01);
   const std::string machine = read("whole.json")["shards"].dump();
   EXPECT_CONTAINS(machine, ", " + std::string(simd_target()) + ", ");
   for (const char* shard : {"1", "2", "3"}) {

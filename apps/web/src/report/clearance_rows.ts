@@ -50,9 +50,16 @@ export function clearanceRows(wanted: {
     data: () => rows,
     x: () => ({ label, domain, grid: true, tickFormat: tickText, ...scale }),
     marks: (seen) => [
-      ...levels.flatMap(([level, name]) =>
-        levelMarks("x", level, name, { frameAnchor: "bottom", dx: 5, dy: 4, textAnchor: "start" }),
-      ),
+      ...levels.flatMap(([level, name]) => {
+        const isLeft = level < (low + high) / 2; // the name lies on the inner side
+        const textAnchor = isLeft ? "start" : "end";
+        return levelMarks("x", level, name, {
+          frameAnchor: "bottom",
+          dx: isLeft ? 5 : -5,
+          dy: 4,
+          textAnchor,
+        });
+      }),
       Plot.dot(
         seen.flatMap(({ dots, color }, place) => dots.map((dot) => ({ ...dot, color, place }))),
         {
