@@ -202,7 +202,7 @@ export function robotVerificationSections(): HTMLElement[] {
     ),
     tableSection(
       "What was tried, and what broke",
-      ["An independent judge examines 15 poses of each cycle."],
+      ["An independent judge examines fifteen poses of each cycle."],
       rows,
       [
         ...which,
