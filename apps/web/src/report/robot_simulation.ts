@@ -35,26 +35,27 @@ export async function robotSimulationSections(
   record: ReportRecord,
 ): Promise<void> {
   const simulation = record as RobotSimulationRecord;
-  main.append(...differences(...reached(simulation)));
+  main.append(...differences(...reached()));
   for (const mesh of simulation.meshes.keys()) main.append(await meshSection(simulation, mesh));
   main.append(figures(simulation));
 }
 
-/** Returns for each body the modes in which the mesh reached into it, on the first mesh. */
-function reached({ bodies }: RobotSimulationRecord): (Node | string)[][] {
-  const key = (row: string) => `${valueAt(`${row}/mesh`)} ${valueAt(`${row}/speed`)}`;
-  const rows = entries("/rows").filter((row) => key(row) === key("/rows/0"));
-  return bodies.map(({ name }, body) => {
-    const parts = rows
-      .filter((row) => Number(valueAt(`${row}/${name}_in_mesh`)) > 0)
-      .map((row) => [
-        ...counted(`${row}/${name}_in_mesh`, "cycle"),
-        " in mode ",
-        shown(`${row}/mode`),
-      ]);
-    if (parts.length === 0) return [];
-    const begin = ["The mesh reached into the ", shown(`/bodies/${body}/name`), " in "];
-    return [...begin, ...listed(parts), "."];
+/** Returns for each mode, at each speed, the cycles in which the mesh reached in or was too close, on the first mesh. */
+function reached(): (Node | string)[][] {
+  const rows = entries("/rows").filter((row) => valueAt(`${row}/mesh`) === valueAt("/rows/0/mesh"));
+  const modes = new Set(rows.map((row) => valueAt<string>(`${row}/mode`)));
+  return [...modes].map((mode) => {
+    const own = rows.filter((row) => valueAt(`${row}/mode`) === mode);
+    const countsOf = (key: string) =>
+      own
+        .filter((row) => Number(valueAt(`${row}/${key}`)) > 0)
+        .map((row) => [...counted(`${row}/${key}`, "cycle"), " at speed ", shown(`${row}/speed`)]);
+    const [inside, near] = [countsOf("in_mesh"), countsOf("below")];
+    const begin = ["In mode ", shown(`${own[0]}/mode`)];
+    if (inside.length > 0)
+      return [...begin, ", the mesh reached into the instrument in ", ...listed(inside), "."];
+    if (near.length === 0) return [];
+    return [...begin, ", no body was in the mesh, but one was too close in ", ...listed(near), "."];
   });
 }
 
