@@ -514,7 +514,7 @@ for (const { file, name, record } of pages) {
     if (best > 0) assert.ok((await sources(".numbers")).includes(`/runs/${best}/summary/cycles`));
     // The first figure has the commanded path and the path of the tool.
     const paths = await tab.$$eval(".hero .name", (all) => all.map((one) => one.textContent));
-    assert.equal(paths[0], "commanded path");
+    assert.match(paths[0], /^commanded path/);
     assert.ok(paths.length > 1);
     assert.deepEqual(tab.faults, []);
     await tab.close();

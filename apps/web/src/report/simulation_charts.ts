@@ -2,7 +2,16 @@
 
 import * as Plot from "@observablehq/plot";
 import { drawn, make } from "../page/elements.ts";
-import { chart, Legend, type Look, levelMarks, logarithmic, tickText, tipOf } from "./charts.ts";
+import {
+  chart,
+  Legend,
+  type Look,
+  levelMarks,
+  logarithmic,
+  onCard,
+  tickText,
+  tipOf,
+} from "./charts.ts";
 import { extremes } from "./extremes.ts";
 import { valueAt } from "./record.ts";
 import { panels } from "./report_page.ts";
@@ -139,10 +148,8 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
         stroke: "var(--alarm)",
         strokeWidth: 3,
       }),
-      Plot.text(seen.slice(-1), {
-        ...{ x: "x", y: "y", dx: 12, textAnchor: "start", fill: "var(--alarm)" },
-        text: () => "through the surface",
-        stroke: "var(--card)",
+      Plot.text(seen.length > 0 ? ["× through the surface"] : [], {
+        ...{ frameAnchor: "top", dy: 4, ...onCard, fill: "var(--alarm)" },
       }),
     ];
   };
