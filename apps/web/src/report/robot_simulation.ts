@@ -9,7 +9,7 @@ import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
 import { differences, lead, section } from "./report_page.ts";
 import { pictureGrid, ruleColor, swatched } from "./runs.ts";
-import { counted, deep, listed, millimetres, show, shown } from "./shown.ts";
+import { counted, deep, listed, millimetres, ruleName, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
@@ -174,7 +174,7 @@ function strokeView(
     const layer: Layer = { lengths: [], cut: null };
     const now = make("span", { class: "now" });
     const name = swatched(ruleColor(run.mode), shown(`${from}/runs/${number}/mode`));
-    view.add(`The instrument beside the anatomy, ${run.mode}.`, layer, [], name, now);
+    view.add(`The instrument beside the anatomy, ${ruleName(run.mode)}.`, layer, [], name, now);
     return (cycle: number) => {
       const clearances = (run.clearance_mm[cycle] ?? []).map(
         (mm) => mm ?? Number.POSITIVE_INFINITY,

@@ -64,11 +64,30 @@ export const inUnit =
   (value) =>
     `${format(value)}\u00a0${unit}`;
 
+/** The names of rules and modes, as `keepout live` shows them. */
+const ruleNames: Readonly<Record<string, string>> = {
+  none: "None",
+  "no fixture": "No fixture",
+  all_faces: "All faces",
+  paper: "Li et al.",
+  certified: "Certified",
+  linearized: "Linearized",
+  "tip only": "Tip only",
+};
+
+/** Returns the displayed name of a rule or a mode. */
+export const ruleName = (name: string): string => ruleNames[name] ?? name;
+
+/** Pointers to names of rules and modes. */
+const toRules = /^\/runs\/\d+\/name$|\/(mode|activation)$/;
+
 /** Returns the text of a value of the record; a dash if it is missing or has no meaning. */
 function textOf(pointer: string, format: Format = trimmed): string {
   const value = valueAt<unknown>(pointer);
   if (value === null || value === undefined || value === "") return "–";
-  return typeof value === "number" ? format(value) : String(value);
+  // With a minus sign, which is as wide as a digit; a hyphen stays in 1e-9 and before it.
+  if (typeof value === "number") return format(value).replace(/^-(?!\S*e)/, "−");
+  return toRules.test(pointer) ? ruleName(String(value)) : String(value);
 }
 
 /** Shows the value of the record at a pointer in an element. */

@@ -83,7 +83,7 @@ export const tableSection = (
 
 /** Returns a field that hides the rows of a table that lack one of the typed words. */
 export function rowFilter(content: HTMLTableElement): HTMLElement {
-  const field = make("input", { type: "search", placeholder: "wide_bvh paper" });
+  const field = make("input", { type: "search", placeholder: "wide_bvh certified" });
   field.addEventListener("input", () => {
     const words = field.value.toLowerCase().split(/\s+/);
     for (const row of content.tBodies[0]?.rows ?? []) {
