@@ -95,10 +95,13 @@ export function rowFilter(content: HTMLTableElement): HTMLElement {
 }
 
 function heading({ heading: text, look }: Column): HTMLElement {
-  const isText = look === "name" || look === "words";
+  const kinds = [
+    ...(look === "name" || look === "words" ? ["name"] : []),
+    ...(text.length > 14 ? ["long"] : []),
+  ];
   return make(
     "th",
-    { scope: "col", ...(isText ? { class: "name" } : {}) },
+    { scope: "col", ...(kinds.length > 0 ? { class: kinds.join(" ") } : {}) },
     make("button", { type: "button" }, text),
   );
 }
