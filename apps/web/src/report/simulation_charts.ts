@@ -40,7 +40,7 @@ function legendOf(runs: Iterable<number>): Legend {
   return new Legend(new Map(looks), (run) => shown(`/runs/${run}/name`));
 }
 
-/** The certified rule is a strong line, in front of wide and pale lines of the other runs. */
+/** The certified rule is a strong line, in front of thin and pale lines of the other runs. */
 const isStrong = (run: number): boolean => run === bestRun(valueAt<readonly Run[]>("/runs") ?? []);
 
 /** Lines of points, one for each run. */
@@ -53,8 +53,8 @@ const lines = (points: readonly Point[]): Plot.Markish[] => [
         y: "y",
         z: "run",
         stroke: ({ run }: Point) => `var(${runColor(run)})`,
-        strokeWidth: strong ? 2.5 : ({ run }: Point) => Math.max(6 - run, 3.5),
-        strokeOpacity: strong ? 1 : 0.45,
+        strokeWidth: strong ? 3.5 : 1.8,
+        strokeOpacity: strong ? 1 : 0.75,
         clip: true,
       },
     ),
