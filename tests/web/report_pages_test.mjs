@@ -161,12 +161,17 @@ const ruleNames = {
   "tip only": "Tip only",
 };
 
+/** Returns a headline with the names of rules as pages show them. */
+const headlineOf = ({ headline }) =>
+  headline.replaceAll(/'(\w+)'/g, (quoted, name) => ruleNames[name] ?? quoted);
+
 /** Returns true if a text shows the value, name or number that the record has at a pointer. */
 function isOf(record, { text, from, role, unit: apart = "" }) {
   const keys = keysOf(from);
   if (role === "name") return text === keys.at(-1);
   if (role === "ordinal") return text.replaceAll(",", "") === String(Number(keys.at(-1)) + 1);
   const value = valueAt(record, from);
+  if (from.endsWith("/headline")) return text === headlineOf({ headline: value });
   const isRule = /\/(name|mode|activation)$/.test(from) && Object.hasOwn(ruleNames, value);
   if (typeof value !== "number") return text === (isRule ? ruleNames[value] : String(value));
   if (text === String(value)) return true;
@@ -368,7 +373,7 @@ async function assertOrder(tab, record) {
   });
   assert.deepEqual(begin, [
     ["p", record.subject],
-    ["h1", record.headline],
+    ["h1", headlineOf(record)],
   ]);
   assert.ok(late, "a date or a machine is not at the end of the page");
   assert.doesNotMatch(words, /\b0\.0\d*\s(s|mm deep)\b/, "a value has an unsuitable unit");
@@ -448,7 +453,7 @@ for (const { file, name, record } of pages) {
     assertAlone(file, hasAnatomy ? 8e6 : 500e3);
     const tab = desk ?? (await opened(file, large));
     const headline = await tab.$eval("h1", (one) => one.textContent);
-    assert.equal(headline, record.headline);
+    assert.equal(headline, headlineOf(record));
     assert.match(await tab.title(), new RegExp(`keepout ${record.keepout_record}$`));
     note(`${await assertNumbers(tab, record, "body")} texts with numbers`);
     await assertSorts(tab, record);
@@ -517,7 +522,7 @@ for (const { file, name, record } of pages) {
     record.runs.forEach(({ rule, summary }, run) => {
       const from = `/runs/${run}/summary`;
       if (rule !== "none") assert.ok(told.includes(`${from}/p50_us`));
-      if (summary.deepest_mm > 0) assert.ok(told.includes(`${from}/deepest_mm`));
+      if (rule !== "none" && summary.deepest_mm > 0) assert.ok(told.includes(`${from}/deepest_mm`));
     });
     const best = Math.max(
       record.runs.findIndex(({ rule }) => rule === "certified"),

@@ -78,8 +78,13 @@ const ruleNames: Readonly<Record<string, string>> = {
 /** Returns the displayed name of a rule or a mode. */
 export const ruleName = (name: string): string => ruleNames[name] ?? name;
 
-/** Pointers to names of rules and modes. */
+/** Pointers to names of rules and modes, and to headlines, which have them in quotation marks. */
 const toRules = /^\/runs\/\d+\/name$|\/(mode|activation)$/;
+const toHeadlines = /\/headline$/;
+
+/** Returns a headline with the displayed names of rules. */
+export const headlineText = (text: string): string =>
+  text.replaceAll(/'(\w+)'/g, (quoted, name) => ruleNames[name] ?? quoted);
 
 /** Returns the text of a value of the record; a dash if it is missing or has no meaning. */
 function textOf(pointer: string, format: Format = trimmed): string {
@@ -87,6 +92,7 @@ function textOf(pointer: string, format: Format = trimmed): string {
   if (value === null || value === undefined || value === "") return "–";
   // With a minus sign, which is as wide as a digit; a hyphen stays in 1e-9 and before it.
   if (typeof value === "number") return format(value).replace(/^-(?!\S*e)/, "−");
+  if (toHeadlines.test(pointer)) return headlineText(String(value));
   return toRules.test(pointer) ? ruleName(String(value)) : String(value);
 }
 
