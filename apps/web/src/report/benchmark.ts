@@ -98,13 +98,13 @@ function stepBars(from: string, rows: Rows): HTMLElement[] {
     section(
       "The time of a step with each index",
       lead(
-        "Median of the whole step, for each index with its fastest solver, on ",
+        "Median of the whole step, for each index with its fastest solver, under rule ",
+        shown(`${fastest.from}/activation`),
+        " on ",
         shown(`${fastest.from}/mesh`),
         " with ",
         shown(`${fastest.from}/triangles`, grouped),
-        " triangles, rule ",
-        shown(`${fastest.from}/activation`),
-        ". Shorter is better.",
+        " triangles. Shorter is better.",
       ),
       panels(
         rowChart({

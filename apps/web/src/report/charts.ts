@@ -163,7 +163,7 @@ export const tipOfColumns = (
 export const levelLine = { stroke: "var(--soft)", strokeDasharray: "5 4" };
 
 /** A background of a text in the color of the card, so that no line strikes through it. */
-export const onCard = { fill: "currentColor", stroke: "var(--card)", strokeWidth: 5 };
+export const onCard = { fill: "currentColor", stroke: "var(--card)", strokeWidth: 3 };
 
 /** Returns the name of a value of one axis that matters. */
 export const levelName = (axis: "x" | "y", level: number, name: string, place: Plot.TextOptions) =>

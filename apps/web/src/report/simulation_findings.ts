@@ -14,6 +14,12 @@ const has = (from: string): boolean => Number(valueAt(from)) > 0;
 const guard = (run: string): Words =>
   isGuarded(run) ? [" with ", shown(`${run}/name`)] : [" without a fixture"];
 
+/** True if a list ends in a name with a dot, as Li et al. */
+const endsInDot = (parts: readonly Words[]): boolean => {
+  const last = parts.at(-1)?.at(-1) ?? "";
+  return (typeof last === "string" ? last : (last.textContent ?? "")).endsWith(".");
+};
+
 /** True if these words are in the headline, and need not be said again. */
 const headlineSays = (words: string): boolean => String(valueAt("/headline")).includes(words);
 
@@ -32,7 +38,7 @@ export function simulationDifferences(record: SimulationRecord): HTMLElement[] {
     ? ["The tool", "touched the surface in ", "cycle"]
     : ["The tip", "passed through the surface ", "time"];
   const sentence = (begin: string, parts: readonly Words[]): Words =>
-    parts.length > 0 ? [begin, ...listed(parts), "."] : [];
+    parts.length > 0 ? [begin, ...listed(parts), endsInDot(parts) ? "" : "."] : [];
   return differences(
     sentence(
       `${tool} went `,
