@@ -291,15 +291,16 @@ function demonstrate(now: State): void {
   if (!demonstration.advance(now)) demonstration = "over";
 }
 
-/** Returns the motion of the hand: a tip moves across the view, an instrument along its shaft. */
+/** Returns the motion of the hand: a tip moves to the nearest surface, an instrument along its shaft. */
 function courseOf({ flange, cores, clearances }: State): Course {
   const back = cores.slice(0, 3).map((value, i) => value - (flange.place[i] as number));
   const length = Math.hypot(...back);
   const along = back.map((value) => -value / length) as unknown as Vec3;
   const most = 0.06 * scene.diagonal;
   return {
-    towards: isTip ? scene.across(-1, 0, 0) : along,
-    across: isTip ? scene.across(0, 1, 0) : scene.across(1, 0, 0),
+    ...(isTip
+      ? scene.ontoSurface(flange.place)
+      : { towards: along, across: scene.across(1, 0, 0) }),
     distance: Math.max(2 * Math.min(...clearances), 10),
     depth: Math.min(6, most),
     width: Math.min(10, most),

@@ -70,6 +70,11 @@ export class MarginView {
     this.hide();
   }
 
+  /** Returns the point of the surface that is nearest to another point; that point itself without a surface. */
+  nearestTo(point: three.Vector3): three.Vector3 {
+    return this.near?.nearest(point)?.point ?? point.clone();
+  }
+
   /** Takes the color of the tool. */
   paint(color: string): void {
     this.shell.material.uniforms.color?.value.set(color);
