@@ -502,6 +502,7 @@ element("again", HTMLButtonElement).onclick = () => {
   if (base !== undefined && base.join() !== portBase?.join() && shown !== null) load(shown);
   else begin();
 };
+element("out", HTMLButtonElement).onclick = () => element("again", HTMLButtonElement).click();
 for (const use of ["save", "replay"] as const) {
   element(use, HTMLButtonElement).onclick = () => tell({ kind: "ask for path", use });
 }
