@@ -42,8 +42,11 @@ export function set(where: string | Element | null, text: string): void {
   if (place && place.textContent !== text) place.textContent = text;
 }
 
+/** Returns a number in words, with the sign for minus. */
+export const signed = (number: number | string): string => `${number}`.replace("-", "\u2212");
+
 export const millimetres = (length: number, digits = 2): string =>
-  `${length.toFixed(digits).replace("-", "\u2212")} mm`;
+  `${signed(length.toFixed(digits))} mm`;
 
 /**
  * Returns the fraction of the view's width between the columns of cards; on a phone they are below
