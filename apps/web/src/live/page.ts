@@ -48,13 +48,16 @@ export const signed = (number: number | string): string => `${number}`.replace("
 export const millimetres = (length: number, digits = 2): string =>
   `${signed(length.toFixed(digits))} mm`;
 
+/** The free width on the inner side of each column of cards. [px] */
+export const besideCards = 40;
+
 /**
  * Returns the fraction of the view's width between the columns of cards; on a phone they are below
  * it.
  */
 export function roomBetweenCards(view: HTMLElement): number {
   const column = document.querySelector(".column")?.getBoundingClientRect().right ?? 0;
-  return Math.max(1 - (2 * (column + 40)) / view.clientWidth, 0.3);
+  return Math.max(1 - (2 * (column + besideCards)) / view.clientWidth, 0.3);
 }
 
 /** Returns the scene of the view; if it cannot be created, the page shows why. */

@@ -38,8 +38,9 @@ export class Readings {
     this.showStatus(state, settings.rule, facts);
     set("whereabouts", whereabouts(state, settings.rule, this.words));
     this.showClearances(state, facts, isGuarded);
-    // A rule holds a tool that is inside: only the user can take it out.
-    this.out.hidden = !isGuarded || !(Math.min(...state.clearances) < 0);
+    // This rule holds a tool that is inside: only the user can take it out.
+    const isStuck = Math.min(...state.clearances) < 0 && state.motion.every((part) => part === 0);
+    this.out.hidden = !isStuck || !isGuarded || settings.rule === "tip_only";
     this.showGuides(state, facts);
     const newtons = Math.hypot(...state.force);
     const bar = document.querySelector<HTMLElement>("#force i");
