@@ -2,6 +2,7 @@
 import uPlot from "uplot";
 import { colorOf } from "../page/color_of.ts";
 import { colors } from "./markers.ts";
+import { signed } from "./page.ts";
 
 /** The length of the visible past. [s] */
 const span = 8;
@@ -40,9 +41,14 @@ export class ClearanceChart {
           {
             ...axis,
             size: 22,
-            values: (_plot, values) => values.map((v) => (v === 0 ? "now" : `${v} s`)),
+            values: (_plot, values) => values.map((v) => (v === 0 ? "now" : `${signed(v)} s`)),
           },
-          { ...axis, size: 56, space: 24, values: (_plot, values) => values.map((v) => `${v} mm`) },
+          {
+            ...axis,
+            size: 56,
+            space: 24,
+            values: (_plot, values) => values.map((v) => `${signed(v)} mm`),
+          },
         ],
         series: [
           {},

@@ -42,8 +42,14 @@ export function set(where: string | Element | null, text: string): void {
   if (place && place.textContent !== text) place.textContent = text;
 }
 
+/** Returns a number in words, with the sign for minus. */
+export const signed = (number: number | string): string => `${number}`.replace("-", "\u2212");
+
 export const millimetres = (length: number, digits = 2): string =>
-  `${length.toFixed(digits).replace("-", "\u2212")} mm`;
+  `${signed(length.toFixed(digits))} mm`;
+
+/** The free width on the inner side of each column of cards. [px] */
+export const besideCards = 40;
 
 /**
  * Returns the fraction of the view's width between the columns of cards; on a phone they are below
@@ -51,7 +57,7 @@ export const millimetres = (length: number, digits = 2): string =>
  */
 export function roomBetweenCards(view: HTMLElement): number {
   const column = document.querySelector(".column")?.getBoundingClientRect().right ?? 0;
-  return Math.max(1 - (2 * (column + 40)) / view.clientWidth, 0.3);
+  return Math.max(1 - (2 * (column + besideCards)) / view.clientWidth, 0.3);
 }
 
 /** Returns the scene of the view; if it cannot be created, the page shows why. */
