@@ -150,20 +150,24 @@ function scaleOf(keys, unit) {
 
 const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
-/** The names of rules and modes on the pages, if they differ from those in records. */
-const ruleNames = {
-  none: "None",
-  "no fixture": "No fixture",
-  all_faces: "All faces",
-  paper: "Li et al.",
-  certified: "Certified",
-  linearized: "Linearized",
-  "tip only": "Tip only",
-};
+/** The names of rules and modes on the live page, and those that only reports have. */
+const livePage = readFileSync(
+  join(import.meta.dirname, "../../apps/web/src/live/page.html"),
+  "utf8",
+);
+const ruleNames = new Map([
+  ...[...livePage.matchAll(/name="rule" value="(\w+)" \/><span>([^<]+)</g)].map((found) =>
+    found.slice(1),
+  ),
+  ["no_fixture", "No fixture"],
+  ["linearized", "Linearized"],
+]);
+assert.equal(ruleNames.size, 7);
+const ruleName = (name) => ruleNames.get(name.replace(" ", "_")) ?? name;
 
 /** Returns a headline with the names of rules as pages show them. */
 const headlineOf = ({ headline }) =>
-  headline.replaceAll(/'(\w+)'/g, (quoted, name) => ruleNames[name] ?? quoted);
+  headline.replaceAll(/'(\w+)'/g, (quoted, name) => ruleNames.get(name) ?? quoted);
 
 /** Returns true if a text shows the value, name or number that the record has at a pointer. */
 function isOf(record, { text, from, role, unit: apart = "" }) {
@@ -172,8 +176,8 @@ function isOf(record, { text, from, role, unit: apart = "" }) {
   if (role === "ordinal") return text.replaceAll(",", "") === String(Number(keys.at(-1)) + 1);
   const value = valueAt(record, from);
   if (from.endsWith("/headline")) return text === headlineOf({ headline: value });
-  const isRule = /\/(name|mode|activation)$/.test(from) && Object.hasOwn(ruleNames, value);
-  if (typeof value !== "number") return text === (isRule ? ruleNames[value] : String(value));
+  const isRule = /\/(name|mode|activation)$/.test(from);
+  if (typeof value !== "number") return text === (isRule ? ruleName(value) : String(value));
   if (text === String(value)) return true;
   const parts = text.match(/^([-−]?[\d,]*\.?\d+)(?:·10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?:\s*([^\d\s].*))?$/);
   if (!parts) return /^under\s/.test(text) && Math.abs(value) < 1e-6;

@@ -125,8 +125,7 @@ std::string still_text(const std::vector<RunTally>& runs) {
   std::vector<std::string> counts;
   for (std::size_t r = 1; r < runs.size(); ++r)
     counts.push_back(grouped(runs[r].with(Outcome::stopped)));
-  const bool is_same = std::all_of(counts.begin(), counts.end(),
-                                   [&](const std::string& count) { return count == counts[0]; });
+  const bool is_same = std::ranges::count(counts, counts.front()) == std::ssize(counts);
   return is_same ? "" : "; it stood still in " + listed(counts) + " cycles";
 }
 
@@ -172,10 +171,9 @@ std::string headline(const std::vector<RunTally>& runs, const TipScene& scene, d
     if (!free.kept_out()) text = "Without a fixture the tool " + words(free, scene) + ". ";
     const std::string differs = still.empty() ? still_text(runs) : "";
     text += rules_text(kept_out) +
-            (scene.has_tool                    ? " kept the whole tool off the surface"
-             : !is_closed                      ? " kept the tool from passing through the surface"
-             : text.empty() || differs.empty() ? " kept the tool out of the anatomy"
-                                               : " kept it out") +
+            (scene.has_tool ? " kept the whole tool off the surface"
+             : is_closed    ? " kept the tool out of the anatomy"
+                            : " kept the tool from passing through the surface") +
             differs + ".";
   }
   if (!still.empty()) {

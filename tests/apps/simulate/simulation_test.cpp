@@ -208,8 +208,10 @@ TEST(Verdict, SaysHowLongTheToolStoodStillIfThatDiffers) {
   const auto headline = [&](const Cycles& second) {
     return record_of({stroke_of({plunge(0.15), slow, second})})["headline"].get<std::string>();
   };
-  EXPECT_CONTAINS(headline(plunge(-0.05)),
-                  "Rules 'certified' and 'paper' kept it out; it stood still in 1 and 0 cycles.");
+  EXPECT_CONTAINS(
+      headline(plunge(-0.05)),
+      "Rules 'certified' and 'paper' kept the tool out of the anatomy; it stood still in 1 "
+      "and 0 cycles.");
   EXPECT_CONTAINS(headline(slow),
                   "Rules 'certified' and 'paper' kept the tool out of the anatomy.");
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import uPlot from "uplot";
 import { colorOf } from "../page/color_of.ts";
+import { signed } from "../page/elements.ts";
 import { colors } from "./markers.ts";
-import { signed } from "./page.ts";
 
 /** The length of the visible past. [s] */
 const span = 8;

@@ -29,7 +29,7 @@ export class Demonstration {
 
   /**
    * `hold`: called with the hand, or null at the end. `say`: called with each phase, and with null at the end, unless
-   * the visitor takes over. An approach without a contact is the only phase.
+   * the visitor takes over. If the hand meets no surface, the demonstration ends after the approach.
    */
   constructor(
     private readonly start: Frame,

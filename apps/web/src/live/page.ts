@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { make } from "../page/elements.ts";
+import { make, signed } from "../page/elements.ts";
 import type { EmbeddedMesh } from "./protocol.ts";
 
 /** The settings that `keepout live` has put into the page, besides the meshes. */
@@ -41,9 +41,6 @@ export function set(where: string | Element | null, text: string): void {
   const place = typeof where === "string" ? document.getElementById(where) : where;
   if (place && place.textContent !== text) place.textContent = text;
 }
-
-/** Returns a number in words, with the sign for minus. */
-export const signed = (number: number | string): string => `${number}`.replace("-", "\u2212");
 
 export const millimetres = (length: number, digits = 2): string =>
   `${signed(length.toFixed(digits))} mm`;

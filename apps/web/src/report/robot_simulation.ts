@@ -46,16 +46,25 @@ function reached(): (Node | string)[][] {
   const modes = new Set(rows.map((row) => valueAt<string>(`${row}/mode`)));
   return [...modes].map((mode) => {
     const own = rows.filter((row) => valueAt(`${row}/mode`) === mode);
-    const countsOf = (key: string) =>
-      own
-        .filter((row) => Number(valueAt(`${row}/${key}`)) > 0)
-        .map((row) => [...counted(`${row}/${key}`, "cycle"), " at speed ", shown(`${row}/speed`)]);
-    const [inside, near] = [countsOf("in_mesh"), countsOf("below")];
-    const begin = ["In mode ", shown(`${own[0]}/mode`)];
-    if (inside.length > 0)
-      return [...begin, ", the mesh reached into the instrument in ", ...listed(inside), "."];
-    if (near.length === 0) return [];
-    return [...begin, ", no body was in the mesh, but one was too close in ", ...listed(near), "."];
+    const cyclesOf = (key: string, rows: readonly string[]) =>
+      rows.map((row) => [
+        ...counted(`${row}/${key}`, "cycle"),
+        " at speed ",
+        shown(`${row}/speed`),
+      ]);
+    const has = (row: string, key: string) => Number(valueAt(`${row}/${key}`)) > 0;
+    const inside = own.filter((row) => has(row, "in_mesh"));
+    const near = own.filter((row) => !inside.includes(row) && has(row, "below"));
+    const parts = [
+      inside.length > 0
+        ? ["the mesh reached into the instrument in ", ...listed(cyclesOf("in_mesh", inside))]
+        : [],
+      near.length > 0
+        ? ["a body was too close, but not in the mesh, in ", ...listed(cyclesOf("below", near))]
+        : [],
+    ].filter((part) => part.length > 0);
+    if (parts.length === 0) return [];
+    return ["In mode ", shown(`${own[0]}/mode`), ", ", ...listed(parts), "."];
   });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** Texts of values of the record: each element states the pointer to its value. */
-import { grouped, make } from "../page/elements.ts";
+import { grouped, make, signed } from "../page/elements.ts";
 import { entries, lastKey, valueAt } from "./record.ts";
 
 /** Converts a number to text. */
@@ -90,8 +90,7 @@ export const headlineText = (text: string): string =>
 function textOf(pointer: string, format: Format = trimmed): string {
   const value = valueAt<unknown>(pointer);
   if (value === null || value === undefined || value === "") return "–";
-  // With a minus sign, which is as wide as a digit; a hyphen stays in 1e-9 and before it.
-  if (typeof value === "number") return format(value).replace(/^-(?!\S*e)/, "−");
+  if (typeof value === "number") return signed(format(value));
   if (toHeadlines.test(pointer)) return headlineText(String(value));
   return toRules.test(pointer) ? ruleName(String(value)) : String(value);
 }
