@@ -120,13 +120,14 @@ std::string rules_text(const std::vector<std::string>& rules) {
   return (rules.size() == 1 ? "Rule " : "Rules ") + listed(rules);
 }
 
-/// Returns in how many cycles the tool stood still under each rule; empty if that does not differ.
+/// Returns in how many cycles the tool stood still under each rule, in their order; empty if that
+/// does not differ.
 std::string still_text(const std::vector<RunTally>& runs) {
   std::vector<std::string> counts;
   for (std::size_t r = 1; r < runs.size(); ++r)
     counts.push_back(grouped(runs[r].with(Outcome::stopped)));
   const bool is_same = std::ranges::count(counts, counts.front()) == std::ssize(counts);
-  return is_same ? "" : "; it stood still in " + listed(counts) + " cycles";
+  return is_same ? "" : "; in this order, it stood still in " + listed(counts) + " cycles";
 }
 
 /// Returns a sentence on whether all rules kept the tool in its guides.

@@ -210,8 +210,8 @@ TEST(Verdict, SaysHowLongTheToolStoodStillIfThatDiffers) {
   };
   EXPECT_CONTAINS(
       headline(plunge(-0.05)),
-      "Rules 'certified' and 'paper' kept the tool out of the anatomy; it stood still in 1 "
-      "and 0 cycles.");
+      "Rules 'certified' and 'paper' kept the tool out of the anatomy; in this order, it "
+      "stood still in 1 and 0 cycles.");
   EXPECT_CONTAINS(headline(slow),
                   "Rules 'certified' and 'paper' kept the tool out of the anatomy.");
 }

@@ -238,13 +238,13 @@ export class AnatomyView {
     this.mark(picture);
   }
 
-  private mark({ element, marks, scale }: Picture): void {
+  private mark({ element, layer, marks, scale }: Picture): void {
     const { clientWidth: width, clientHeight: height } = element;
     if (width === 0) return;
     const { camera } = this.outlook;
     // On paper the picture has another size, but is not drawn again.
     scale.ownerSVGElement?.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    placeMarks(marks, camera, width, height);
+    placeMarks(marks, layer.lengths, camera, width, height);
     scaleBar(scale, (camera.top - camera.bottom) / camera.zoom / height, width, height);
   }
 }

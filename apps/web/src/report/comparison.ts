@@ -9,7 +9,7 @@ import { entries, valueAt } from "./record.ts";
 import { differences, lead, panels, section } from "./report_page.ts";
 import { rowChart, spans } from "./row_chart.ts";
 import { error, listed, microseconds, rounded, shown, shownName } from "./shown.ts";
-import { type Column, column, harm, named, scrolled, table } from "./table.ts";
+import { type Column, column, harm, isHarmed, named, scrolled, table } from "./table.ts";
 
 const size = (heading: string, from: string): Column => column(heading, from, error);
 const times: readonly Column[] = [
@@ -49,22 +49,24 @@ const narrowPhaseColumns: readonly Column[] = [
   named("relation", "/relation"),
   column("pairs", "/pairs"),
   harm("no answer", "/failed"),
-  harm("contradicted", "/contradicted"),
+  {
+    ...harm("contradicted", "/contradicted"),
+    isExpected: (row) => valueAt(`${row}/relation`) === "touching",
+  },
   size("median error [mm]", "/median_error_mm"),
   size("worst error [mm]", "/worst_error_mm"),
   ...times,
 ];
 
-/** For each column of what ought to be nothing, the parts that have some: "Missed: none. Invented: pd_tree. " */
+/** Returns a sentence for each column of numbers that must be zero: "Missed: none. Invented: pd_tree. " */
 const faults = (rows: readonly string[], columns: readonly Column[]): (Node | string)[] =>
   columns
     .filter(({ look }) => look === "harm")
-    .flatMap(({ heading, from }) => {
+    .flatMap((column) => {
+      const { heading } = column;
       const name = columns[0]?.from;
-      const isGuilty = (row: string) =>
-        Number(valueAt(row + from)) > 0 &&
-        !(from === "/contradicted" && valueAt(`${row}/relation`) === "touching");
-      const names = new Map(rows.filter(isGuilty).map((row) => [valueAt(row + name), row + name]));
+      const guilty = rows.filter((row) => isHarmed(row, column));
+      const names = new Map(guilty.map((row) => [valueAt(row + name), row + name]));
       const all = [...names.values()].flatMap((at, i) => [i > 0 ? ", " : "", shown(at)]);
       const words = heading.charAt(0).toUpperCase() + heading.slice(1);
       return [`${words}: `, ...(all.length > 0 ? all : ["none"]), ". "];
@@ -100,7 +102,7 @@ export function comparisonSections(from: string): HTMLElement[] {
       "narrow_phases",
       "Do the narrow phases agree?",
       narrowPhaseColumns,
-      "Distances are held to the exact kernel. Contradicted is apart called overlapping, or the reverse. It is expected within 0.000001 mm of a touch, which is finer than the tolerance of most libraries: the names above do not count it there.",
+      "Distances are held to the exact kernel. A narrow phase contradicts it if it calls an overlap what is apart, or the reverse. Pairs that touch within 0.000001 mm are finer than the tolerance of most libraries: there a contradiction is expected, and is neither named here nor red in the table.",
       errors,
     ),
     ...part(

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** Marks over a picture of anatomy: balls, rings and labels at places of it, and a scale bar. */
-import type * as three from "three";
+import * as three from "three";
 import { drawn } from "../page/elements.ts";
 import { extremes } from "./extremes.ts";
+import type { Lengths } from "./painting.ts";
 
 /** A mark at a place of the anatomy. */
 export interface Mark {
@@ -47,10 +48,12 @@ const textOf = ({ element }: Mark) => element.lastElementChild as SVGTextElement
 
 /**
  * Positions the marks of a picture. Rings that are close share a label. The label of a mark outside
- * the picture points to it, but the number of a ring ("numbered") is hidden.
+ * the picture points to it, but the number of a ring ("numbered") is hidden. `lengths`: the paths in
+ * the picture, which labels should not cover.
  */
 export function placeMarks(
   marks: readonly Mark[],
+  lengths: readonly Lengths[],
   camera: three.Camera,
   width: number,
   height: number,
@@ -64,6 +67,13 @@ export function placeMarks(
     if (mark.label) labeled.push({ mark, x, y });
   }
   const picture = { left: 0, right: width, top: 0, bottom: height };
+  const paths: Box[] = lengths.flatMap(({ ends }) =>
+    Array.from({ length: ends.length / 3 }, (_, i) => {
+      const { x, y } = new three.Vector3().fromArray(ends, 3 * i).project(camera);
+      const [left, top] = [((x + 1) * width) / 2, ((1 - y) * height) / 2];
+      return { left, right: left, top, bottom: top };
+    }),
+  );
   const labels: Box[] = [];
   const rings = labeled.filter(
     ({ mark, x, y }) =>
@@ -72,34 +82,43 @@ export function placeMarks(
   for (const spot of labeled) {
     if (rings.includes(spot)) continue;
     if (has(spot.mark, "numbered")) textOf(spot.mark).setAttribute("display", "none");
-    else labels.push(placeLabel(spot, labels, width, height));
+    else labels.push(placeLabel(spot, labels, paths, width, height));
   }
   labelRings(groupsOf(rings), width, height);
 }
 
 /**
- * Puts the label of a mark below it, or below the labels that are there. If the mark is outside the
- * picture, the label points to it. Returns the place of the label.
+ * Puts the label of a mark beside it, where it covers no other label and the fewest places of paths.
+ * If the mark is outside the picture, the label points to it. Returns the place of the label.
  */
 function placeLabel(
   { mark, x, y }: Spot,
-  others: readonly Box[],
+  labels: readonly Box[],
+  paths: readonly Box[],
   width: number,
   height: number,
 ): Box {
   const arrow = y > height ? "↓ " : y < 0 ? "↑ " : x > width ? "→ " : x < 0 ? "← " : "";
-  const isLeft = x > 0.55 * width;
   const within = (value: number, low: number, high: number) => Math.min(Math.max(value, low), high);
-  const at = within(x + (isLeft ? -14 : 14), 0.04 * width, 0.96 * width);
   const wide = letter * (arrow + mark.label?.textContent).length;
-  const [left, right] = isLeft ? [at - wide, at] : [at, at + wide];
   const first = within(y + 28, 0.08 * height, 0.84 * height);
-  const boxAt = (base: number) => ({ left, right, top: base - 15, bottom: base + 4 });
-  const bases = [0, 1, -1, 2, -2].map((lines) => first + 21 * lines);
-  const isFree = (base: number) => !others.some((other) => overlap(other, boxAt(base)));
-  const base = bases.find(isFree) ?? first;
-  write([mark], isLeft ? "end" : "start", at, base, arrow);
-  return boxAt(base);
+  const sides = x > 0.55 * width ? [true, false] : [false, true];
+  const spots = [0, 1, -1, 2, -2, 3, -3].flatMap((lines) =>
+    sides.map((isLeft) => {
+      const at = within(x + (isLeft ? -14 : 14), 0.04 * width, 0.96 * width);
+      const base = within(first + 21 * lines, 0.08 * height, 0.9 * height);
+      const [left, right] = isLeft ? [at - wide, at] : [at, at + wide];
+      const box = { left, right, top: base - 15, bottom: base + 4 };
+      const covered = (boxes: readonly Box[]) => boxes.filter((other) => overlap(other, box)).length;
+      const isOut = left < 0 || right > width;
+      const cost = (covered(labels) + (isOut ? 1 : 0)) * (paths.length + 1) + covered(paths);
+      return { isLeft, at, base, box, cost };
+    }),
+  );
+  const least = Math.min(...spots.map(({ cost }) => cost));
+  const best = spots.find(({ cost }) => cost === least) as (typeof spots)[number];
+  write([mark], best.isLeft ? "end" : "start", best.at, best.base, arrow);
+  return best.box;
 }
 
 /** Writes the labels of marks at a position, separated by commas, as the text of the first. */

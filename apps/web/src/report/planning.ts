@@ -125,7 +125,12 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     const good = runs.flatMap(({ path }) => ends((path ?? []).map(anatomy.placed)));
     const tooNear = runs.flatMap(({ too_near }) => too_near ?? []);
     const bad = tooNear.flatMap((length) => ends(length.map(anatomy.placed)));
-    const lengths = coloured(good, bad, ruleColor(checker), widths.whole, mesh.inside);
+    const color = ruleColor(checker);
+    const hidden = { color, ends: new Float32Array(good), isAlarming: false, isSeenThrough: true };
+    const lengths = [
+      ...coloured(good, bad, color, widths.whole, mesh.inside),
+      { ...hidden, width: widths.many, opacity: 0.3 },
+    ];
     view.add(
       `All paths found under the checker ${checker}.`,
       { lengths, cut: null },
@@ -143,7 +148,7 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     lead(
       "All paths that two of the checkers found. ",
       make("b", {}, "Red"),
-      ": nearer to the mesh than allowed, or through it. A path is valid if all of it keeps the clearance. The sliding checker has a planner of its own, SlidingConnect.",
+      ": nearer to the mesh than allowed, or through it. Pale: hidden by the surface. A path is valid if all of it keeps the clearance. The sliding checker has a planner of its own, SlidingConnect.",
     ),
     group,
     hint(drawnRows.length),

@@ -12,6 +12,8 @@ export interface Column {
   readonly format?: Format;
   /** The appearance of a cell; `harm` is a number that must be zero. */
   readonly look?: "name" | "words" | "harm";
+  /** True for rows whose harm is expected, so that it is not marked. */
+  readonly isExpected?: (row: string) => boolean;
   /** The content of the cell, if it is more than the value. */
   readonly content?: (row: string) => readonly (Node | string)[];
 }
@@ -106,14 +108,18 @@ function heading({ heading: text, look }: Column): HTMLElement {
   );
 }
 
+/** True if a number that must be zero is not, against expectation. */
+export const isHarmed = (row: string, { from, look, isExpected }: Column): boolean =>
+  look === "harm" && Number(valueAt(row + from)) > 0 && isExpected?.(row) !== true;
+
 function line(row: string, columns: readonly Column[]) {
   const element = make("tr");
-  columns.forEach(({ from, format, look, content }, place) => {
+  columns.forEach((column, place) => {
+    const { from, format, look, content } = column;
     const cell = place === 0 ? make("th", { scope: "row" }) : make("td");
     if (content) cell.append(...content(row));
     else show(cell, row + from, format);
-    const isHarm = look === "harm" && Number(valueAt(row + from)) > 0;
-    const name = look === "harm" ? (isHarm ? "bad" : "") : (look ?? "");
+    const name = look === "harm" ? (isHarmed(row, column) ? "bad" : "") : (look ?? "");
     if (name !== "") cell.className = name;
     element.append(cell);
   });

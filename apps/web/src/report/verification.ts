@@ -142,7 +142,7 @@ export function verificationSections(): HTMLElement[] {
     section(
       "What was tried, and what broke",
       lead(
-        "Each trajectory places one or more tips and moves them over the mesh. An independent judge checks each step. A step is a breach if the tip comes closer than promised, passes through the surface, or moves although the step failed.",
+        "Each trajectory places one or more tips and moves them over the mesh. An independent judge checks each step. A step is a breach if the tip comes closer than promised, passes through the surface, or moves although the step failed. A step out of the mesh leads a tip that is on the forbidden side back. It may cross the surface, so that no clearance is demanded of it.",
       ),
       scrolled(table(meshes, work, total)),
       ...(entries("/missing").length > 0
