@@ -11,7 +11,8 @@ force of the touch. With a fixture that it does not feel, it presses on until it
 
 While it cuts, the command is at most the tolerance ahead of the tip that it sees: with the stiffness of the tip, 4 N/mm,
 this limits the force to 2 N. Three surgeons pressed an ultrasonic blade with 1.91 N on average ("Ultrasonic tool to
-cut human bone", Proc. IMechE H, doi 10.1177/09544119251399865, 2025, abstract). If the depth was right and two looks in
+cut human bone", Proc. IMechE H, doi 10.1177/09544119251399865, 2025, abstract). A hand whose tip has not followed for
+STALLED decisions pulls on: a fixture may hold the tip. If the depth was right and two looks in
 a row then show an error, the depth is in doubt. The hand lifts the tool out of the kerf, looks, and enters again.
 
 Sources of the values. All were read as abstracts, except where stated.
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from .operator_model import Operator, Streams
     from .trial import Course, Draws, Seen
 
+STALLED = 4
 LOOKS = 256  # random numbers of this many decisions in each millimeter of the path; then they repeat
 
 
@@ -112,6 +114,7 @@ class IntermittentHand:
         self._at_depth = False  # a look showed the wanted depth, since the tool entered
         self._misses = 0  # looks at the depth in a row that showed an error
         self._lifted = False
+        self._stalled = 0  # decisions in a row to go on, without room
 
     def aim(self, cycle: int, approach: int) -> tuple[float, float, float]:
         """Returns the intended place: along, across and below the path [mm]."""
@@ -186,7 +189,9 @@ class IntermittentHand:
             length[1] = -across if abs(across) > tolerance else 0.0
             goes_on = feels or (not self._fixture and self._at_depth and self._misses == 0)
             if goes_on and self._end[0] < self._course.path.length:
-                length[0] = max(0.0, min(self._course.speed * hand.refractory, room_along))
+                pace = self._course.speed * hand.refractory
+                self._stalled = self._stalled + 1 if room_along <= 0.0 else 0
+                length[0] = pace if self._stalled >= STALLED else max(0.0, min(pace, room_along))
             if feels:
                 push = then.push + self._course.force_per_mm * pending[2]
                 length[2] = min(max((hand.touch - push) / self._course.force_per_mm, -tolerance), tolerance)

@@ -8,6 +8,8 @@
 namespace keepout::trial {
 namespace {
 
+constexpr int stalled = 4;  // decisions; then the hand pulls on
+
 int cycles(double seconds, double period) {
   return std::max(1, static_cast<int>(std::nearbyint(seconds / period)));
 }
@@ -103,7 +105,7 @@ class IntermittentHand final : public Hand {
   std::vector<Vector> aims_;
   std::vector<Seen> seen_;
   bool turn_of_depth_ = true, at_depth_ = false, lifted_ = false;
-  int misses_ = 0;
+  int misses_ = 0, stalled_ = 0;
 };
 
 void IntermittentHand::decide(int cycle) {
@@ -160,7 +162,9 @@ void IntermittentHand::decide(int cycle) {
     length[1] = std::abs(across) > tolerance ? -across : 0.0;
     const bool goes_on = feels || (!task_.fixture && at_depth_ && misses_ == 0);
     if (goes_on && end_[0] < task_.length) {
-      length[0] = std::max(0.0, std::min(task_.speed * hand_.refractory, room_along));
+      const double pace = task_.speed * hand_.refractory;
+      stalled_ = room_along <= 0.0 ? stalled_ + 1 : 0;
+      length[0] = stalled_ >= stalled ? pace : std::max(0.0, std::min(pace, room_along));
     }
     if (feels) {
       const double push = then.push + task_.force_per_mm * pending[2];
