@@ -20,7 +20,7 @@ from .comparison import Measure, compare
 from .experiment import Findings, Row, Scale, Unit
 from .operator_model import Operator
 from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, SWEEP, SWEPT, TREMOR, Planned, Trial
+from .teleoperation import CORRIDOR, SWEEP, SWEPT, TREMOR, Planned, Trial, vary
 from .trial import Course, Trace
 
 NAME = "e4_cutting"
@@ -44,7 +44,7 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def planned(mode: str, seed: int, number: int = 0, *, tremor: float = TREMOR, ideal: bool = False,
-            corridor: float = CORRIDOR, operator: Operator = Operator(), setup: SetUp = SetUp(),
+            corridor: float = CORRIDOR, varied: dict[str, float] | None = None, operator: Operator = Operator(), setup: SetUp = SetUp(),
             bone: BoneProperties = BoneProperties()) -> Trial:
     """Returns the trial of a mode. Modes with the same seed and number meet the same operator and registration.
 
@@ -52,7 +52,7 @@ def planned(mode: str, seed: int, number: int = 0, *, tremor: float = TREMOR, id
     """
     path, index = anatomy.phantom()
     course = Course(path=path, depth=anatomy.SHELL, speed=SPEED, bone=None if ideal else bone, time_limit=600.0)
-    return Trial(mode, (seed, 4, number), course, index, replace(operator, tremor=tremor),
+    return Trial(mode, (seed, 4, number), course, index, vary(replace(operator, tremor=tremor), varied),
                  SetUp.ideal() if ideal else setup, corridor)
 
 
@@ -121,20 +121,19 @@ def _cut_by_the_tip(trace: Trace, course: Course) -> tuple[list[float | None], l
 MEASURES = (
     Measure(
         "deviation_mm", "cutting path deviation", "mm", published.PATH_DEVIATION, samples="deviations_mm",
-        why="the free hand is fitted to the paper's. A corridor of 1 mm on each side seldom limits a hand with an "
-        "error of 0.6 mm. The paper's surgeon deviates less with the fixture, probably by effects that are not "
-        "simulated: for example, depth no longer needs attention. The table of sweeps has narrower corridors",
+        why="A corridor of 1 mm on each side seldom limits the operator. With a fixture there are fewer entries "
+        "into the kerf, so its far edge is nearer to the path. The table of sweeps has narrower corridors",
     ),
     Measure(
         "absolute_depth_mm", "absolute penetration depth", "mm", published.PENETRATION_DEPTH, samples="depths_mm",
-        why="the free hand is fitted to the paper's. With a fixture, the remaining depth error is under-cut. "
-        "It comes from the bending of robot and tool, and from the error of registration. "
-        "The paper's rule also stays away from ridges",
+        why="The operator presses with at most two newtons, so the blade seldom breaks through far. With a fixture, "
+        "the depth error comes from the bending of robot and tool, and from the error of registration. "
+        "The paper's rule also stays away from the region in valleys",
     ),
     Measure(
         "duration_s", "duration", "s", published.DURATION,
-        why="the free hand is fitted to the paper's. A hand that leans on a fixture need not wait "
-        "until the eye sees the depth",
+        why="No duration is fitted: the bone resists less, or more, than the paper's phantom. An operator that feels "
+        "a fixture need not look at the depth, nor lift the tool",
     ),
     Measure("greatest_deviation_mm", "greatest deviation", "mm"),
     Measure("over_cut_mm", "greatest over-cut", "mm"),

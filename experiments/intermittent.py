@@ -41,7 +41,7 @@ lift: height of a tool that leaves the kerf; ours.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
+from math import inf, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -161,8 +161,8 @@ class IntermittentHand:
         across = seen_across + pending[1]
         error = seen_depth + pending[2] - self._course.depth
         # How far the command may still go ahead of the tip.
-        room_along = tolerance - (self._end[0] - aim[0] - then.ahead) if cutting else tolerance
-        room_below = tolerance - (self._end[2] - seen_depth) if cutting else tolerance
+        room_along = tolerance - (self._end[0] - aim[0] - then.ahead) if cutting else inf
+        room_below = tolerance - (self._end[2] - seen_depth) if cutting else inf
 
         feels = self._fixture and then.push > self._felt
         length = [0.0, 0.0, 0.0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
@@ -31,16 +31,37 @@ SWEEP = (0.0, 0.049, 0.65)
 #: The modes of the sweeps and of the drawn trajectories.
 SWEPT = ("none", "paper", "certified")
 
+#: Values of the operator that are varied one by one, and the ends of their ranges. Literature: refractory 0.17 s (Miall,
+#: Weir, Stein, 1993) and 0.55 s (van de Kamp et al., 2013, order 2); noise 6 % (finger force with sight and touch) and
+#: 15 % (matching of forces; both Jones, 2000); tremor 0.049 mm (Riviere, Rader, Khosla, 1997) and 0.285 mm (all error of
+#: two surgeons in vivo, PubMed Central PMC3989364). The other ranges are ours: about half and twice the value.
+SENSITIVITY = {
+    "refractory": (0.17, 0.55), "movement": (0.3, 0.8), "noise": (0.06, 0.15), "tremor": (0.049, 0.285),
+    "sight_in_depth": (0.25, 1.0), "tolerance": (0.25, 1.0),
+}
+
 #: A mode, the number of the trial, and the settings of unit() that differ from its defaults.
 Planned = tuple[str, int, dict[str, Any]]
 
 
 def unit(mode: str, number: int, seed: int, *, tremor: float = TREMOR, ideal: bool = False,
-         corridor: float = CORRIDOR) -> Unit:
-    """Returns the unit of one trial of a mode. `ideal`: the set-up has no errors."""
+         corridor: float = CORRIDOR, varied: dict[str, float] | None = None) -> Unit:
+    """Returns the unit of one trial of a mode. `ideal`: the set-up has no errors. `varied`: see vary()."""
     kind = f"tremor{round(tremor * 1000)}um-corridor{round(corridor * 1000)}um{'-ideal' if ideal else ''}"
-    settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "corridor": corridor, "number": number, "seed": seed}
+    kind += "".join(f"-{name}{value:g}" for name, value in (varied or {}).items())
+    settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "corridor": corridor, "varied": varied,
+                "number": number, "seed": seed}
     return Unit(f"{mode}-{kind}-{number}", settings)
+
+
+def vary(operator: Operator, values: dict[str, float] | None) -> Operator:
+    """Returns the operator with other values of itself or of its hand, by name."""
+    for name, value in (values or {}).items():
+        if hasattr(operator, name):
+            operator = replace(operator, **{name: value})
+        else:
+            operator = replace(operator, hand=replace(operator.hand, **{name: value}))
+    return operator
 
 
 @dataclass(frozen=True)

@@ -129,6 +129,7 @@ def run_in_python(
     true_frame = registered.inverse()
     longest = min(course.radius, course.top_speed * period)
     delay = round(setup.latency / period)
+    force_delay = max(1, delay)  # the force of a cycle acts on the hand in the next one at the earliest
     follow = 1.0 if setup.lag == 0.0 else 1.0 - exp(-period / setup.lag)
     bone = Bone(path, course.bone, setup.tip_stiffness) if course.bone else None
     heading = path.heading / sqrt(dot(path.heading, path.heading))
@@ -149,7 +150,7 @@ def run_in_python(
         above = max(0.0, 1.0 - cycle / approach) * START_HEIGHT
         place, up = path.at(along)
         meant = (place + across * path.across - (below - above) * up) / scale
-        pull = pulls[cycle - delay] if cycle >= delay else none
+        pull = pulls[cycle - force_delay] if cycle >= force_delay else none
         handle = arm.move(meant, (meant - intended) / period, pull, period)
         intended = meant
 

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace keepout::trial {
 namespace {
 
+constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int stalled = 4;  // decisions; then the hand pulls on
 
 int cycles(double seconds, double period) {
@@ -129,8 +131,8 @@ void IntermittentHand::decide(int cycle) {
   const double across = seen_across + pending[1];
   const double error = seen_depth + pending[2] - task_.depth;
   const double room_along =
-      task_.cutting ? tolerance - (end_[0] - aim[0] - then.ahead) : tolerance;
-  const double room_below = task_.cutting ? tolerance - (end_[2] - seen_depth) : tolerance;
+      task_.cutting ? tolerance - (end_[0] - aim[0] - then.ahead) : infinity;
+  const double room_below = task_.cutting ? tolerance - (end_[2] - seen_depth) : infinity;
 
   const bool feels = task_.fixture && then.push > task_.felt_force;
   Vector length{};

@@ -41,6 +41,7 @@ Trace run(const Settings& s, Hand& hand, const Rule& rule) {
   const double scale = s.motion_scale;
   const double longest = std::min(s.radius, s.top_speed * s.period);
   const int delay = static_cast<int>(std::nearbyint(s.latency / s.period));
+  const int force_delay = std::max(1, delay);  // the force of a cycle acts in the next one
   const double follow = s.lag == 0.0 ? 1.0 : 1.0 - std::exp(-s.period / s.lag);
   std::optional<Bone> bone;
   if (s.bone) bone.emplace(path, *s.bone, s.tip_stiffness);
@@ -64,17 +65,16 @@ Trace run(const Settings& s, Hand& hand, const Rule& rule) {
         std::max(0.0, 1.0 - static_cast<double>(cycle) / approach) * s.start_height;
     const auto [place, up] = path.at(aim.along);
     const Vec3 meant = (place + aim.across * path.across - (aim.below - above) * up) / scale;
-    const bool late = cycle < delay;
-    const std::size_t then = late ? 0 : static_cast<std::size_t>(cycle - delay);
     pulls.push_back(none);
-    const Vec3 pull = late ? none : pulls[then];
+    const Vec3 pull =
+        cycle < force_delay ? none : pulls[static_cast<std::size_t>(cycle - force_delay)];
     const Vec3 speed = (meant - intended) / s.period;
     const Vec3 handle = arm.move(meant, speed, pull);
     intended = meant;
 
     // The robot: goal, fixture, setpoint, and the new position of the tip.
     goals.push_back(s.registered.moved(scale * handle + s.tremor[now]));
-    const Vec3 goal = goals[then];
+    const Vec3 goal = goals[static_cast<std::size_t>(std::max(0, cycle - delay))];
     Vec3 desired = goal - setpoint;
     const double length = length_of(desired);
     if (length > longest) desired = desired * (longest / length);
