@@ -2,8 +2,8 @@
 """A shell of bone that a blade cuts: a kerf with walls, and its effect on the tip of the tool.
 
 The kerf is a map of cut depths along and across the path. The blade is a rigid block: `blade` long along the path,
-`kerf` wide, its lower end at the tip. Whatever it passes is cut. A spring of the stiffness of robot and tool pulls the
-tip to the place that it would have in air. The bone resists: a force F moves a face of area A with the speed
+`kerf` wide, its lower end at the tip. It cuts all bone that it passes. A spring of the stiffness of robot and tool
+pulls the tip to the place that it would have in air. The bone resists: a force F moves a face of area A with the speed
 F / (specific resistance times A). The area is that of the bone in front of the blade, beside it or below it. So the
 resistance along and across the kerf grows with the depth of engagement, and the walls of a kerf guide the blade.
 

@@ -28,8 +28,8 @@ SPEED = 2.0  # [mm/s], ours: Li et al. do not give it
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Five trials for each mode, as in Li et al.; full: 40. Also a sweep of tremor, trials without errors of the set-up,
-    and trials with other values of the operator."""
+    """Returns five trials for each mode, as in Li et al.; full: 40. Adds a sweep of tremor, trials without errors of
+    the set-up, and trials with other values of the operator."""
     of_all: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(40 if scale.full else 5)]
     swept = [(mode, n, {"tremor": t}) for mode in SWEPT for t in SWEEP for n in range(10 if scale.full else 1)]
     ideal = [(mode, n, {"ideal": True}) for mode in modes.MODES for n in range(2 if scale.full else 1)]
@@ -39,7 +39,8 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def planned(mode: str, seed: int, number: int = 0, *, tremor: float = TREMOR, ideal: bool = False,
-            corridor: float = CORRIDOR, varied: dict[str, float] | None = None, operator: Operator = Operator(), setup: SetUp = SetUp()) -> Trial:
+            corridor: float = CORRIDOR, varied: dict[str, float] | None = None, operator: Operator = Operator(),
+            setup: SetUp = SetUp()) -> Trial:
     """Returns the trial of a mode. Modes with the same seed and number meet the same operator and registration."""
     path, index = anatomy.printed_skull()
     course = Course(path=path, depth=0.0, speed=SPEED, time_limit=240.0)
@@ -119,8 +120,8 @@ def _sensitivity(rows: list[Row]) -> Table:
                       *(f"{a:.2f} → {b:.2f}" for a, b in zip(free, held, strict=True))])
     return Table(
         "Other values of the operator",
-        ["value", "finished, free and certified", "arc length", "SPARC", "arc length beyond 1, for each root of a second",
-         "duration [s]"],
+        ["value", "finished, free and certified", "arc length", "SPARC",
+         "arc length beyond 1, for each root of a second", "duration [s]"],
         lines,
         f"Means without a fixture → with certified. The arc length rises at {rises} of {len(kinds)} points. "
         "The arc length depends on the duration; SPARC and the last but one column hardly do.",

@@ -44,8 +44,8 @@ def units(scale: Scale) -> list[Unit]:
 
 
 def planned(mode: str, seed: int, number: int = 0, *, tremor: float = TREMOR, ideal: bool = False,
-            corridor: float = CORRIDOR, varied: dict[str, float] | None = None, operator: Operator = Operator(), setup: SetUp = SetUp(),
-            bone: BoneProperties = BoneProperties()) -> Trial:
+            corridor: float = CORRIDOR, varied: dict[str, float] | None = None, operator: Operator = Operator(),
+            setup: SetUp = SetUp(), bone: BoneProperties = BoneProperties()) -> Trial:
     """Returns the trial of a mode. Modes with the same seed and number meet the same operator and registration.
 
     `ideal`: no errors of the set-up, and no bone: no force, no deflection.

@@ -9,33 +9,43 @@ errors above a tolerance. It goes on along the path only if the last look at the
 A hand that feels a fixture has no need to look at the depth. It looks at the path in each decision, and keeps the
 force of the touch. With a fixture that it does not feel, it presses on until it does.
 
-While it cuts, the command is at most the tolerance ahead of the tip that it sees: with the stiffness of the tip, 4 N/mm,
-this limits the force to 2 N. Three surgeons pressed an ultrasonic blade with 1.91 N on average ("Ultrasonic tool to
+While it cuts, the command is at most the tolerance ahead of the tip that it sees. The stiffness of the tip is 4 N/mm,
+so this limits the force to 2 N. Three surgeons pressed an ultrasonic blade with 1.91 N on average ("Ultrasonic tool to
 cut human bone", Proc. IMechE H, doi 10.1177/09544119251399865, 2025, abstract). A hand whose tip has not followed for
-STALLED decisions pulls on: a fixture may hold the tip. If the depth was right and two looks in
-a row then show an error, the depth is in doubt. The hand lifts the tool out of the kerf, looks, and enters again.
+STALLED decisions pulls on: a fixture may hold the tip. If the depth was right and two looks in a row then show an
+error, the depth is in doubt. The hand lifts the tool out of the kerf, looks, and enters again.
 
 Sources of the values. All were read as abstracts, except where stated.
 
-refractory: van de Kamp, Gawthrop, Gollee, Loram (2013), "Refractoriness in sustained visuo-manual control", PLoS
-    Computational Biology 9: 0.25 s for a system of order 0, which a robot that follows the hand is.
-movement: "bell-shaped components lasting several-hundred milliseconds" in slow tracking (Sakaguchi, 2013,
-    "Intermittent brain motor control observed in continuous tracking task"). Freund and Buedingen (1978, Experimental
-    Brain Research 31): the duration does not depend on the amplitude. 0.5 s is ours, within that description.
-noise: the force of a finger varies by 10.5 % of its amount with haptic feedback alone (Jones, 2000, "Perception and
-    control of finger forces"). That motor noise is proportional to the command is from Harris and Wolpert (1998,
-    "Signal-dependent noise determines motor planning", Nature 394; not read).
-drift: unseen movements drift by 50 mm in 44 cycles of two movements of 150 mm (Patterson, Brown, Wagstaff, Sainburg,
-    2017, PubMed Central PMC5607024): 3.8 % of the distance moved. The direction is constant in a trial.
-tolerance: tracking has an error deadzone of 0.8 degrees at the eye (Miall, Weir, Stein, 1993, "Intermittency in human
-    manual tracking tasks"). It is 0.53 mm if the image of 40 mm around the path fills 60 degrees; that image is ours.
-sight_across: one of the 1,280 pixels of a camera (Li et al. used FLIR Blackfly S) that shows 60 mm; ours.
-sight_in_depth: the same error in an image is worse in depth by distance over separation of the cameras. Existing
-    stereo laparoscopes have a separation of 5 mm (Fishman, Ellis, Hasser, Stern, 2008, Surgical Endoscopy 22). The
+refractory: 0.25 s for a system of order 0, which a robot that follows the hand is. Source: van de Kamp, Gawthrop,
+    Gollee, Loram (2013), "Refractoriness in sustained visuo-manual control", PLoS Computational Biology 9.
+
+movement: slow tracking has "bell-shaped components lasting several-hundred milliseconds". Source: Sakaguchi (2013),
+    "Intermittent brain motor control observed in continuous tracking task". The duration does not depend on the
+    amplitude (Freund and Buedingen, 1978, Experimental Brain Research 31). 0.5 s is ours.
+
+noise: the force of a finger varies by 10.5 % of its amount with haptic feedback alone. Source: Jones (2000),
+    "Perception and control of finger forces". Harris and Wolpert (1998, Nature 394, not read) have the principle that
+    motor noise is proportional to the command.
+
+drift: unseen movements drift by 50 mm in 44 cycles of two movements of 150 mm, which is 3.8 % of the distance moved.
+    Source: Patterson, Brown, Wagstaff, Sainburg (2017), PubMed Central PMC5607024. The direction is constant in a
+    trial.
+
+tolerance: tracking has an error deadzone of 0.8 degrees at the eye. Source: Miall, Weir, Stein (1993), "Intermittency
+    in human manual tracking tasks". It is 0.53 mm if an image of 40 mm fills 60 degrees. That image is ours.
+
+sight_across: a pixel of a camera with 1,280 pixels that shows 60 mm; ours. Li et al. (2020) used FLIR Blackfly S.
+
+sight_in_depth: the error in depth of the same error in an image is larger, by distance over separation of the cameras.
+    Stereo laparoscopes have a separation of 5 mm (Fishman, Ellis, Hasser, Stern, 2008, Surgical Endoscopy 22). The
     distance of 50 mm is ours.
-lasting: the part of the variance of sight that is the same in each look at a place, because the view is the same; ours.
-touch: 0.49 N, the force of a finger that explores a surface (Smith, Gosselin, Houde, 2002, "Deployment of fingertip
-    forces in tactile exploration", Experimental Brain Research 147).
+
+lasting: a part of the error of sight is the same in each look at a place, because the view is the same; ours.
+
+touch: 0.49 N, the force of a finger that explores a surface. Source: Smith, Gosselin, Houde (2002), "Deployment of
+    fingertip forces in tactile exploration", Experimental Brain Research 147.
+
 lift: height of a tool that leaves the kerf; ours.
 """
 from __future__ import annotations
@@ -52,7 +62,7 @@ if TYPE_CHECKING:
     from .operator_model import Operator, Streams
     from .trial import Course, Draws, Seen
 
-STALLED = 4
+STALLED = 4  # decisions; ours
 LOOKS = 256  # random numbers of this many decisions in each millimeter of the path; then they repeat
 
 
@@ -114,7 +124,7 @@ class IntermittentHand:
         self._at_depth = False  # a look showed the wanted depth, since the tool entered
         self._misses = 0  # looks at the depth in a row that showed an error
         self._lifted = False
-        self._stalled = 0  # decisions in a row to go on, without room
+        self._stalled = 0  # decisions to go on, one after another, while the command was too far ahead
 
     def aim(self, cycle: int, approach: int) -> tuple[float, float, float]:
         """Returns the intended place: along, across and below the path [mm]."""
@@ -160,7 +170,7 @@ class IntermittentHand:
         seen_depth = then.depth + hand.sight_in_depth * (lasting * view[1] + fresh * float(sight[1]))
         across = seen_across + pending[1]
         error = seen_depth + pending[2] - self._course.depth
-        # How far the command may still go ahead of the tip.
+        # The command may go ahead of the tip by this much more.
         room_along = tolerance - (self._end[0] - aim[0] - then.ahead) if cutting else inf
         room_below = tolerance - (self._end[2] - seen_depth) if cutting else inf
 

@@ -4,7 +4,7 @@
 Its errors are functions of the place along the path:
 
 A bias, constant in a trial: the error of stereo vision.
-A slow error below 2 Hz: 98.9 % of the power of voluntary motion of eye surgeons is below 2 Hz (Riviere, Rader, Khosla,
+A slow error below 2 Hz. 98.9 % of the power of voluntary motion of eye surgeons is below 2 Hz (Riviere, Rader, Khosla,
 "Characteristics of hand motion of eye surgeons", 1997).
 Adjustments in depth, up and down from 0.5 to 2 Hz, because the eye is not sure of the depth. Li et al. (2020) argue
 that a fixture makes motion smoother because it takes these away.

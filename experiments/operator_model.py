@@ -4,15 +4,17 @@
 `Operator.hand` chooses the hand: `intermittent.Intermittent` looks and corrects, `open_loop.OpenLoop` does not. All
 other values are common to both.
 
-Tremor: Riviere and Jensen (2000, "A study of instrument motion in retinal microsurgery", abstract) measured 0.182 mm
-RMS at the tip of a hand-held instrument during vitreoretinal surgery. Its band is 8 to 12 Hz (range of the studies
-that PubMed Central PMC3989364 cites). The robot multiplies it by the motion scale.
-Motion scale: 0.2 is the default of the research kit (jhu-dvrk/sawIntuitiveResearchKit, TeleOperationPSM::Scale).
-Reaction: 0.14 s is the delay of the feedback in the model of van de Kamp, Gawthrop, Gollee, Loram (2013, "Refractoriness
-in sustained visuo-manual control", PLoS Computational Biology 9, figure 8).
-Least force that the hand notices: 0.04 N, the mean over wrist, elbow and shoulder in active motion (Feyzabadi et al.,
-2013, "Human force discrimination during active arm motion for force feedback design", IEEE Transactions on Haptics 6,
-abstract).
+Tremor: 0.182 mm RMS at the tip of a hand-held instrument during retinal surgery. Source: Riviere and Jensen (2000), "A
+    study of instrument motion in retinal microsurgery", abstract. Its band is 8 to 12 Hz (PubMed Central PMC3989364,
+    introduction). The robot multiplies it by the motion scale.
+
+Motion scale: 0.2, the default of the research kit (jhu-dvrk/sawIntuitiveResearchKit, TeleOperationPSM::Scale).
+
+Reaction: 0.14 s, the delay of feedback in a model of manual tracking. Source: van de Kamp, Gawthrop, Gollee, Loram
+    (2013), "Refractoriness in sustained visuo-manual control", PLoS Computational Biology 9, figure 8.
+
+Least force that the hand notices: 0.04 N, the mean over wrist, elbow and shoulder in motion. Source: Feyzabadi et al.
+    (2013), "Human force discrimination during active arm motion for force feedback design", abstract.
 
 The arm is a mass on a spring and a damper between the intended position and the handle, the usual form. Sources:
 Speich, Shao, Goldfarb, "Modeling the human hand as it interacts with a telemanipulation system", Mechatronics 15,

@@ -49,9 +49,9 @@ def arc_length_bounds(variation: float, band: float, duration: float, cut_off: f
     length of a constant speed plus n.
 
     Derivation of n: the noise has a complex Gaussian spectrum with E|V|^2 = variation^2 / (2 band duration), relative
-    to V(0). Rice (1945, "Mathematical analysis of random noise", section 3.7) gives the derivative of the envelope of
-    such a process: it is Gaussian, with the standard deviation 2 pi duration sqrt(E|V|^2 / 24). The integral of its
-    mean size, sqrt(2 / pi) times that, up to `band` is n.
+    to V(0). The derivative of the envelope of such a process is Gaussian (Rice, 1945, "Mathematical analysis of
+    random noise", section 3.7; not read). Its standard deviation is 2 pi duration sqrt(E|V|^2 / 24). The integral of
+    its mean size, sqrt(2 / pi) times that, up to `band` is n.
     """
     noise = float(variation * np.sqrt(np.pi * band * duration / 6.0))
     rate = 5.0 * cut_off

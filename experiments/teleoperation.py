@@ -31,10 +31,11 @@ SWEEP = (0.0, 0.049, 0.65)
 #: The modes of the sweeps and of the drawn trajectories.
 SWEPT = ("none", "paper", "certified")
 
-#: Values of the operator that are varied one by one, and the ends of their ranges. Literature: refractory 0.17 s (Miall,
-#: Weir, Stein, 1993) and 0.55 s (van de Kamp et al., 2013, order 2); noise 6 % (finger force with sight and touch) and
-#: 15 % (matching of forces; both Jones, 2000); tremor 0.049 mm (Riviere, Rader, Khosla, 1997) and 0.285 mm (all error of
-#: two surgeons in vivo, PubMed Central PMC3989364). The other ranges are ours: about half and twice the value.
+#: Values of the operator that are varied one by one, and the ends of their ranges. From literature: refractory 0.17 s
+#: (Miall, Weir, Stein, 1993) and 0.55 s (van de Kamp et al., 2013, order 2). Noise 6 % (finger force with sight and
+#: touch) and 15 % (matching of forces; both Jones, 2000). Tremor 0.049 mm (Riviere, Rader, Khosla, 1997) and 0.285 mm
+#: (all error of two surgeons in vivo, PubMed Central PMC3989364). The other ranges are ours: about half and twice the
+#: value.
 SENSITIVITY = {
     "refractory": (0.17, 0.55), "movement": (0.3, 0.8), "noise": (0.06, 0.15), "tremor": (0.049, 0.285),
     "sight_in_depth": (0.25, 1.0), "tolerance": (0.25, 1.0),
@@ -104,9 +105,9 @@ def measures(trace: Trace, course: Course, judge: Judge | None) -> Row:
     """Returns the measures of a trial, after the approach. A measure without a meaning is null, such as the duration
     of an unfinished trial.
 
-    `irregularity` is the arc length beyond 1, for each root of a second: by the law of
-    smoothness.arc_length_bounds() it hardly depends on the duration. `energy_mj` is the work of the fixture's force on the handle;
-    below 0 the fixture took energy. The judge adds what happened to the anatomy: see _judged().
+    `irregularity` is the arc length beyond 1, for each root of a second: by the law of smoothness.arc_length_bounds()
+    it hardly depends on the duration. `energy_mj` is the work of the fixture's force on the handle; below 0 the fixture
+    took energy. The judge adds what happened to the anatomy: see _judged().
     """
     start, rate = trace.begun, 1.0 / course.period
     speed = np.linalg.norm(np.diff(trace.tip[start:], axis=0), axis=1) * rate

@@ -8,8 +8,8 @@
 If the fixture stops the tip, a force pulls the handle towards the tip. It is proportional to the
 distance between the two (section V-A of Li et al., 2020).
 
-run_trial() is the loop in C++ (benchmarks/native/trial.h). run_in_python() is the same loop, to read and to test the
-other against: both have the same operations in the same order, and bitwise identical results. All random numbers are
+run_trial() is the loop in C++ (benchmarks/native/trial). run_in_python() is the same loop, to read. A test compares
+them: both have the same operations in the same order, and bitwise identical results. All random numbers are
 drawn beforehand, by draw().
 """
 from __future__ import annotations
@@ -58,7 +58,7 @@ class Course:
 
 
 class Seen(NamedTuple):
-    """What the operator can see and feel in a cycle. Lengths are relative to the intended place along the path [mm]."""
+    """The sight and the touch of a cycle. Lengths are relative to the intended place along the path [mm]."""
 
     ahead: float  # of the intended place, along the heading of the path
     across: float

@@ -105,7 +105,8 @@ def test_the_page_has_the_values_that_are_simulated() -> None:
         for of in (Operator(), Intermittent(), OpenLoop(), SetUp(), BoneProperties())
         for name, value in asdict(of).items()
     }
-    rows = re.findall(r"^\| (`(?:Operator|Intermittent|OpenLoop|SetUp|BoneProperties)\.\w+`(?:, `\w+\.\w+`)*) \| ([^|]+) \|", page, re.MULTILINE)
+    name = f"`(?:{'|'.join({of.split('.')[0] for of in known})})\\.\\w+`"
+    rows = re.findall(rf"^\| ({name}(?:, {name})*) \| ([^|]+) \|", page, re.MULTILINE)
     told = set()
     for names, values in rows:
         numbers = [float(number) for number in re.findall(r"\d+\.?\d*", values)]

@@ -56,7 +56,8 @@ def test_the_loop_in_c_plus_plus_has_the_bits_of_the_loop_in_python(mode: str, h
 
 
 def test_trials_in_threads_are_those_in_turn() -> None:
-    trials = [seconds_of(e4_cutting.planned(mode, 1, n), 4.0) for n in range(2) for mode in ("none", "certified", "vector_field")]
+    planned = [(mode, n) for n in range(2) for mode in ("none", "certified", "vector_field")]
+    trials = [seconds_of(e4_cutting.planned(mode, 1, n), 4.0) for mode, n in planned]
     in_turn = [trial.run() for trial in trials]
     with ThreadPoolExecutor(4) as pool:
         in_threads = list(pool.map(Trial.run, trials))

@@ -10,12 +10,12 @@
 
 namespace keepout::trial {
 
-/// What the operator can see and feel in a cycle, relative to the intended place. [mm, N]
+/// The sight and the touch of a cycle, relative to the intended place. [mm, N]
 struct Seen {
   double ahead, across, depth, above, push;
 };
 
-/// What a hand must know of course and operator.
+/// The course and the operator, as a hand needs them.
 struct Task {
   double period, speed, depth, length, force_per_mm, felt_force, reaction;
   bool cutting, fixture;
