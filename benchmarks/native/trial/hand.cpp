@@ -40,8 +40,8 @@ class OpenLoopHand final : public Hand {
     const double aside_squared = seen.ahead * seen.ahead + seen.across * seen.across;
     const double hanging =
         seen.push > task_.felt_force ? 0.0 : std::max(0.0, below_ - seen.depth - seen.above);
-    factors_.push_back(1.0 / (1.0 + (aside_squared + hanging * hanging) /
-                                        (hand_.tolerance * hand_.tolerance)));
+    factors_.push_back(
+        1.0 / (1.0 + (aside_squared + hanging * hanging) / (hand_.tolerance * hand_.tolerance)));
   }
 
  private:
@@ -117,8 +117,7 @@ void IntermittentHand::decide(int cycle) {
   const Vector aim = aims_[seen_in];
   Vector pending;
   for (std::size_t i = 0; i < 3; ++i) pending[i] = end_[i] - aim[i];
-  const double place =
-      std::min(std::max(end_[0], 0.0), static_cast<double>(looks_.size()) - 1.0);
+  const double place = std::min(std::max(end_[0], 0.0), static_cast<double>(looks_.size()) - 1.0);
   const auto millimeter = static_cast<std::size_t>(place);
   const std::size_t number = millimeter * hand_.looks + looks_[millimeter] % hand_.looks;
   ++looks_[millimeter];
@@ -130,8 +129,7 @@ void IntermittentHand::decide(int cycle) {
       then.depth + hand_.sight_in_depth * (lasting * view[1] + fresh * hand_.sight(number, 1));
   const double across = seen_across + pending[1];
   const double error = seen_depth + pending[2] - task_.depth;
-  const double room_along =
-      task_.cutting ? tolerance - (end_[0] - aim[0] - then.ahead) : infinity;
+  const double room_along = task_.cutting ? tolerance - (end_[0] - aim[0] - then.ahead) : infinity;
   const double room_below = task_.cutting ? tolerance - (end_[2] - seen_depth) : infinity;
 
   const bool feels = task_.fixture && then.push > task_.felt_force;
@@ -170,8 +168,8 @@ void IntermittentHand::decide(int cycle) {
     }
     if (feels) {
       const double push = then.push + task_.force_per_mm * pending[2];
-      length[2] = std::min(std::max((hand_.touch - push) / task_.force_per_mm, -tolerance),
-                           tolerance);
+      length[2] =
+          std::min(std::max((hand_.touch - push) / task_.force_per_mm, -tolerance), tolerance);
     }
   }
   turn_of_depth_ = !turn_of_depth_;
@@ -180,8 +178,7 @@ void IntermittentHand::decide(int cycle) {
       std::sqrt(length[0] * length[0] + length[1] * length[1] + length[2] * length[2]);
   if (size > 0.0) {
     for (std::size_t i = 0; i < 3; ++i) {
-      length[i] +=
-          size * (hand_.noise * hand_.motor(number, i) + hand_.drift * hand_.heading[i]);
+      length[i] += size * (hand_.noise * hand_.motor(number, i) + hand_.drift * hand_.heading[i]);
       end_[i] += length[i];
     }
     moves_.push_back({cycle, length});

@@ -100,10 +100,10 @@ Trace run(const Settings& s, Hand& hand, const Rule& rule) {
 
     // The operator sees the tip from above, and feels the fixture.
     const Vec3 offset = tip - place;
-    hand.look({dot(offset, heading), dot(offset, path.across), -dot(offset, up), above,
-               dot(pull, up)});
-    out.finished = aim.along >= path.length &&
-                   path.coordinates(tip).along >= path.length - s.near_the_end;
+    hand.look(
+        {dot(offset, heading), dot(offset, path.across), -dot(offset, up), above, dot(pull, up)});
+    out.finished =
+        aim.along >= path.length && path.coordinates(tip).along >= path.length - s.near_the_end;
   }
   out.begun = std::min(approach, static_cast<int>(out.tip.size()) - 1);
   if (bone) {

@@ -84,12 +84,11 @@ class Anatomy {
     settings.activation = activation;
     settings.options.radius = radius;
     settings.options.margin = margin;
-    auto made =
-        std::make_shared<MotionConstraint>(make_motion_constraint(mesh_, index_, settings));
+    auto made = std::make_shared<MotionConstraint>(make_motion_constraint(mesh_, index_, settings));
     if (!corridor.is_none()) {
-      const Region slab = Region::slab(point(corridor.attr("point")),
-                                       point(corridor.attr("normal")),
-                                       number(corridor, "half_width"));
+      const Region slab =
+          Region::slab(point(corridor.attr("point")), point(corridor.attr("normal")),
+                       number(corridor, "half_width"));
       made->set_guides({Guide::point("corridor", slab)});
     }
     return made;
@@ -117,7 +116,7 @@ Rule rule_of(const py::object& rule) {
 }
 
 Path path_of(const py::object& path) {
-  return {points(path.attr("points")), points(path.attr("up")),   numbers(path.attr("order")),
+  return {points(path.attr("points")), points(path.attr("up")),     numbers(path.attr("order")),
           point(path.attr("across")),  point(path.attr("heading")), number(path, "spacing"),
           number(path, "length")};
 }
@@ -135,14 +134,22 @@ std::unique_ptr<Hand> hand_of(const py::object& hand, const Task& task, const py
   }
   const Vec3 heading = point(draws["heading"]);
   const auto looks = draws["motor"].attr("shape").cast<std::vector<std::size_t>>()[1];
-  return make_hand(
-      Intermittent{number(hand, "refractory"), number(hand, "movement"), number(hand, "noise"),
-                   number(hand, "drift"), number(hand, "sight_across"),
-                   number(hand, "sight_in_depth"), number(hand, "lasting"),
-                   number(hand, "tolerance"), number(hand, "touch"), number(hand, "lift"),
-                   {heading[0], heading[1], heading[2]}, table(draws["motor"]),
-                   table(draws["sight"]), table(draws["view"]), looks},
-      task);
+  return make_hand(Intermittent{number(hand, "refractory"),
+                                number(hand, "movement"),
+                                number(hand, "noise"),
+                                number(hand, "drift"),
+                                number(hand, "sight_across"),
+                                number(hand, "sight_in_depth"),
+                                number(hand, "lasting"),
+                                number(hand, "tolerance"),
+                                number(hand, "touch"),
+                                number(hand, "lift"),
+                                {heading[0], heading[1], heading[2]},
+                                table(draws["motor"]),
+                                table(draws["sight"]),
+                                table(draws["view"]),
+                                looks},
+                   task);
 }
 
 py::dict run_trial(const py::object& course, const py::object& rule, const py::object& op,
@@ -150,22 +157,35 @@ py::dict run_trial(const py::object& course, const py::object& rule, const py::o
                    const py::object& true_frame, const py::dict& draws) {
   const py::module_ names = py::module_::import("experiments.trial");
   const py::object bone = course.attr("bone");
-  Settings s{path_of(course.attr("path")), std::nullopt, number(course, "force_per_mm"),
-             number(course, "greatest_force"), number(course, "radius"),
-             number(course, "top_speed"), number(course, "period"),
-             course.attr("cycles").cast<int>(), number(names, "APPROACH"),
-             number(names, "NEAR_THE_END"), number(names, "START_HEIGHT"),
-             number(op, "motion_scale"), number(op, "mass"), number(op, "stiffness"),
-             number(op, "damping"), number(setup, "latency"), number(setup, "lag"),
-             number(setup, "tip_stiffness"), motion_of(registered), motion_of(true_frame),
+  Settings s{path_of(course.attr("path")),
+             std::nullopt,
+             number(course, "force_per_mm"),
+             number(course, "greatest_force"),
+             number(course, "radius"),
+             number(course, "top_speed"),
+             number(course, "period"),
+             course.attr("cycles").cast<int>(),
+             number(names, "APPROACH"),
+             number(names, "NEAR_THE_END"),
+             number(names, "START_HEIGHT"),
+             number(op, "motion_scale"),
+             number(op, "mass"),
+             number(op, "stiffness"),
+             number(op, "damping"),
+             number(setup, "latency"),
+             number(setup, "lag"),
+             number(setup, "tip_stiffness"),
+             motion_of(registered),
+             motion_of(true_frame),
              points(draws["tremor"])};
   if (!bone.is_none()) {
     s.bone = BoneProperties{number(bone, "thickness"), number(bone, "resistance"),
                             number(bone, "behind"), number(bone, "blade"), number(bone, "kerf")};
   }
-  const Task task{s.period, number(course, "speed"), number(course, "depth"), s.path.length,
-                  s.force_per_mm, number(op, "felt_force"), number(op, "reaction"),
-                  s.bone.has_value(), !rule.is_none()};
+  const Task task{
+      s.period,       number(course, "speed"),  number(course, "depth"), s.path.length,
+      s.force_per_mm, number(op, "felt_force"), number(op, "reaction"),  s.bone.has_value(),
+      !rule.is_none()};
   const std::unique_ptr<Hand> hand = hand_of(op.attr("hand"), task, draws);
   const Rule allowed = rule_of(rule);
   const Trace trace = [&] {

@@ -12,9 +12,7 @@ namespace keepout::trial {
 
 /// Returns the scalar product. Sums from the first component to the last, as the Python loop does;
 /// Eigen sums in another order.
-inline double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// A place relative to a path. [mm]
 struct Coordinates {
