@@ -10,6 +10,7 @@ the control: if only the arc length differs between two motions, they may differ
 from __future__ import annotations
 
 import numpy as np
+from scipy import signal
 
 from .experiment import Array
 
@@ -63,13 +64,12 @@ def _spectrum(speed: Array, rate: float, cut_off: float) -> tuple[Array, Array]:
     speed = np.asarray(speed, dtype=np.float64)
     if speed.ndim != 1 or len(speed) < 2 or not np.all(np.isfinite(speed)):
         raise ValueError("a speed must be a row of finite numbers, at least two")
-    samples = 2 ** (int(np.ceil(np.log2(len(speed)))) + PADDING)
-    frequency = np.fft.rfftfreq(samples, 1.0 / rate)
-    amplitude = np.abs(np.fft.rfft(speed, samples))
+    step = rate / 2 ** (int(np.ceil(np.log2(len(speed)))) + PADDING)
+    count = int(cut_off / step) + 1
+    amplitude = np.abs(signal.zoom_fft(speed, [0.0, count * step], count, fs=rate))
     if amplitude[0] == 0.0:
         raise ValueError("the speed is 0 everywhere, so it has no smoothness")
-    kept = frequency <= cut_off
-    return frequency[kept], amplitude[kept] / amplitude[0]
+    return np.arange(count) * step, amplitude / amplitude[0]
 
 
 def _minus_length(frequency: Array, amplitude: Array) -> float:
