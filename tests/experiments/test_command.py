@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from experiments.bone import BoneProperties
 from experiments.experiment import Claim, Findings, Scale
+from experiments.intermittent import Intermittent
+from experiments.open_loop import OpenLoop
 from experiments.operator_model import Operator
 from experiments.record import write_record
 from experiments.set_up_errors import SetUp
@@ -100,10 +102,11 @@ def test_the_page_has_the_values_that_are_simulated() -> None:
     page = (ROOT / "docs" / "experiments.md").read_text()
     known = {
         f"{type(of).__name__}.{name}": value
-        for of in (Operator(), SetUp(), BoneProperties())
+        for of in (Operator(), Intermittent(), OpenLoop(), SetUp(), BoneProperties())
         for name, value in asdict(of).items()
     }
-    rows = re.findall(r"^\| (`(?:Operator|SetUp|BoneProperties)\.\w+`(?:, `\w+\.\w+`)*) \| ([^|]+) \|", page, re.MULTILINE)
+    name = f"`(?:{'|'.join({of.split('.')[0] for of in known})})\\.\\w+`"
+    rows = re.findall(rf"^\| ({name}(?:, {name})*) \| ([^|]+) \|", page, re.MULTILINE)
     told = set()
     for names, values in rows:
         numbers = [float(number) for number in re.findall(r"\d+\.?\d*", values)]
@@ -111,4 +114,4 @@ def test_the_page_has_the_values_that_are_simulated() -> None:
         assert numbers == [known[name] for name in of_row], names
         told.update(of_row)
     untold = set(known) - told
-    assert untold == {"Operator.motion_scale", "BoneProperties.behind"}
+    assert untold == {"Operator.hand", "BoneProperties.behind"}
