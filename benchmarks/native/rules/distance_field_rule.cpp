@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "distance_field_rule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "nearest_motion.h"
+
+namespace keepout::peers {
+namespace {
+
+class DistanceFieldRule : public Rule {
+ public:
+  DistanceFieldRule(const Task& task, std::shared_ptr<DistanceField> field, FieldUse use)
+      : corridor_(task.corridor),
+        margin_(task.margin + (use == FieldUse::sure ? field->error_bound() : 0.0)),
+        cuts_(use != FieldUse::plane),
+        field_(std::move(field)) {}
+
+  Vec3 step(const Vec3& tip, const Vec3& desired) override {
+    constexpr int turns = 4;
+    const double least = std::min(margin_, field_(tip).distance) - rounding;
+    Vec3 place = tip, rest = desired;
+    for (int turn = 0; turn < turns; ++turn) {
+      const Vec3 motion = within_plane(place, rest);
+      if (!cuts_) return motion;
+      const double fraction = free_fraction(place, motion, least);
+      place += fraction * motion;
+      rest = (1.0 - fraction) * motion;
+      if (fraction == 1.0 || rest.norm() < rounding) break;
+    }
+    return place - tip;
+  }
+
+ private:
+  static constexpr double rounding = 1e-9;  // of the field's values [mm]
+
+  /// Returns the motion within the plane of the field and the corridor.
+  Vec3 within_plane(const Vec3& place, const Vec3& desired) {
+    planes_.begin(corridor_, place);
+    const auto [distance, gradient] = field_(place);
+    const double steep = gradient.norm();
+    if (steep > 0.0) {  // a flat field gives no direction
+      planes_.add(gradient / steep, -std::max(distance - margin_, -recovery));
+    }
+    return planes_.to(desired);
+  }
+
+  /// Returns the fraction of a motion on which the field stays at `least` or above.
+  double free_fraction(const Vec3& from, const Vec3& motion, double least) {
+    constexpr double steepest = 1.7320509;  // each of three partial derivatives is at most 1
+    if (field_(from).distance - steepest * motion.norm() >= least) return 1.0;
+    double begin = 0.0;
+    while (begin < 1.0) {
+      const double end = end_of_cube(from, motion, begin);
+      const double free = free_until(from, motion, begin, end, least);
+      if (free < end) return free;
+      begin = end;
+    }
+    return 1.0;
+  }
+
+  /// Returns where the motion leaves the cube that it is in after the fraction `begin`; at most 1.
+  double end_of_cube(const Vec3& from, const Vec3& motion, double begin) const {
+    const double cell = field_.field().cell();
+    double end = 1.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (motion[axis] == 0.0) continue;
+      const double at = (from[axis] + begin * motion[axis]) / cell;
+      const double side = motion[axis] > 0.0 ? std::floor(at) + 1.0 : std::ceil(at) - 1.0;
+      end = std::min(end, (side * cell - from[axis]) / motion[axis]);
+    }
+    return std::max(end, std::nextafter(begin, 2.0));
+  }
+
+  /// Returns the fraction between `begin` and `end`, in one cube, up to which the field is proved
+  /// to stay at `least` or above.
+  double free_until(const Vec3& from, const Vec3& motion, double begin, double end, double least,
+                    int halvings = 12) {
+    // Just within the cube, where the field is one polynomial of degree three.
+    const auto at = [&](double t) {
+      return field_(from + (begin + t * (end - begin)) * motion).distance;
+    };
+    const double a = at(0.0), b = at(1.0 / 3.0), c = at(2.0 / 3.0), d = at(1.0);
+    // By Bernstein's basis, the polynomial is nowhere below its least control point.
+    const double control_1 = (-5.0 * a + 18.0 * b - 9.0 * c + 2.0 * d) / 6.0;
+    const double control_2 = (2.0 * a - 9.0 * b + 18.0 * c - 5.0 * d) / 6.0;
+    if (std::min({a, control_1, control_2, d}) >= least) return end;
+    if (halvings == 0 || a < least) return begin;
+    const double middle = 0.5 * (begin + end);
+    const double free = free_until(from, motion, begin, middle, least, halvings - 1);
+    return free < middle ? free : free_until(from, motion, middle, end, least, halvings - 1);
+  }
+
+  std::optional<Corridor> corridor_;
+  double margin_;
+  bool cuts_;
+  DistanceField::Reader field_;
+  NearestMotion planes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Rule> distance_field_rule(const Task& task, std::shared_ptr<DistanceField> field,
+                                          FieldUse use) {
+  return std::make_unique<DistanceFieldRule>(task, std::move(field), use);
+}
+
+}  // namespace keepout::peers
