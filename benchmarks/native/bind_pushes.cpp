@@ -89,8 +89,8 @@ benchmarks/native/push.h describes the routes.)")
         Push found;
         {
           const py::gil_scoped_release unlocked;
-          found = push(judge, chosen, hand, start,
-                       {margin, cycles, cycles_inside, best_steps, seed});
+          found =
+              push(judge, chosen, hand, start, {margin, cycles, cycles_inside, best_steps, seed});
         }
         return rows_of(found);
       },

@@ -17,7 +17,8 @@ namespace py = pybind11;
 using py::literals::operator""_a;
 
 void bind_tasks(py::module_& module) {
-  py::class_<Terrain, std::shared_ptr<Terrain>>(module, "Terrain", R"(A mesh with its index, for rules
+  py::class_<Terrain, std::shared_ptr<Terrain>>(module, "Terrain",
+                                                R"(A mesh with its index, for rules
 and hands of C++.
 
 Terrain(vertices, triangles): (n, 3) and (m, 3), shared by all rules, hands and trials on a mesh.)")
@@ -64,7 +65,8 @@ DistanceField(terrain, cell, band): lengths in mm.)")
           [](const std::shared_ptr<Field>& field, const RowsRef& points) {
             Field::Reader reader(field);
             Eigen::VectorXd out(points.rows());
-            for (Eigen::Index i = 0; i < points.rows(); ++i) out[i] = reader(points.row(i)).distance;
+            for (Eigen::Index i = 0; i < points.rows(); ++i)
+              out[i] = reader(points.row(i)).distance;
             return out;
           },
           "points"_a, Unlocked(), "Returns the interpolated distances of (n, 3) points: (n,).")
@@ -73,15 +75,16 @@ DistanceField(terrain, cell, band): lengths in mm.)")
           [](const std::shared_ptr<Field>& field, const RowsRef& points) {
             Field::Reader reader(field);
             Rows out(points.rows(), 3);
-            for (Eigen::Index i = 0; i < points.rows(); ++i) out.row(i) = reader(points.row(i)).gradient;
+            for (Eigen::Index i = 0; i < points.rows(); ++i)
+              out.row(i) = reader(points.row(i)).gradient;
             return out;
           },
           "points"_a, Unlocked(), "Returns the gradients at (n, 3) points: (n, 3).");
 }
 
 void bind_sweeps(py::module_& module) {
-  py::class_<Sweep, std::shared_ptr<Sweep>>(module, "Sweep",
-                                            "Another library's answer for a ball that moves past a mesh.")
+  py::class_<Sweep, std::shared_ptr<Sweep>>(
+      module, "Sweep", "Another library's answer for a ball that moves past a mesh.")
       .def(
           "__call__",
           [](const Sweep& sweep, const Vec3& tip, const Vec3& motion) {
@@ -134,7 +137,8 @@ void bind_rules(py::module_& module) {
         return closest_point_planes(task, named<Obstacles>(names, obstacles), gain);
       },
       "task"_a, "obstacles"_a, "gain"_a, Unlocked(),
-      "Returns the rule with a plane for closest points of the mesh: `nearest`, `minima` or `all`.");
+      "Returns the rule with a plane for closest points of the mesh: `nearest`, `minima` or "
+      "`all`.");
   module.def(
       "distance_field_rule",
       [](const Task& task, const std::shared_ptr<DistanceField>& field, const std::string& use) {

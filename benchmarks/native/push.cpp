@@ -97,8 +97,7 @@ void PointHand::look(const Vec3& tip) {
 
 /// Returns a random rim or saddle near the tip; without one, a corner of the nearest triangle.
 VertexId PointHand::choose_vertex(const Vec3& tip, double distance) {
-  const Terrain::Kind kind =
-      route_ == Route::rim ? Terrain::Kind::rim : Terrain::Kind::saddle;
+  const Terrain::Kind kind = route_ == Route::rim ? Terrain::Kind::rim : Terrain::Kind::saddle;
   VertexId chosen = 0;
   std::size_t seen = 0;
   double nearest = std::numeric_limits<double>::infinity();

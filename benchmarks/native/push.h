@@ -20,18 +20,24 @@ class Hand {
   virtual Vec3 next(const Vec3& tip) = 0;
 };
 
-/// The aim of a PointHand. push: straight in. slide: along the surface, leaning on it. wedge: at
-/// corners and edges nearby, and beyond. press: towards a place behind the surface, with a tremor.
-/// through: at random vertices. rim, saddle: past a rim or a saddle nearby (Terrain::Kind).
-enum class Route { push, slide, wedge, press, through, rim, saddle };
+/// The aim of a PointHand.
+enum class Route {
+  push,     // straight in
+  slide,    // along the surface, leaning on it
+  wedge,    // corners and edges nearby, and beyond
+  press,    // a place behind the surface, with a tremor
+  through,  // random vertices of the mesh
+  rim,      // a place next to a rim nearby: Terrain::Kind
+  saddle    // a place next to a saddle nearby
+};
 
 /// The names of Route.
-inline constexpr std::array<std::string_view, 7> route_names{
-    "push", "slide", "wedge", "press", "through", "rim", "saddle"};
+inline constexpr std::array<std::string_view, 7> route_names{"push",    "slide", "wedge", "press",
+                                                             "through", "rim",   "saddle"};
 
-/// A hand that sees the tip and the surface, and moves at most `longest` [mm] in a cycle. It decides
-/// again after 1 to 10 mm of commanded motion, and on the routes slide and wedge looks again after
-/// 0.5 mm. The same random numbers and tips give the same motions.
+/// A hand that sees the tip and the surface, and moves at most `longest` [mm] in a cycle. It
+/// decides again after 1 to 10 mm of commanded motion, and on the routes slide and wedge looks
+/// again after 0.5 mm. The same random numbers and tips give the same motions.
 class PointHand : public Hand {
  public:
   /// `terrain` must outlive the hand.
@@ -80,9 +86,8 @@ struct PushSettings {
 struct Push {
   int steps = 0;
   bool entered = false;
-  double depth = 0.0;  // the deepest tip, on a closed mesh [mm]
-  /// Of the executed motion; at most twice the margin. [mm]
-  double clearance;
+  double depth = 0.0;       // the deepest tip, on a closed mesh [mm]
+  double clearance;         // of the executed motion, at most twice the margin [mm]
   int unsafe = 0;           // steps that end closer than the margin, and closer than they began
   double free_asked = 0.0;  // length of desired motions that keep the margin [mm]
   double free_lost = 0.0;   // |motion - desired| of these [mm]

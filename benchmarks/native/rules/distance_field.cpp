@@ -197,9 +197,9 @@ DistanceField::Value DistanceField::Reader::operator()(const Vec3& point) {
   const double up_0 = up[0][0] + w[1] * (up[0][1] - up[0][0]);
   const double up_1 = up[1][0] + w[1] * (up[1][1] - up[1][0]);
   const double along = plane[1] - plane[0];
-  return {plane[0] + w[0] * along,
-          Vec3(along, across[0] + w[0] * (across[1] - across[0]), up_0 + w[0] * (up_1 - up_0)) /
-              cell};
+  return {
+      plane[0] + w[0] * along,
+      Vec3(along, across[0] + w[0] * (across[1] - across[0]), up_0 + w[0] * (up_1 - up_0)) / cell};
 }
 
 }  // namespace keepout::peers

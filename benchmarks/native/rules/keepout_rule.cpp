@@ -30,8 +30,7 @@ std::unique_ptr<Rule> keepout_rule(const Task& task, const std::string& activati
   settings.options.recovery = recovery;
   MotionConstraint guard = make_motion_constraint(task.index->shared_mesh(), task.index, settings);
   if (const auto& c = task.corridor) {
-    guard.set_guides(
-        {Guide::point("corridor", Region::slab(c->point, c->normal, c->half_width))});
+    guard.set_guides({Guide::point("corridor", Region::slab(c->point, c->normal, c->half_width))});
   }
   return std::make_unique<KeepoutRule>(std::move(guard));
 }

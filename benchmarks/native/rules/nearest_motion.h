@@ -18,9 +18,7 @@ class NearestMotion {
   void begin(const std::optional<Corridor>& corridor, const Vec3& tip);
 
   /// Allows only motions d with normal . d >= offset. Precondition: `normal` is a unit vector.
-  void add(const Vec3& normal, double offset) {
-    planes_.push_back({normal, offset, no_triangle});
-  }
+  void add(const Vec3& normal, double offset) { planes_.push_back({normal, offset, no_triangle}); }
 
   /// Returns the allowed motion nearest to the desired one; zero if the planes contradict each
   /// other.

@@ -28,7 +28,8 @@ struct Task {
   const Mesh& mesh() const noexcept { return index->mesh(); }
 };
 
-/// Returns the allowed motion of a tip. Make one for each trial: a rule may remember earlier cycles.
+/// Returns the allowed motion of a tip. Make one for each trial: a rule may remember earlier
+/// cycles.
 class Rule {
  public:
   virtual ~Rule() = default;

@@ -22,7 +22,10 @@ class Slide : public Rule {
       rest = planes_.to(rest);
       if (!(rest.dot(desired) > 0.0)) break;
       const auto [fraction, normal] = (*sweep_)(place, rest);
-      place += fraction * rest;
+      const Vec3 end = place + fraction * rest;
+      // The tip moves straight to the end, not around the turn.
+      if (i > 0 && (*sweep_)(tip, end - tip).fraction < 1.0) break;
+      place = end;
       if (fraction == 1.0) break;
       rest *= 1.0 - fraction;
       rest -= std::min(0.0, normal.dot(rest)) * normal;

@@ -23,12 +23,12 @@ class Sweep {
   virtual SweepEnd operator()(const Vec3& tip, const Vec3& motion) const = 0;
 };
 
-/// FCL's continuous collision with CCDC_NAIVE, its default solver. It tests the ball at places along
-/// the motion, with the start and the end, and reports the first place that collides. The end is the
-/// place before; it is the start if the ball collides there. The normal is that of the deepest
-/// contact at the place that collides. Places are at most half a radius apart, so the ball cannot
-/// pass a surface without a collision. Boxes are OBBRSS and the solver for pairs is libccd's, as
-/// usual.
+/// FCL's continuous collision with CCDC_NAIVE, its default solver. It tests the ball at places
+/// along the motion, with the start and the end, and reports the first place that collides. The end
+/// is the place before; it is the start if the ball collides there. The normal is that of the
+/// deepest contact at the place that collides. Places are at most half a radius apart, so the ball
+/// cannot pass a surface without a collision. Boxes are OBBRSS and the solver for pairs is
+/// libccd's, as usual.
 std::unique_ptr<Sweep> continuous_collision(const Mesh& mesh, double radius);
 
 /// FCL's continuous collision with CCDC_CONSERVATIVE_ADVANCEMENT, which needs no places. It misses
