@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -58,7 +59,7 @@ PointHand(terrain, route, longest, seed): one of ROUTES; `longest` motion of a c
 benchmarks/native/push.h describes the routes.)")
       .def(py::init([](const Terrain& terrain, const std::string& route, double longest,
                        std::uint64_t seed) {
-             return PointHand(terrain, route_of(route), longest, Random(seed));
+             return std::make_unique<PointHand>(terrain, route_of(route), longest, Random(seed));
            }),
            "terrain"_a, "route"_a, "longest"_a, "seed"_a, py::keep_alive<1, 2>());
   py::class_<SteadyHand, Hand>(module, "SteadyHand", "A hand that always commands one motion.")

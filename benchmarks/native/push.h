@@ -42,6 +42,8 @@ class PointHand : public Hand {
  public:
   /// `terrain` must outlive the hand.
   PointHand(const Terrain& terrain, Route route, double longest, const Random& random);
+  PointHand(const PointHand&) = delete;  // the neighborhood refers to the budget
+  PointHand& operator=(const PointHand&) = delete;
 
   Vec3 next(const Vec3& tip) override;
 

@@ -165,7 +165,7 @@ def test_a_push_takes_rules_of_python_and_of_cpp_and_none():
     seconds = [push.pop("seconds") for push in (found, same)]
     assert found == same and min(seconds) > 0.0
     assert not found["entered"] and found["clearance"] == pytest.approx(MARGIN) and found["steps"] == 10
-    assert free["entered"] and free["steps"] == 3
+    assert free["entered"] and free["steps"] == 2
 
 
 def test_a_python_rule_that_fails_ends_the_push():
@@ -186,8 +186,9 @@ def test_free_motion_that_a_rule_refuses_is_counted_until_the_tip_enters():
     found = peers.push(peers.Judge(FLOOR, TWO_OF_A_QUAD), Halves(), peers.SteadyHand([0.0, 0.0, -0.4]),
                        [0.0, 0.0, 1.0], margin=MARGIN, cycles=20, best_steps=2)
     # Desired motions from 1, 0.8 and 0.6 mm keep the margin. The next keeps it for 0.2 of 0.4 mm.
+    # The step after that ends just above the plane, and the next one enters.
     assert found["free_asked"] == pytest.approx(1.2) and found["free_lost"] == pytest.approx(0.6)
-    assert found["entered"] and found["unsafe"] == 2
+    assert found["entered"] and found["unsafe"] == 1
     assert (found["excess_of"], found["excess"]) == (1, pytest.approx(0.0, abs=1e-4))
 
 

@@ -26,9 +26,11 @@ class DistanceFieldRule : public Rule {
       const Vec3 motion = within_plane(place, rest);
       if (!cuts_) return motion;
       const double fraction = free_fraction(place, motion, least);
-      const Vec3 end = place + fraction * motion;
-      // The tip moves straight to the end, not around the turn.
-      if (turn > 0 && free_fraction(tip, end - tip, least) < 1.0) break;
+      Vec3 end = place + fraction * motion;
+      if (turn > 0) {  // the tip moves straight to the end, not around the turn
+        end = tip + free_fraction(tip, end - tip, least) * (end - tip);
+        if ((end - tip - desired).norm() >= (place - tip - desired).norm()) break;
+      }
       place = end;
       rest = (1.0 - fraction) * motion;
       if (fraction == 1.0 || rest.norm() < rounding) break;

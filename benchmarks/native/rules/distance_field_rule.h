@@ -18,7 +18,7 @@ enum class FieldUse {
 /// the plane is a vector-field inequality of gain 1 (closest_point_planes.h).
 ///
 /// With `cut` and `sure`, the rest of a shortened motion continues from there with a new plane, at
-/// most three times. It does so only if the straight motion to the new end is free as well. In each
+/// most three times. The straight motion to each new end is tested as well. In each
 /// cube, the least value on the motion is bounded by the control points of its cubic polynomial. So
 /// the field does not fall below the margin between two places, either. With `sure`, a tip that
 /// starts at the enlarged margin therefore keeps the margin from the mesh on its whole path. A tip

@@ -16,19 +16,23 @@ class Slide : public Rule {
 
   Vec3 step(const Vec3& tip, const Vec3& desired) override {
     constexpr int sweeps = 4;
+    constexpr double rise = 1e-3;  // away from the surface, so that rounding is no new contact
     Vec3 place = tip, rest = desired;
     for (int i = 0; i < sweeps; ++i) {
       planes_.begin(corridor_, place);
       rest = planes_.to(rest);
       if (!(rest.dot(desired) > 0.0)) break;
       const auto [fraction, normal] = (*sweep_)(place, rest);
-      const Vec3 end = place + fraction * rest;
-      // The tip moves straight to the end, not around the turn.
-      if (i > 0 && (*sweep_)(tip, end - tip).fraction < 1.0) break;
+      Vec3 end = place + fraction * rest;
+      if (i > 0) {  // the tip moves straight to the end, not around the turn
+        end = tip + (*sweep_)(tip, end - tip).fraction * (end - tip);
+        if ((end - tip - desired).norm() >= (place - tip - desired).norm()) break;
+      }
       place = end;
       if (fraction == 1.0) break;
       rest *= 1.0 - fraction;
       rest -= std::min(0.0, normal.dot(rest)) * normal;
+      rest += rise * rest.norm() * normal;
     }
     return place - tip;
   }
