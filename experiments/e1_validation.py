@@ -286,7 +286,7 @@ def _picture(of: dict[str, list[Row]]) -> Figure:
         ax.set(xscale="log", ylim=(-3, 103))
         ax.set_xticks(LENGTHS, [f"{length:g}" for length in LENGTHS])
         ax.minorticks_off()
-    fig.legend(loc="outside lower center", ncols=3)
+    lower.legend(*upper.get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=3)
     caption = ("Above: loops in which the tip entered, with 95 % intervals. Below: free motion that the rule did not "
                "allow. All loops have the same commanded displacement. An ideal rule is zero in both panels.")
     return Figure("e1_by_step_length", "Loops entered and free motion lost, by step length", caption, figures.svg(fig))

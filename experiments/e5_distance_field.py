@@ -376,8 +376,8 @@ def _figure(rows: list[Row]) -> Figure:
     axes[0].set(xlabel="free space refused [%]", ylabel="loops entered [%]", title="Safety against freedom")
     axes[1].set(xlabel="memory, whole mesh [MB]", ylabel="free space refused [%]", xscale="log",
                 title="Price of a proof")
-    handles, labels = axes[0].get_legend_handles_labels()
-    fig.legend(handles, labels, loc="outside lower center", ncols=2)
+    axes[0].legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), ncol=1)
+    axes[1].legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), ncol=1)
     return Figure(
         "e5_price_of_a_proof", "What a guarantee costs",
         f"Points of a line are cells of {', '.join(f'{cell:g}' for cell in CELLS)} mm. Left: an ideal rule is at the "
