@@ -38,7 +38,7 @@ LENGTHS = (0.01, 0.05, 0.2, 1.0, 5.0)  # the longest motion of a cycle [mm]
 WAY, QUICK_WAY = 100.0, 20.0  # total commanded displacement of a loop [mm]
 HEIGHT = 2.0  # of the highest start above the surface [mm]
 INSIDE_WAY = 5.0  # displacement of a tip that has entered [mm]
-BEST_STEPS = 1  # of a loop, to compare with the best safe step
+BEST_STEPS = 3  # of a loop, to compare with the best safe step
 
 #: The shapes of a quick run: small ones of each kind, and the skull.
 QUICK_SHAPES = ("cube", "sphere", "concave_sphere", "pyramid", "gear", "thin_plates", "star_bumps",
@@ -91,12 +91,12 @@ def _loops(unit: Unit, length: float, index: keepout.Index, judge: Any) -> Row:
     asked = unit.settings
     terrain = terrain_of(index.mesh)
     found = []
+    task, rule = _rule(asked["mode"], length, index)
     for number in range(asked["loops"]):
         route = keepout_peers.ROUTES[number % len(keepout_peers.ROUTES)]
         key = [asked["seed"], number, round(1000 * length), *asked["shape"].encode()]
         seeds = np.random.SeedSequence(key).generate_state(3, np.uint64).tolist()
         start = keepout_peers.start(terrain, route, 1.5 * MARGIN, HEIGHT, seeds[0])
-        task, rule = _rule(asked["mode"], length, index)
         found.append(keepout_peers.push(
             judge, rule, keepout_peers.PointHand(terrain, route, length, seeds[1]), start, margin=task.margin,
             cycles=round(asked["way"] / length), cycles_inside=round(INSIDE_WAY / length), best_steps=BEST_STEPS,
@@ -266,7 +266,7 @@ _LINES = {AS_PUBLISHED: ":", LARGE_SPHERE: "--"}
 
 
 def _picture(of: dict[str, list[Row]]) -> Figure:
-    fig, (upper, lower) = figures.new(170, 165, rows=2)
+    fig, (upper, middle, lower) = figures.new(170, 205, rows=3)
     for place, (mode, rows) in enumerate(of.items()):
         aside = 1.05 ** (place - len(of) / 2)  # so that intervals do not cover each other
         lengths = [length for length in LENGTHS if _at(rows, length)]
@@ -278,17 +278,19 @@ def _picture(of: dict[str, list[Row]]) -> Figure:
         upper.plot(across, share, marker="o", label=_label(mode), **look)
         upper.vlines(across, *bounds, color=look["color"], linewidth=1.0, alpha=0.6)
         if mode != NO_FIXTURE:
-            lost = [100 * _ratio(_at(rows, n), "free_lost", "free_asked") for n in lengths]
-            lower.plot(across, lost, marker="o", **look)
+            for ax, part, whole in ((middle, "free_lost", "free_asked"), (lower, "excess", "excess_of")):
+                ax.plot(across, [100 * _ratio(_at(rows, n), part, whole) for n in lengths], marker="o", **look)
     upper.set(ylabel="loops entered [%]", title="Safety")
-    lower.set(ylabel="free motion lost [%]", title="Freedom", xlabel="longest step [mm]")
-    for ax in (upper, lower):
-        ax.set(xscale="log", ylim=(-3, 103))
+    middle.set(ylabel="free motion lost [%]", title="Freedom in free space")
+    lower.set(ylabel="excess of limited steps [%]", title="Freedom at the surface", xlabel="longest step [mm]")
+    for ax in (upper, middle, lower):
+        ax.set(xscale="log")
         ax.set_xticks(LENGTHS, [f"{length:g}" for length in LENGTHS])
         ax.minorticks_off()
     lower.legend(*upper.get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=3)
-    caption = ("Above: loops in which the tip entered, with 95 % intervals. Below: free motion that the rule did not "
-               "allow. All loops have the same commanded displacement. An ideal rule is zero in both panels.")
+    caption = ("Above: loops in which the tip entered, with 95 % intervals. Middle: free motion that the rule did not "
+               "allow. Below: how much more limited safe steps differ from the desired motion than the best safe step "
+               "does. All loops have the same commanded displacement. An ideal rule is zero in all panels.")
     return Figure("e1_by_step_length", "Loops entered and free motion lost, by step length", caption, figures.svg(fig))
 
 

@@ -132,14 +132,14 @@ def run(unit: Unit) -> list[Row]:
     )
     task = Task(mesh, MARGIN, float(np.hypot(PUSH, SLIDE)) * (1.0 + 1e-9))  # a sphere as large as the longest motion
 
-    def row_of(mode: str, new_rule: Callable[[], Rule], more: Row) -> Row:
-        beside = pushed(new_rule, truth, thicker)
+    def row_of(mode: str, rule: Rule, more: Row) -> Row:
+        beside = pushed(rule, truth, thicker)
         about: Row = {"anatomy": asked["anatomy"], "mode": mode, "triangles": len(mesh), **more}
         thick: Row = {f"thicker_{name}": beside[name] for name in ("loops", "entered", "deepest")}
-        return about | pushed(new_rule, truth, thin) | thick
+        return about | pushed(rule, truth, thin) | thick
 
     memory = {"memory": index.memory, "memory_whole": index.memory, "refused": 0.0, "measured_build_s": built}
-    rows = [row_of(mode, partial(make, task, index), memory) for mode, make in RULES.items()]
+    rows = [row_of(mode, make(task, index), memory) for mode, make in RULES.items()]
     for cell in CELLS:
         field = native.field_of(mesh, cell, MARGIN)
         begun = time.perf_counter()
@@ -150,8 +150,8 @@ def run(unit: Unit) -> list[Row]:
         for use in USES:
             margin = MARGIN + (field.error_bound if use == "sure" else 0.0)
             refused = {"refused": refused_space(field, truth, places, margin)}
-            new_rule = partial(native.distance_field, task, index, cell=cell, use=use)
-            rows.append(row_of(f"field_{use}_{cell:g}", new_rule, {"use": use} | about | refused))
+            rule = native.distance_field(task, index, cell=cell, use=use)
+            rows.append(row_of(f"field_{use}_{cell:g}", rule, {"use": use} | about | refused))
     return rows
 
 
@@ -237,10 +237,10 @@ def pushes_at(truth: Truth, walls: Walls, random: np.random.Generator, loops: in
     return Pushes(walls.front - START * walls.inwards, PUSH * walls.inwards + slide, wall)
 
 
-def pushed(new_rule: Callable[[], Rule], truth: Truth, pushes: Pushes) -> Row:
+def pushed(rule: Rule, truth: Truth, pushes: Pushes) -> Row:
     """Pushes tips at walls. Returns the walls of the tips that enter, how deep they get, and the step time."""
     found = [
-        keepout_peers.push(truth.judge, new_rule(), keepout_peers.SteadyHand(desired), start, margin=MARGIN,
+        keepout_peers.push(truth.judge, rule, keepout_peers.SteadyHand(desired), start, margin=MARGIN,
                            cycles=CYCLES, cycles_inside=CYCLES)
         for start, desired in zip(pushes.starts, pushes.desired)
     ]

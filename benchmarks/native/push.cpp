@@ -162,7 +162,7 @@ Push push(Judge& judge, Rule* rule, Hand& hand, const Vec3& start, const PushSet
       const bool is_safe = !executed.below && !executed.crosses;
       if (is_free) {
         found.free_asked += length;
-        found.free_lost += lost;
+        found.free_lost += std::min(lost, length);
       } else if (is_safe && length > 0.0 && at_start > 0.0) {
         // Reservoir sampling: each limited step is chosen with the same probability.
         ++limited_steps;

@@ -92,7 +92,7 @@ struct Push {
   double clearance;         // of the executed motion, at most twice the margin [mm]
   int unsafe = 0;           // steps that end closer than the margin, and closer than they began
   double free_asked = 0.0;  // length of desired motions that keep the margin [mm]
-  double free_lost = 0.0;   // |motion - desired| of these [mm]
+  double free_lost = 0.0;   // |motion - desired| of these, each at most |desired| [mm]
   double excess = 0.0;      // sum of (|motion - desired| - cost of the best safe step) / |desired|
   int excess_of = 0;        // number of summands
   double seconds = 0.0;     // in the rule

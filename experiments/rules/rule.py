@@ -34,7 +34,10 @@ class Task:
 
 
 class Rule(Protocol):
-    """One for each trial: a rule may remember earlier cycles. The rules of C++ are in native.py."""
+    """One for each trial: a rule may remember earlier cycles. The rules of C++ are in native.py.
+
+    E1 and E5 use one rule for all loops on a shape with a step length.
+    """
 
     def step(self, tip: Array, desired: Array) -> Array:
         """Returns the allowed motion, (3,) in mm, for a tip at `tip` and a desired motion `desired`."""

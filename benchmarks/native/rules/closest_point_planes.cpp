@@ -2,6 +2,7 @@
 #include "closest_point_planes.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -14,34 +15,21 @@
 namespace keepout::peers {
 namespace {
 
-/// Counts the triangles around each vertex and each edge.
-class TriangleCounts {
- public:
-  explicit TriangleCounts(const Mesh& mesh) {
-    for (const Corners& corners : mesh.triangles()) {
-      for (int i = 0; i < 3; ++i) {
-        ++counts_[vertex(corners[i])];
-        ++counts_[edge(corners[i], corners[(i + 1) % 3])];
-      }
-    }
-  }
+/// A vertex or an edge of the mesh, by the numbers of its ends; the same for all its triangles.
+using SharedFeature = std::uint64_t;
 
-  /// Returns the number of the feature of a triangle: a vertex, an edge, or 0 for its inside.
-  static std::uint64_t feature_of(const Corners& corners, Feature feature) {
-    if (is_face(feature)) return 0;
-    const int i = number_of(feature);
-    return is_vertex(feature) ? vertex(corners[i]) : edge(corners[i], corners[(i + 1) % 3]);
-  }
-  int operator()(std::uint64_t feature) const { return counts_.at(feature); }
+SharedFeature edge(VertexId a, VertexId b) {
+  return SharedFeature{std::min(a, b)} << 32 | std::max(a, b);
+}
 
- private:
-  static std::uint64_t vertex(VertexId v) { return edge(v, v); }
-  static std::uint64_t edge(VertexId a, VertexId b) {
-    return (std::uint64_t{std::min(a, b)} << 32 | std::max(a, b)) + 1;
-  }
+/// Precondition: the feature is not the inside of the triangle.
+SharedFeature shared(const Corners& corners, Feature feature) {
+  const int i = number_of(feature);
+  return edge(corners[i], corners[is_vertex(feature) ? i : (i + 1) % 3]);
+}
 
-  std::unordered_map<std::uint64_t, int> counts_;
-};
+constexpr std::array shared_features{Feature::edge_0,   Feature::edge_1,   Feature::edge_2,
+                                     Feature::vertex_0, Feature::vertex_1, Feature::vertex_2};
 
 class ClosestPointPlanes : public Rule {
  public:
@@ -49,9 +37,7 @@ class ClosestPointPlanes : public Rule {
       : task_(task),
         obstacles_(obstacles),
         gain_(gain),
-        near_(task.index->shared_mesh(), task.index, task.mesh().triangle_count(), budget_) {
-    if (obstacles == Obstacles::minima) counts_.emplace(task.mesh());
-  }
+        near_(task.index->shared_mesh(), task.index, task.mesh().triangle_count(), budget_) {}
 
   Vec3 step(const Vec3& tip, const Vec3& desired) override {
     planes_.begin(task_.corridor, tip);
@@ -81,11 +67,27 @@ class ClosestPointPlanes : public Rule {
       chosen_.push_back(*std::min_element(hits.begin(), hits.end(), is_nearer));
     }
     if (obstacles_ != Obstacles::minima) return;
-    agreeing_.clear();
+    // The triangles around a shared feature that have not got it as their nearest point.
+    disagreeing_.clear();
     for (const Hit& hit : hits) {
-      const std::uint64_t feature =
-          TriangleCounts::feature_of(task_.mesh().corners(hit.triangle), hit.closest.feature);
-      if (feature == 0 || ++agreeing_[feature] == (*counts_)(feature)) chosen_.push_back(hit);
+      const Corners& corners = task_.mesh().corners(hit.triangle);
+      if (!is_face(hit.closest.feature)) disagreeing_[shared(corners, hit.closest.feature)] = 0;
+    }
+    for (const Hit& hit : hits) {  // all triangles around such a feature are hits
+      const Corners& corners = task_.mesh().corners(hit.triangle);
+      for (const Feature f : shared_features) {
+        const auto found = disagreeing_.find(shared(corners, f));
+        if (found != disagreeing_.end() && f != hit.closest.feature) ++found->second;
+      }
+    }
+    for (const Hit& hit : hits) {
+      if (is_face(hit.closest.feature)) {
+        chosen_.push_back(hit);
+        continue;
+      }
+      int& disagreeing =
+          disagreeing_[shared(task_.mesh().corners(hit.triangle), hit.closest.feature)];
+      if (disagreeing++ == 0) chosen_.push_back(hit);  // once for all its triangles
     }
   }
 
@@ -110,8 +112,7 @@ class ClosestPointPlanes : public Rule {
   double gain_;
   Budget budget_;
   Neighborhood near_;
-  std::optional<TriangleCounts> counts_;
-  std::unordered_map<std::uint64_t, int> agreeing_;
+  std::unordered_map<SharedFeature, int> disagreeing_;
   std::vector<Hit> chosen_;
   NearestMotion planes_;
 };
