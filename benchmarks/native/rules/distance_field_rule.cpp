@@ -2,6 +2,7 @@
 #include "distance_field_rule.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -59,7 +60,7 @@ class DistanceFieldRule : public Rule {
     double begin = 0.0;
     while (begin < 1.0) {
       const double end = end_of_cube(from, motion, begin);
-      const double free = free_until(from, motion, begin, end, least);
+      const double free = free_until(cubic(from, motion, begin, end), begin, end, least);
       if (free < end) return free;
       begin = end;
     }
@@ -79,23 +80,35 @@ class DistanceFieldRule : public Rule {
     return std::max(end, std::nextafter(begin, 2.0));
   }
 
-  /// Returns the fraction between `begin` and `end`, in one cube, up to which the field is proved
-  /// to stay at `least` or above.
-  double free_until(const Vec3& from, const Vec3& motion, double begin, double end, double least,
-                    int halvings = 12) {
-    // Just within the cube, where the field is one polynomial of degree three.
+  /// The control points, in Bernstein's basis, of the field along a part of a motion in one cube.
+  /// The field is nowhere below the least of them.
+  using Cubic = std::array<double, 4>;
+
+  /// Returns the field between two fractions of a motion, where it is one polynomial of degree
+  /// three.
+  Cubic cubic(const Vec3& from, const Vec3& motion, double begin, double end) {
     const auto at = [&](double t) {
       return field_(from + (begin + t * (end - begin)) * motion).distance;
     };
     const double a = at(0.0), b = at(1.0 / 3.0), c = at(2.0 / 3.0), d = at(1.0);
-    // By Bernstein's basis, the polynomial is nowhere below its least control point.
-    const double control_1 = (-5.0 * a + 18.0 * b - 9.0 * c + 2.0 * d) / 6.0;
-    const double control_2 = (2.0 * a - 9.0 * b + 18.0 * c - 5.0 * d) / 6.0;
-    if (std::min({a, control_1, control_2, d}) >= least) return end;
-    if (halvings == 0 || a < least) return begin;
-    const double middle = 0.5 * (begin + end);
-    const double free = free_until(from, motion, begin, middle, least, halvings - 1);
-    return free < middle ? free : free_until(from, motion, middle, end, least, halvings - 1);
+    return {a, (-5.0 * a + 18.0 * b - 9.0 * c + 2.0 * d) / 6.0,
+            (2.0 * a - 9.0 * b + 18.0 * c - 5.0 * d) / 6.0, d};
+  }
+
+  /// Returns the fraction between `begin` and `end` up to which a polynomial is proved to stay at
+  /// `least` or above.
+  static double free_until(const Cubic& p, double begin, double end, double least,
+                           int halvings = 12) {
+    if (std::min({p[0], p[1], p[2], p[3]}) >= least) return end;
+    if (halvings == 0 || p[0] < least) return begin;
+    // De Casteljau's halves.
+    const auto mean = [](double a, double b) { return 0.5 * (a + b); };
+    const double a = mean(p[0], p[1]), b = mean(p[1], p[2]), c = mean(p[2], p[3]);
+    const double ab = mean(a, b), bc = mean(b, c), half = mean(ab, bc);
+    const double middle = mean(begin, end);
+    const double free = free_until({p[0], a, ab, half}, begin, middle, least, halvings - 1);
+    if (free < middle) return free;
+    return free_until({half, bc, c, p[3]}, middle, end, least, halvings - 1);
   }
 
   std::optional<Corridor> corridor_;
