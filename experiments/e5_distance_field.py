@@ -387,6 +387,8 @@ def _figure(rows: list[Row]) -> Figure:
     axes[0].set(xlabel="free space refused [%]", ylabel="loops entered [%]", title="Safety against freedom")
     axes[1].set(xlabel="memory, whole mesh [MB]", ylabel="free space refused [%]", xscale="log",
                 title="Price of a proof")
+    axes[1].xaxis.set_major_formatter("{x:g}")
+    axes[1].minorticks_off()
     axes[0].legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), ncol=1)
     axes[1].legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), ncol=1)
     return Figure(
