@@ -35,17 +35,17 @@ OURS = "certified"
 
 MARGIN = 0.2  # [mm]
 LENGTHS = (0.01, 0.05, 0.2, 1.0, 5.0)  # the longest motion of a cycle [mm]
-WAY, QUICK_WAY = 100.0, 20.0  # total commanded displacement of a loop [mm]
+WAY = 20.0  # total commanded displacement of a loop [mm]
 HEIGHT = 2.0  # of the highest start above the surface [mm]
 INSIDE_WAY = 5.0  # displacement of a tip that has entered [mm]
-BEST_STEPS = 3  # of a loop, to compare with the best safe step
+BEST_STEPS = 1  # of a loop, to compare with the best safe step
 
 #: The shapes of a quick run: small ones of each kind, and the skull.
 QUICK_SHAPES = ("cube", "sphere", "concave_sphere", "pyramid", "gear", "thin_plates", "star_bumps",
                 "cortex", "far_cube", "pinion", "femur", "skull")
 
 #: Loops of a shape, a mode and a step length, and more loops of the certified rule in a full run.
-LOOPS, FULL_LOOPS, MORE_LOOPS = 7, 14, 49
+LOOPS, FULL_LOOPS, MORE_LOOPS = 7, 70, 280
 
 E1_MODES = (*MODES[:MODES.index("paper")], AS_PUBLISHED, "paper", LARGE_SPHERE, *MODES[MODES.index("paper") + 1:])
 
@@ -57,8 +57,7 @@ def units(scale: Scale) -> list[Unit]:
     if scale.full:
         loops[OURS] = MORE_LOOPS
     return [
-        Unit(f"{shape}_{mode}", {"shape": shape, "mode": mode, "loops": loops[mode], "seed": scale.seed,
-                                 "way": WAY if scale.full else QUICK_WAY})
+        Unit(f"{shape}_{mode}", {"shape": shape, "mode": mode, "loops": loops[mode], "seed": scale.seed})
         for shape in shapes
         for mode in E1_MODES
     ]
@@ -99,7 +98,7 @@ def _loops(unit: Unit, length: float, index: keepout.Index, judge: Any) -> Row:
         start = keepout_peers.start(terrain, route, 1.5 * MARGIN, HEIGHT, seeds[0])
         found.append(keepout_peers.push(
             judge, rule, keepout_peers.PointHand(terrain, route, length, seeds[1]), start, margin=task.margin,
-            cycles=round(asked["way"] / length), cycles_inside=round(INSIDE_WAY / length), best_steps=BEST_STEPS,
+            cycles=round(WAY / length), cycles_inside=round(INSIDE_WAY / length), best_steps=BEST_STEPS,
             seed=seeds[2]))
     sums = {name: sum(loop[name] for loop in found)
             for name in ("steps", "unsafe", "free_asked", "free_lost", "excess", "excess_of")}
@@ -243,9 +242,9 @@ def _overview(of: dict[str, list[Row]]) -> Table:
         f"{max(row['deepest'] for row in rows):.2f}", f"{min(row['clearance'] for row in rows):.3g}",
         _percent(rows), _percent(rows, "excess", "excess_of") if mode != NO_FIXTURE else "-",
     ] for mode, rows in of.items() if rows]
-    note = (f"A loop has {WAY:g} mm of commanded motion, or {QUICK_WAY:g} mm in a quick run. A tip that entered goes "
-            f"on for {INSIDE_WAY:g} mm. Lost: free motion that the rule did not allow. Excess: how much more limited "
-            "safe steps differ from the desired motion than the best safe step does, relative to the desired motion.")
+    note = (f"A loop has {WAY:g} mm of commanded motion. A tip that entered goes on for {INSIDE_WAY:g} mm. Lost: free "
+            "motion that the rule did not allow. Excess: how much more limited safe steps differ from the desired "
+            "motion than the best safe step does, relative to the desired motion.")
     columns = ["mode", "steps", "never entered, entered", "deepest [mm]", "least clearance [mm]", "lost", "excess"]
     return Table("Modes over all closed shapes and step lengths", columns, lines, note)
 

@@ -19,7 +19,7 @@ def rows_of(mode, entered, **more):
 
 
 def test_pairs_are_loops_that_both_modes_have():
-    first, second = rows_of("paper", [1, 2, 3]), rows_of("certified", [3, 40], loops=49)
+    first, second = rows_of("paper", [1, 2, 3]), rows_of("certified", [3, 40], loops=280)
     pairs = 14 * len(e1.LENGTHS)
     only = 2 * len(e1.LENGTHS)
     p = 2.0 / 2**only
@@ -35,7 +35,7 @@ def test_without_an_entry_the_interval_ends_at_the_bound_of_clopper_and_pearson(
 
 def test_best_are_the_modes_without_an_entry_that_lose_least():
     rows = [*rows_of("none", [0]), *rows_of(e1.AS_PUBLISHED, [], lost=3.0), *rows_of("paper", [], lost=5.0),
-            *rows_of("certified", [], loops=49), *rows_of("vector_field", [2])]
+            *rows_of("certified", [], loops=280), *rows_of("vector_field", [2])]
     found = e1.findings(rows, Scale())
     shapes, lost = found.claims
     assert shapes.best == "the paper's, no margin, the paper's rule, certified"
@@ -49,8 +49,8 @@ def test_all_loops_of_a_mode_have_the_same_displacement_and_those_of_all_modes_t
     assert set(units) == set(e1.E1_MODES)
     assert all(settings == {**units["certified"], "mode": mode} for mode, settings in units.items())
     unit = next(unit for unit in e1.units(Scale()) if unit.name == "cube_certified")
-    short = type(unit)(unit.name, unit.settings | {"way": 10.0, "loops": 2})
+    short = type(unit)(unit.name, unit.settings | {"loops": 2})
     rows = e1.run(short)
-    assert [r["steps"] for r in rows] == [2 * round(10.0 / length) for length in e1.LENGTHS]
+    assert [r["steps"] for r in rows] == [2 * round(e1.WAY / length) for length in e1.LENGTHS]
     assert rows == e1.run(short)
     assert all(r["entered"] == [] and r["unsafe"] == 0 for r in rows)
