@@ -274,7 +274,8 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
         f"Entered: loops in which the tip entered, of all loops at walls thinner than {THIN:g} mm. Refused: the "
         f"fraction of the space between {MARGIN:g} and {NEAR:g} mm from the surface in which a tip may not be. Memory "
         f"and build time of a field are for a box of {2 * HALF_BOX:g} mm; its memory is also that of the whole mesh, "
-        "in a narrow band. Those of the certified rule are for the index of the whole mesh. All steps run in C++. p: of "
+        "in a narrow band. A field has exact distances, which take longer to build than approximate ones. Memory and "
+        "build time of the certified rule are for the index of the whole mesh. All steps run in C++. p: of "
         "equal loops with certified, over all anatomies (McNemar, a wall counts once; Holm).",
     )
     beside = Table(
