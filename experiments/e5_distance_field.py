@@ -2,11 +2,11 @@
 """E5: what a guarantee costs: distance fields beside the mesh itself, where anatomy is thin.
 
 Most systems use a distance field today. A field that is inflated by its largest error can be trusted, but refuses free
-space. A finer grid refuses less, and costs memory and time. E5 works on closed meshes of anatomy, in the box with
-the most thin walls. It measures the free space that a field refuses, its memory, and its build and step time. It counts
-how often a tip enters that pushes at such walls. Other rules push at the same walls, among them vector-field inequalities with other
-primitives and gains than in the other experiments. Li et al. (2020) have no such experiment. The aneurysm of the
-sample meshes is open at its ends: it has no inside, so it is not used.
+space. A finer grid refuses less, and costs memory and time. E5 works on closed meshes of anatomy, in the box with the
+most thin walls. It measures the free space that a field refuses, its memory, and its build and step time. It counts how
+often a tip enters that pushes at such walls. Other rules push at the same walls, among them vector-field inequalities
+with other primitives and gains than in the other experiments. Li et al. (2020) have no such experiment. The aneurysm of
+the sample meshes is open at its ends: it has no inside, so it is not used.
 """
 from __future__ import annotations
 
