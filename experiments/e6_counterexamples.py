@@ -71,9 +71,11 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
         return "passes later" if row["passes"] else "held"
 
     fewest = min(len(p) for p in passed.values())
+    closed = [e for e in examples if of[e, "paper"]["closed"]]
+    on_closed = ", ".join(f"{e}: {cell(of[e, 'paper'])}" for e in closed)
     return Findings(
-        f"The paper's rule: {said('paper')} ({', '.join(passed['paper']) or 'none'}). Certified: "
-        f"{said('certified')}.",
+        f"The paper's rule on the closed mesh, {on_closed}. Of all, {said('paper')} "
+        f"({', '.join(passed['paper']) or 'none'}). Certified: {said('certified')}.",
         claims=[
             Claim(
                 about="completeness: local cases in which the tip passes through (III-B)",

@@ -60,11 +60,9 @@ MODES = {
     "certified": Look("certified", *_of_pages["certified"]),
     "closest_points_2007": Look("closest points (2007)", "#3e1ae8", "#7853fc"),
     "vector_field": Look("vector field", "#850760", "#b03ead"),
-    "sdf_0.25": Look("distance field, 0.25 mm", "#615503", "#dad00b"),
-    "sdf_0.5": Look("distance field, 0.5 mm", "#283a03", "#b6d287"),
-    "sdf_1": Look("distance field, 1 mm", "#3c9345", "#3c982a"),
-    "fcl_continuous": Look("FCL, continuous", "#3d020d", "#e66072"),
-    "bullet_sweep": Look("Bullet, sweep", "#5e099b", "#ecdcee"),
+    "distance_field": Look("distance field", "#615503", "#dad00b"),
+    "fcl_slide": Look("FCL, sliding", "#3d020d", "#e66072"),
+    "bullet_slide": Look("Bullet, sliding", "#5e099b", "#ecdcee"),
 }
 
 #: The modes that others are compared with: their boxes are fuller, and their names bold.

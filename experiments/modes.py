@@ -7,27 +7,21 @@ from functools import partial
 
 import keepout
 
-from .rules.closest_points_2007 import ClosestPoints2007
-from .rules.collision_library import StopAtContact
-from .rules.keepout_rules import KeepoutRule
+from .rules import native
 from .rules.rule import Rule, Task
-from .rules.signed_distance_field import SignedDistanceField
-from .rules.vector_field_inequality import VectorFieldInequality
 
 #: No fixture: the tip follows the hand.
 NO_FIXTURE = "none"
 
 _rules: dict[str, Callable[[Task, keepout.Index], Rule]] = {
-    "all_faces": partial(KeepoutRule, activation="all_faces"),
-    "paper": partial(KeepoutRule, activation="paper"),
-    "certified": partial(KeepoutRule, activation="certified"),
-    "closest_points_2007": ClosestPoints2007,
-    "vector_field": VectorFieldInequality,
-    "sdf_0.25": partial(SignedDistanceField, cell=0.25),
-    "sdf_0.5": partial(SignedDistanceField, cell=0.5),
-    "sdf_1": partial(SignedDistanceField, cell=1.0),
-    "fcl_continuous": partial(StopAtContact, library="continuous_collision"),
-    "bullet_sweep": partial(StopAtContact, library="convex_sweep"),
+    "all_faces": partial(native.keepout_rule, activation="all_faces"),
+    "paper": partial(native.keepout_rule, activation="paper"),
+    "certified": partial(native.keepout_rule, activation="certified"),
+    "closest_points_2007": partial(native.closest_points, obstacles="minima"),
+    "vector_field": partial(native.closest_points, obstacles="nearest"),
+    "distance_field": partial(native.distance_field, cell=0.25),
+    "fcl_slide": partial(native.slide, library="continuous_collision"),
+    "bullet_slide": partial(native.slide, library="convex_sweep"),
 }
 
 #: All fixtures, in the order of tables and figures.

@@ -18,13 +18,13 @@ from dataclasses import dataclass
 from math import exp, sqrt
 from typing import NamedTuple, Protocol
 
+import keepout_peers
 import numpy as np
 
 from .bone import Bone, BoneProperties
 from .experiment import Array, dot
 from .operator_model import Arm, Operator, Streams, tremor
 from .planned_path import PlannedPath
-from .rules.keepout_rules import KeepoutRule
 from .rules.rule import Rule
 from .set_up_errors import RigidMotion, SetUp
 
@@ -111,11 +111,7 @@ def run_trial(
 
     Runs without Python's lock, except in rules that are written in Python: trials may run in parallel threads.
     """
-    import keepout_trial
-
-    if isinstance(rule, KeepoutRule):
-        rule = rule.native()
-    made = keepout_trial.run(course, rule, operator, setup, registered, registered.inverse(), draws)
+    made = keepout_peers.run_trial(course, rule, operator, setup, registered, registered.inverse(), draws)
     return Trace(**made, registered=registered)
 
 

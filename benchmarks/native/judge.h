@@ -29,6 +29,9 @@ class Judge {
   /// Returns true if the mesh has an inside.
   bool closed() const { return closed_; }
 
+  /// Returns the oracle, which judges one motion.
+  oracle::SafetyOracle& oracle() noexcept { return oracle_; }
+
   /// Returns the distance of each point from the mesh, below 0 inside a closed mesh. [length]
   Eigen::VectorXd distances(const RowsRef& points) {
     require_finite(points.allFinite());

@@ -52,7 +52,7 @@ def test_every_colour_adapts():
     assert styles == 1
     assert not re.search(r"#[0-9a-f]{3,8}\b|rgb|black|white", picture)
     used = set(re.findall(r"var\((--[\w-]+)\)", text))
-    assert {"--ink", "--paper", "--mode-certified", "--mode-sdf_0-25"} <= used
+    assert {"--ink", "--paper", "--mode-certified", "--mode-distance_field"} <= used
     light, dark = re.findall(r"svg\{(.*?)\}", text)
     assert all(f"{name}:#" in light and f"{name}:#" in dark for name in used)
     assert "fill:var(--ink)" in light  # for elements that matplotlib draws in black without a fill attribute

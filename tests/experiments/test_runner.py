@@ -74,9 +74,9 @@ def test_rows_depend_on_their_own_experiment_and_not_on_how_they_are_shown(
     (copy / "trial.py").write_text("# another trial\n")
     assert runner.source_digest("e3_path_tracing") != before["e3_path_tracing"]
     assert runner.source_digest("e2_run_time") == runs  # the experiment has no trials
-    (copy / "rules" / "projection.py").write_text("# another projection\n")
+    (copy / "rules" / "rule.py").write_text("# another interface\n")
     before = runner.source_digest("e1_validation")
-    (copy / "rules" / "vector_field_inequality.py").write_text("# another rule\n")
+    (copy / "rules" / "native.py").write_text("# another rule\n")
     assert runner.source_digest("e1_validation") != before
 
 

@@ -36,7 +36,7 @@ Vec3 RigidMotion::turned(const Vec3& vector) const {
   return {dot(rotation[0], vector), dot(rotation[1], vector), dot(rotation[2], vector)};
 }
 
-Trace run(const Settings& s, Hand& hand, const Rule& rule) {
+Trace run(const Settings& s, Hand& hand, peers::Rule* rule) {
   const Path& path = s.path;
   const double scale = s.motion_scale;
   const double longest = std::min(s.radius, s.top_speed * s.period);
@@ -81,7 +81,7 @@ Trace run(const Settings& s, Hand& hand, const Rule& rule) {
     if (!rule) {
       setpoint = setpoint + desired;
     } else {
-      setpoint = setpoint + rule(setpoint, desired);
+      setpoint = setpoint + rule->step(setpoint, desired);
       Vec3 pulled = s.force_per_mm * (setpoint - goal);
       const double size = length_of(pulled);
       if (size > s.greatest_force) pulled = pulled * (s.greatest_force / size);

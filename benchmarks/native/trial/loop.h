@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "../rules/rule.h"
 #include "bone.h"
 #include "hand.h"
 #include "path.h"
 
 namespace keepout::trial {
-
-/// A rule of a fixture: returns the allowed motion for a tip and its desired motion. [mm]
-using Rule = std::function<Vec3(const Vec3& tip, const Vec3& desired)>;
 
 /// See experiments/set_up_errors.py.
 struct RigidMotion {
@@ -47,7 +44,7 @@ struct Trace {
 };
 
 /// Simulates one trial: run_in_python() of experiments/trial.py in C++, with the same operations in
-/// the same order. An empty rule: no fixture.
-Trace run(const Settings& settings, Hand& hand, const Rule& rule);
+/// the same order. Without a rule there is no fixture.
+Trace run(const Settings& settings, Hand& hand, peers::Rule* rule);
 
 }  // namespace keepout::trial

@@ -39,13 +39,16 @@ class ConvexSweep : public Sweep {
     object_.setWorldTransform(btTransform::getIdentity());
   }
 
-  double time_of_impact(const Vec3& tip, const Vec3& motion) const override {
+  SweepEnd operator()(const Vec3& tip, const Vec3& motion) const override {
     const btTransform from(btQuaternion::getIdentity(), bullet(tip));
     const btTransform to(btQuaternion::getIdentity(), bullet(tip + motion));
     btCollisionWorld::ClosestConvexResultCallback result(from.getOrigin(), to.getOrigin());
     btCollisionWorld::objectQuerySingle(&ball_, from, to, &object_, &shape_,
                                         object_.getWorldTransform(), result, allowed_penetration);
-    return std::clamp(static_cast<double>(result.m_closestHitFraction), 0.0, 1.0);
+    if (!result.hasHit()) return {1.0, Vec3::Zero()};
+    const btVector3& n = result.m_hitNormalWorld;
+    return {std::clamp(static_cast<double>(result.m_closestHitFraction), 0.0, 1.0),
+            {n.x(), n.y(), n.z()}};
   }
 
  private:

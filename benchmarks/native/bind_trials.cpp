@@ -1,22 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module keepout_trial: the loop of experiments/trial.py in C++, and keepout's rules for it.
+// Binds the loop of experiments/trial.py in C++.
 #include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "hand.h"
-#include "keepout/error.h"
-#include "keepout/factory/make_motion_constraint.h"
-#include "keepout/step/guide.h"
-#include "loop.h"
+#include "bindings.h"
+#include "python_rule.h"
+#include "trial/hand.h"
+#include "trial/loop.h"
 
 namespace keepout::trial {
 namespace {
@@ -25,9 +22,6 @@ namespace py = pybind11;
 using py::literals::operator""_a;
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Corner = std::uint32_t;
-using CornerRows = Eigen::Matrix<Corner, Eigen::Dynamic, 3, Eigen::RowMajor>;
-using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 double number(const py::handle& of, const char* name) { return of.attr(name).cast<double>(); }
 
@@ -64,55 +58,6 @@ py::array_t<double> array_of(const std::vector<Vec3>& rows) {
 
 py::array_t<double> array_of(const std::vector<double>& values) {
   return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
-}
-
-/// A mesh and its index, which the rules of many trials share.
-class Anatomy {
- public:
-  Anatomy(const Eigen::Ref<const PointRows>& vertices,
-          const Eigen::Ref<const CornerRows>& triangles) {
-    Surface surface;
-    for (const auto& v : vertices.rowwise()) surface.vertices.emplace_back(v);
-    for (const auto& t : triangles.rowwise()) surface.triangles.push_back({t[0], t[1], t[2]});
-    mesh_ = std::make_shared<const Mesh>(std::move(surface));
-    index_ = make_or_load_index(mesh_, MotionConstraintSettings{});
-  }
-
-  std::shared_ptr<MotionConstraint> rule(const std::string& activation, double radius,
-                                         double margin, const py::object& corridor) const {
-    MotionConstraintSettings settings;
-    settings.activation = activation;
-    settings.options.radius = radius;
-    settings.options.margin = margin;
-    auto made = std::make_shared<MotionConstraint>(make_motion_constraint(mesh_, index_, settings));
-    if (!corridor.is_none()) {
-      const Region slab =
-          Region::slab(point(corridor.attr("point")), point(corridor.attr("normal")),
-                       number(corridor, "half_width"));
-      made->set_guides({Guide::point("corridor", slab)});
-    }
-    return made;
-  }
-
- private:
-  std::shared_ptr<const Mesh> mesh_;
-  std::shared_ptr<const SpatialIndex> index_;
-};
-
-/// Returns the rule: empty for None, one of keepout's, or a Python object with a method step().
-Rule rule_of(const py::object& rule) {
-  if (rule.is_none()) return {};
-  if (py::isinstance<MotionConstraint>(rule)) {
-    const auto constraint = rule.cast<std::shared_ptr<MotionConstraint>>();
-    return [constraint](const Vec3& tip, const Vec3& desired) -> Vec3 {
-      return constraint->step({.tip = tip, .desired = desired}).motion;
-    };
-  }
-  // A handle, because a copy of a py::object would need Python's lock. The caller keeps the rule.
-  return [python = py::handle(rule)](const Vec3& tip, const Vec3& desired) -> Vec3 {
-    const py::gil_scoped_acquire lock;
-    return python.attr("step")(tip, desired).cast<Vec3>();
-  };
 }
 
 Path path_of(const py::object& path) {
@@ -187,10 +132,10 @@ py::dict run_trial(const py::object& course, const py::object& rule, const py::o
       s.force_per_mm, number(op, "felt_force"), number(op, "reaction"),  s.bone.has_value(),
       !rule.is_none()};
   const std::unique_ptr<Hand> hand = hand_of(op.attr("hand"), task, draws);
-  const Rule allowed = rule_of(rule);
+  const peers::RuleArgument fixture(rule);
   const Trace trace = [&] {
     const py::gil_scoped_release release;
-    return run(s, *hand, allowed);
+    return run(s, *hand, fixture.rule());
   }();
   return py::dict("tip"_a = array_of(trace.tip), "setpoint"_a = array_of(trace.setpoint),
                   "goal"_a = array_of(trace.goal), "force"_a = array_of(trace.force),
@@ -202,21 +147,15 @@ py::dict run_trial(const py::object& course, const py::object& rule, const py::o
 }  // namespace
 }  // namespace keepout::trial
 
-PYBIND11_MODULE(keepout_trial, module) {
-  using namespace keepout::trial;
-  module.doc() = "The loop of a trial of experiments/ in C++.";
-  py::register_local_exception<keepout::Error>(module, "Error", PyExc_ValueError);
-  py::class_<keepout::MotionConstraint, std::shared_ptr<keepout::MotionConstraint>>(
-      module, "Rule", py::module_local(), "A rule of keepout for one trial, without Python.");
-  py::class_<Anatomy>(module, "Anatomy",
-                      "A mesh with its index, for the rules of many trials. Anatomy(vertices,\n"
-                      "triangles): (n, 3) and (m, 3).")
-      .def(py::init<const Eigen::Ref<const PointRows>&, const Eigen::Ref<const CornerRows>&>(),
-           "vertices"_a, "triangles"_a, py::call_guard<py::gil_scoped_release>())
-      .def("rule", &Anatomy::rule, "activation"_a, "radius"_a, "margin"_a, "corridor"_a,
-           "Returns a new Rule: the motions of KeepoutRule in experiments/rules/.");
-  module.def("run", &run_trial, "course"_a, "rule"_a, "operator"_a, "setup"_a, "registered"_a,
-             "true_frame"_a, "draws"_a,
-             "Returns the members of a Trace of experiments/trial.py, without `registered`. Runs\n"
-             "without Python's lock, except in a rule with a Python method step().");
+namespace keepout::peers {
+
+void bind_trials(pybind11::module_& module) {
+  using pybind11::literals::operator""_a;
+  module.def("run_trial", &trial::run_trial, "course"_a, "rule"_a, "operator"_a, "setup"_a,
+             "registered"_a, "true_frame"_a, "draws"_a,
+             "Returns the members of a Trace of experiments/trial.py, without `registered`. The\n"
+             "rule is of C++ or Python, or None. Runs without Python's lock, except in a rule of\n"
+             "Python.");
 }
+
+}  // namespace keepout::peers
