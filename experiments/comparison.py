@@ -212,13 +212,13 @@ def _boxes(experiment: str, measure: Measure, by_mode: ByMode) -> Figure:
 def _headline(by_mode: ByMode) -> str:
     certified = by_mode["certified"]
     entered = sum(bool(r["crossings"] or r["deepest_registered_mm"] > 0.0) for r in certified)
-    return (f"certified: {len(certified)} trials, {_unfinished(certified)} unfinished, {entered} of which entered in "
-            "the frame of the fixture.")
+    return (f"certified: {len(certified)} trials. In {entered} of them the setpoint entered the anatomy in the frame of "
+            f"the fixture; {_unfinished(certified)} did not reach the end of the path.")
 
 
 def _mean(values: list[float | None]) -> str:
-    told = [value for value in values if value is not None]
-    return f"{np.mean(told):.2f}" if told else "-"
+    known = [value for value in values if value is not None]
+    return f"{np.mean(known):.2f}, n = {len(known)}" if known else "-, n = 0"
 
 
 def _sweep_table(rows: list[Row], members: tuple[str, ...]) -> Table:

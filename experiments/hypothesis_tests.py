@@ -7,7 +7,7 @@ independent gives p values that are too small. `student` is that test of Li et a
 """
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -156,13 +156,13 @@ def share(count: int, of: int) -> Interval:
     return Interval(count / of, float(found.low), float(found.high))
 
 
-def jackknife(statistic: Callable[[list[int]], float], n: int) -> float:
-    """Returns the standard error of a statistic of n trials: it is computed again without each of them.
+def jackknife_error(without: ArrayLike) -> float:
+    """Returns the standard error of a statistic of n trials from its (n,) values without each of them.
 
-    statistic: takes the numbers of the trials that count. Source: Efron and Stein 1981.
+    Source: Efron and Stein 1981.
     """
-    without = np.array([statistic([i for i in range(n) if i != left]) for left in range(n)])
-    return float(np.sqrt((n - 1) / n * np.sum((without - without.mean()) ** 2)))
+    values = np.asarray(without, dtype=np.float64)
+    return float(np.sqrt((len(values) - 1) * np.mean((values - values.mean()) ** 2)))
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
