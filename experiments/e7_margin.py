@@ -34,8 +34,8 @@ FLES = (0.3, 0.65, 1.0, 1.5)  # root mean square of the vector [mm]; 0.65 as in 
 CONFIDENCES = (0.5, 0.9, 0.99, 0.999)
 LEAST_MARGIN = 0.01  # [mm] without a margin for the registration; certified needs some
 POINT, INSTRUMENT = "point", "instrument"
-DRAWS = {POINT: 400, INSTRUMENT: 200}  # of each FLE in a full run
-QUICK_DRAWS = {POINT: 60, INSTRUMENT: 10}
+DRAWS = {POINT: 400, INSTRUMENT: 100}  # of each FLE in a full run
+QUICK_DRAWS = {POINT: 60, INSTRUMENT: 5}
 
 #: What a margin covers.
 NOTHING, KNOWN, ESTIMATED = "nothing", "registration, FLE known", "registration, FLE estimated"

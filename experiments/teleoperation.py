@@ -16,6 +16,7 @@ from scipy import signal
 from . import modes
 from .experiment import Array, Row, Unit
 from .operator_model import Operator
+from .parameters import scaled
 from .rules.rule import Corridor, Task
 from .set_up_errors import SetUp, fiducials_around, registered_from_true
 from .smoothness import spectral_arc_length, sparc
@@ -47,8 +48,10 @@ def run_unit(
 ) -> tuple[Trace, Row]:
     """Runs the trial of a unit, and returns it with its row of measures. `experiment` is part of the seeds."""
     told = unit.settings
-    operator = replace(operator, tremor=told["tremor"])
-    setup = SetUp.ideal() if told["ideal"] else SetUp()
+    factors = told.get("factors", {})  # of E8: values that are halved or doubled
+    operator = scaled(replace(operator, tremor=told["tremor"]), factors)
+    setup = scaled(SetUp.ideal() if told["ideal"] else SetUp(), factors)
+    course = replace(course, bone=scaled(course.bone, factors)) if course.bone else course
     seeds = (told["seed"], experiment, told["number"], round(told["tremor"] * 1000))
     trace = operate(told["mode"], course, index, operator, setup, seeds, told["corridor"])
     about = {name: value for name, value in told.items() if name != "seed"}
