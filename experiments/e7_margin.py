@@ -9,8 +9,9 @@ can do. A draw touches if the tool reaches the mesh at its true place. The share
 
 The tool is a point, or an instrument of the joint step with shaft, wrist and jaws. Its joints are off their setpoints
 in each cycle, evenly within bounds. The bounds times their levers add to the margin, as docs/choosing_a_margin.md
-says; a margin without them shows what they are for. Peng et al. (2024, abstract) measured errors of 0.104 and 0.120 degrees and 0.118 mm at the first three joints of
-a calibrated cable-driven robot (RAVEN-II); the other three joints have that of the second, which is ours.
+says; a margin without them shows what they are for. Peng
+et al. (2024, abstract) calibrated a cable-driven robot (RAVEN-II). The errors of its first three joints were 0.104 and
+0.120 degrees and 0.118 mm. The other three joints here have the error of the second; this value is ours.
 """
 from __future__ import annotations
 
@@ -213,8 +214,8 @@ class Arm:
     def joint_margin(cls) -> float:
         """Returns the largest displacement of a point of the instrument by the errors of all joints, over the path [mm].
 
-        The lever is the length below the port for yaw and pitch, 1 for the insertion, and the length of wrist and jaws
-        with the radius of the wrist for the others.
+        The lever is the length below the port for yaw and pitch, and 1 for the insertion. For the others it is the
+        length of wrist and jaws, and the radius of the wrist.
         """
         long, short = PORT_HEIGHT + 20.0, 9.1 + 10.2 + cls.RADII[1]
         return float(np.array([long, long, 1.0, short, short, short]) @ JOINT_ERRORS)

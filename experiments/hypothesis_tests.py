@@ -76,9 +76,9 @@ def signed_rank_p(differences: ArrayLike) -> float:
     """Returns the two-sided p of Wilcoxon's signed-rank test, exact also with ties.
 
     differences: (n,), one for each pair. Infinite differences share the largest rank, so a trial without a value can
-    count as the worst (Lachin 1999, worst-rank scores). Zeros are omitted (Wilcoxon 1945); p is 1 if all are zero,
-    and NaN if a difference is NaN. p is twice the smaller tail of the sum of the positive ranks over all signs, at
-    most 1.
+    count as the worst (Lachin 1999, worst-rank scores). Zeros are omitted (Wilcoxon 1945). The p is twice the smaller
+    tail of the sum of the positive ranks over all signs, at most 1. It is 1 if all differences are zero, and NaN if
+    one is NaN.
     """
     values = np.asarray(differences, dtype=np.float64)
     if np.isnan(values).any():
@@ -109,7 +109,7 @@ def effect(differences: ArrayLike, seed: int, resamples: int = 5000) -> Interval
     """Returns the mean of (n,) differences of pairs in their standard deviations: Hedges' g of pairs.
 
     The estimate has Hedges' correction 1 - 3 / (4 (n - 1) - 1) for small samples (Hedges 1981). Below MANY_PAIRS the
-    interval is exact for normal differences: t = mean / (sd / sqrt(n)) is non-central t with the parameter
+    interval is exact for normal differences. There, t = mean / (sd / sqrt(n)) is non-central t, and its parameter is
     sqrt(n) times the true effect (Hedges and Olkin 1985). From MANY_PAIRS on it is the BCa bootstrap of pairs
     (Efron 1987), which needs no normality; the same seed gives the same interval. All is NaN for n < 2 or without
     spread.

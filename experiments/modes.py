@@ -29,7 +29,7 @@ CHOSEN, OWN_RULE = "KEEPOUT_MODES", "KEEPOUT_RULE"
 
 @dataclass(frozen=True)
 class Source:
-    """Where the rule of a mode is: a class in a module of `rules` or in a file, and what its constructor takes."""
+    """The place of the rule of a mode: a class in a module of `rules` or in a file, and options of its constructor."""
 
     module: str  # of experiments.rules, or the path of a file that ends in .py
     class_: str

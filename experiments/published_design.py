@@ -3,7 +3,7 @@
 
 A design draws as many different trials of a mode as Li et al. made. Its statistics are theirs: means, standard
 deviations and extremes of pooled samples, and the pooled Student test, which treats the samples as independent. Over
-many designs, a printed number has a place in the predictive distribution of the simulation, and the test has a rate of
+many designs, a printed number has a place in the predictive distribution of the simulation. The test has a rate of
 false alarms: the share of p below 0.05 if both sides are the same free hand.
 """
 from __future__ import annotations

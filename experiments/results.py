@@ -25,7 +25,7 @@ Digests = dict[str, dict[str, str]]
 
 
 def sources(units: dict[str, list[Unit]]) -> Digests:
-    """Returns the digests of the code behind units, by the name of the experiment. What is built does not count."""
+    """Returns the digests of the code behind units, by the name of the experiment. The libraries that were built do not count."""
     return {name: _digests(name, {unit.settings.get("mode", "") for unit in of}) for name, of in units.items()}
 
 
