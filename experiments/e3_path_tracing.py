@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """E3: the operator traces the outside of a pre-cut skull along a planned path (section V-A).
 
-The path is 30 mm on the outside of the CT skull. The slot exists already, so only the fixture stops the tip; its mesh
-is the whole skull of half a million triangles. Measures smoothness: spectral arc length up to 20 Hz as in Li et al.
-(2020), and SPARC. Also measures the distance from the planned depth, which is the outside smoothed by 1 mm, and the
-distance across the path.
+The path is 30 mm on the outside of the CT skull, smoothed by 1 mm as a print is. The slot exists already, so only the
+fixture stops the tip. Measures smoothness: spectral arc length up to 20 Hz as in Li et al. (2020), and SPARC. Also
+measures the distance from the planned depth, and the distance across the path.
 """
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,41 +16,61 @@ from . import anatomy, figures, modes, published, teleoperation
 from .comparison import Measure, compare, main_rows
 from .experiment import Figure, Findings, Row, Scale, Unit
 from .operator_model import Operator
-from .teleoperation import SWEEP, SWEPT, Planned
-from .trial import Course
+from .set_up_errors import SetUp
+from .teleoperation import CORRIDOR, SWEEP, SWEPT, TREMOR, Planned, Trial
+from .trial import Course, Trace
 
 NAME = "e3_path_tracing"
 TITLE = "E3 Path tracing (section V-A)"
 
 SPEED = 2.0  # [mm/s], ours: Li et al. do not give it
-ADJUSTING = 0.4  # [mm RMS in depth], ours: the arc length hardly depends on it
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Five trials for each mode, as in Li et al.; full: six. Also a sweep of tremor, and trials without errors of the
+    """Five trials for each mode, as in Li et al.; full: 40. Also a sweep of tremor, and trials without errors of the
     set-up."""
-    of_all: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(6 if scale.full else 5)]
-    swept = [(mode, n, {"tremor": t}) for mode in SWEPT for t in SWEEP for n in range(3 if scale.full else 1)]
+    of_all: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(40 if scale.full else 5)]
+    swept = [(mode, n, {"tremor": t}) for mode in SWEPT for t in SWEEP for n in range(10 if scale.full else 1)]
     ideal = [(mode, n, {"ideal": True}) for mode in modes.MODES for n in range(2 if scale.full else 1)]
     return [teleoperation.unit(mode, n, scale.seed, **of) for mode, n, of in of_all + swept + ideal]
+
+
+def planned(mode: str, seed: int, number: int = 0, *, tremor: float = TREMOR, ideal: bool = False,
+            corridor: float = CORRIDOR, operator: Operator = Operator(), setup: SetUp = SetUp()) -> Trial:
+    """Returns the trial of a mode. Modes with the same seed and number meet the same operator and registration."""
+    path, index = anatomy.printed_skull()
+    course = Course(path=path, depth=0.0, speed=SPEED, time_limit=240.0)
+    return Trial(mode, (seed, 3, number), course, index, replace(operator, tremor=tremor),
+                 SetUp.ideal() if ideal else setup, corridor)
+
+
+def trial(mode: str, seed: int, number: int = 0, *, judged: bool = True, **settings: Any) -> Row:
+    """Returns the row of one trial. `settings`: see planned(). With `judged` the row has the measures of the judge."""
+    made = planned(mode, seed, number, **settings)
+    trace = made.run()
+    return made.measures(trace, judged=judged) | _distances(trace, made.course)
 
 
 def run(unit: Unit) -> list[Row]:
     """Runs one trial."""
     told = unit.settings
-    course = Course(path=anatomy.skull_path(), depth=0.0, speed=SPEED, time_limit=120.0)
-    trace, row = teleoperation.run_unit(unit, 3, course, anatomy.real_index("skull"), Operator(adjusting=ADJUSTING))
-    along, across, depth = course.path.depths(trace.tip[trace.begun :])
+    made = planned(**told)
+    trace = made.run()
+    along, _, depth = made.course.path.depths(trace.tip[trace.begun :])
     drawn = told["mode"] in SWEPT and not told["ideal"] and told["number"] < 5
+    about = {name: value for name, value in told.items() if name != "seed"}
     return [
-        row
+        about | made.measures(trace) | _distances(trace, made.course)
         | {
-            "absolute_depth_mm": float(np.abs(depth).mean()),
-            "deviation_mm": float(np.abs(across).mean()),
             "along_mm": np.round(along[::25], 2).tolist() if drawn else None,
             "height_mm": np.round(-depth[::25], 4).tolist() if drawn else None,
         }
     ]
+
+
+def _distances(trace: Trace, course: Course) -> Row:
+    _, across, depth = course.path.depths(trace.tip[trace.begun :])
+    return {"absolute_depth_mm": float(np.abs(depth).mean()), "deviation_mm": float(np.abs(across).mean())}
 
 
 MEASURES = (

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .experiment import Array
+from .experiment import Array, dot
 
 
 @dataclass(frozen=True)
@@ -36,19 +36,40 @@ class PlannedPath:
         place = min(max(along / self.spacing, 0.0), len(self.points) - 1.0)
         low = min(int(place), len(self.points) - 2)
         share = place - low
-        ends = slice(low, low + 2)
-        weights = np.array([1.0 - share, share])
-        return weights @ self.points[ends], weights @ self.up[ends]
+        return (
+            (1.0 - share) * self.points[low] + share * self.points[low + 1],
+            (1.0 - share) * self.up[low] + share * self.up[low + 1],
+        )
 
     @cached_property
-    def _heading(self) -> tuple[Array, Array]:
-        heading = self.points[-1] - self.points[0]
-        return heading, self.points @ heading  # ascends, because the path turns by much less than a right angle
+    def heading(self) -> Array:
+        """The vector from the first point to the last, (3,)."""
+        return self.points[-1] - self.points[0]
+
+    @cached_property
+    def order(self) -> Array:
+        """The scalar product of each point with the heading, (n,). It ascends, because the path turns by much less
+        than a right angle."""
+        return self.points @ self.heading
+
+    def coordinates(self, place: Array) -> tuple[float, float, float]:
+        """Returns where a place (3,) is: along the path, across it, and below it [mm]. Limited to the ends along."""
+        ahead = dot(place, self.heading)
+        low = min(max(int(np.searchsorted(self.order, ahead)) - 1, 0), len(self.order) - 2)
+        share = (ahead - self.order[low]) / (self.order[low + 1] - self.order[low])
+        along = min(max((low + share) * self.spacing, 0.0), self.length)
+        point, up = self.at(along)
+        offset = place - point
+        return along, dot(offset, self.across), -dot(offset, up)
+
+    def place(self, along: float, across: float, below: float) -> Array:
+        """Returns the place (3,) with these coordinates."""
+        point, up = self.at(along)
+        return point + across * self.across - below * up
 
     def abreast(self, places: Array) -> NDArray[np.intp]:
         """Returns the numbers of the points beside places (m, 3) or (3,), in the direction of the whole path."""
-        heading, order = self._heading
-        return np.minimum(np.searchsorted(order, places @ heading), len(self.points) - 1)
+        return np.minimum(np.searchsorted(self.order, places @ self.heading), len(self.points) - 1)
 
     def depths(self, places: Array) -> tuple[Array, Array, Array]:
         """Returns for each of (m, 3) places: along the path, across it, and in depth below it, each in mm."""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import keepout
 import numpy as np
 
-from .experiment import Array
+from .experiment import Array, dot
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,16 @@ class RigidMotion:
         moved: Array = points @ self.rotation.T + self.translation
         return moved
 
+    def turned(self, vector: Array) -> Array:
+        """Returns rotation times a vector (3,), in the order of operations that the C++ loop of trials uses."""
+        return np.array([dot(row, vector) for row in self.rotation])
+
+    def moved(self, point: Array) -> Array:
+        """Returns the image of one point (3,), like turned()."""
+        return self.turned(point) + self.translation
+
     def inverse(self) -> RigidMotion:
+        """Returns the motion back."""
         return RigidMotion(self.rotation.T, -self.rotation.T @ self.translation)
 
 

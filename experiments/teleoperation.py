@@ -2,8 +2,8 @@
 """The common part of the experiments of section V: a trial of a mode, and its measures."""
 from __future__ import annotations
 
-import zlib
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
@@ -15,19 +15,19 @@ from scipy import signal
 
 from . import modes
 from .experiment import Array, Row, Unit
-from .operator_model import Operator
-from .parameters import scaled
+from .operator_model import Operator, streams
 from .rules.rule import Corridor, Task
 from .set_up_errors import SetUp, fiducials_around, registered_from_true
 from .smoothness import spectral_arc_length, sparc
-from .trial import Course, Trace, run_trial
+from .trial import Course, Trace, draw, run_trial
 
 MARGIN = 0.01  # [mm] for each rule: Li et al. (2020) have none, and the certified rule needs some
 CORRIDOR = 1.0  # [mm] on each side of the sagittal plane (V)
 
-#: The tremor of all comparisons, and the sweep [mm RMS of the goal].
-TREMOR = 0.13
-SWEEP = (0.0, 0.05, 0.25)
+#: The tremor of all comparisons, and the sweep [mm RMS at the hand]. 0.049 mm: surgeons who hold an instrument still
+#: (Riviere, Rader, Khosla, 1997). 0.65 mm: 0.13 mm at the tip.
+TREMOR = Operator().tremor
+SWEEP = (0.0, 0.049, 0.65)
 #: The modes of the sweeps and of the drawn trajectories.
 SWEPT = ("none", "paper", "certified")
 
@@ -43,19 +43,35 @@ def unit(mode: str, number: int, seed: int, *, tremor: float = TREMOR, ideal: bo
     return Unit(f"{mode}-{kind}-{number}", settings)
 
 
-def run_unit(
-    unit: Unit, experiment: int, course: Course, index: keepout.Index, operator: Operator = Operator()
-) -> tuple[Trace, Row]:
-    """Runs the trial of a unit, and returns it with its row of measures. `experiment` is part of the seeds."""
-    told = unit.settings
-    factors = told.get("factors", {})  # of E8: values that are halved or doubled
-    operator = scaled(replace(operator, tremor=told["tremor"]), factors)
-    setup = scaled(SetUp.ideal() if told["ideal"] else SetUp(), factors)
-    course = replace(course, bone=scaled(course.bone, factors)) if course.bone else course
-    seeds = (told["seed"], experiment, told["number"], round(told["tremor"] * 1000))
-    trace = operate(told["mode"], course, index, operator, setup, seeds, told["corridor"])
-    about = {name: value for name, value in told.items() if name != "seed"}
-    return trace, about | measures(trace, course, _judge(index))
+@dataclass(frozen=True)
+class Trial:
+    """One trial of a mode. All trials with the same `seeds` have the same hand, tremor, registration and sight."""
+
+    mode: str
+    seeds: tuple[int, ...]
+    course: Course
+    index: keepout.Index
+    operator: Operator = field(default_factory=Operator)
+    setup: SetUp = field(default_factory=SetUp)
+    corridor: float = CORRIDOR
+
+    def run(self, loop: Callable[..., Trace] = run_trial) -> Trace:
+        """Returns the course of the trial. `loop`: run_trial or run_in_python."""
+        random = streams(*self.seeds)
+        path = self.course.path
+        middle = len(path.points) // 2
+        fiducials = fiducials_around(path.points[middle], path.up[middle])
+        registered = registered_from_true(self.setup, fiducials, random("registration"))
+        a, b, c = path.points[0].tolist()
+        x, y, z = path.across.tolist()
+        task = Task(self.index.mesh, MARGIN, self.course.radius, Corridor((a, b, c), (x, y, z), self.corridor))
+        rule = modes.make_rule(self.mode, task, self.index)
+        draws = draw(self.course, self.operator, random)
+        return loop(self.course, rule, self.operator, self.setup, registered, draws)
+
+    def measures(self, trace: Trace, *, judged: bool = True) -> Row:
+        """Returns the measures of a trace, see measures(); with `judged` also those of the judge."""
+        return measures(trace, self.course, _judge(self.index) if judged else None)
 
 
 @lru_cache(maxsize=1)
@@ -63,57 +79,52 @@ def _judge(index: keepout.Index) -> Judge:
     return Judge(index.mesh.vertices, index.mesh.triangles)
 
 
-def operate(
-    mode: str,
-    course: Course,
-    index: keepout.Index,
-    operator: Operator,
-    setup: SetUp,
-    seeds: tuple[int, ...],
-    corridor: float = CORRIDOR,
-) -> Trace:
-    """Runs one trial of a mode. Each mode, and each of the `seeds`, simulates another operator on another day."""
-    random = np.random.default_rng([*seeds, zlib.crc32(mode.encode())])
-    path = course.path
-    middle = len(path.points) // 2
-    fiducials = fiducials_around(path.points[middle], path.up[middle])
-    registered = registered_from_true(setup, fiducials, random)
-    a, b, c = path.points[0].tolist()
-    x, y, z = path.across.tolist()
-    task = Task(index.mesh, MARGIN, course.radius, Corridor((a, b, c), (x, y, z), corridor))
-    return run_trial(course, modes.make_rule(mode, task, index), operator, setup, registered, random)
-
-
-def measures(trace: Trace, course: Course, judge: Judge) -> Row:
+def measures(trace: Trace, course: Course, judge: Judge | None) -> Row:
     """Returns the measures of a trial, after the approach. A measure without a meaning is null, such as the duration
     of an unfinished trial.
 
-    `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture, in the whole trial: what
-    the rule itself allowed. `deepest_mm` is of the tip in the true frame. `beyond_registration_mm` is the part of it
-    that exceeds the displacement by the registration. `energy_mj` is the work of the fixture's force on the handle;
-    below 0 the fixture took energy.
+    `irregularity` is the arc length beyond 1, for each root of a second: by the law of
+    smoothness.arc_length_bounds() it hardly depends on the duration. `energy_mj` is the work of the fixture's force on the handle;
+    below 0 the fixture took energy. The judge adds what happened to the anatomy: see _judged().
     """
     start, rate = trace.begun, 1.0 / course.period
-    tip, setpoint = trace.tip[start:], trace.setpoint[start:]
-    speed = np.linalg.norm(np.diff(tip, axis=0), axis=1) * rate
-    depth = -judge.distances(tip)
-    displaced = np.linalg.norm(trace.registered(tip) - tip, axis=1)
+    speed = np.linalg.norm(np.diff(trace.tip[start:], axis=0), axis=1) * rate
     held = trace.force[start:] > 0.0
-    return {
+    row: Row = {
         "finished": trace.finished,
         "duration_s": len(trace.tip) * course.period if trace.finished else None,
-        "spectral_arc_length": spectral_arc_length(speed, rate) if trace.finished else None,
-        "sparc": sparc(speed, rate) if trace.finished else None,
+        "spectral_arc_length": None,
+        "sparc": None,
+        "irregularity": None,
+        "force_n": float(trace.force[start:].mean()),
+        "greatest_force_n": float(trace.force[start:].max()),
+        "contact_n": float(trace.contact[start:].mean()),
+        "energy_mj": float(trace.power.sum() * course.period),
+        "chatter_um": chatter(trace.setpoint[start:], held, rate) if held.any() else None,
+    }
+    if trace.finished:
+        length, lasted = spectral_arc_length(speed, rate), len(speed) / rate
+        row["spectral_arc_length"], row["sparc"] = length, sparc(speed, rate)
+        row["irregularity"] = (-length - 1.0) / lasted**0.5
+    return row | (_judged(trace, judge) if judge else {})
+
+
+def _judged(trace: Trace, judge: Judge) -> Row:
+    """Returns what a trial did to the anatomy.
+
+    `crossings` and `deepest_registered_mm` are of the setpoint in the frame of the fixture, in the whole trial: what
+    the rule itself allowed. `deepest_mm` is of the tip in the true frame, after the approach. `beyond_registration_mm`
+    is the part of it that exceeds the displacement by the registration.
+    """
+    tip = trace.tip[trace.begun :]
+    depth = -judge.distances(tip)
+    displaced = np.linalg.norm(trace.registered(tip) - tip, axis=1)
+    return {
         "crossings": int(judge.crossings(trace.setpoint[:-1], trace.setpoint[1:]).sum()),
         "deepest_registered_mm": max(0.0, float(-judge.distances(trace.setpoint).min())),
         "deepest_mm": max(0.0, float(depth.max())),
         "registration_error_mm": float(displaced.max()),
         "beyond_registration_mm": max(0.0, float((depth - displaced).max())),
-        "force_n": float(trace.force[start:].mean()),
-        "greatest_force_n": float(trace.force[start:].max()),
-        "contact_n": float(trace.contact[start:].mean()),
-        "energy_mj": float(trace.power.sum() * course.period),
-        "chatter_um": chatter(setpoint, held, rate) if held.any() else None,
     }
 
 

@@ -19,10 +19,11 @@ run_consumer() {
 # bare_compiler FOLDER: makes a compiler and prints its path. The compiler finds only the headers of C, C++
 # and the kernel, and those of -I.
 bare_compiler() {
-  local compiler=${CXX:-c++} folder=$1 version includes= path
+  local compiler=${CXX:-c++} folder=$1 version architecture includes= path
   version=$("$compiler" -dumpversion)
+  architecture=$(dpkg --print-architecture)  # packages of others may be installed beside
   mkdir -p "$folder/headers"
-  dpkg -L libc6-dev linux-libc-dev "libstdc++-${version%%.*}-dev" | grep '^/usr/include/' |
+  dpkg -L {libc6-dev,linux-libc-dev,"libstdc++-${version%%.*}-dev"}:"$architecture" | grep '^/usr/include/' |
     while read -r path; do [ -d "$path" ] || printf '%s\n' "$path"; done |
     (cd "$folder/headers" && xargs cp --parents -sft .)
   # In the search order of the compiler.

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The module keepout_trial: the loop of experiments/trial.py in C++, and keepout's rules for it.
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hand.h"
+#include "keepout/error.h"
+#include "keepout/factory/make_motion_constraint.h"
+#include "keepout/step/guide.h"
+#include "loop.h"
+
+namespace keepout::trial {
+namespace {
+
+namespace py = pybind11;
+using py::literals::operator""_a;
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Corner = std::uint32_t;
+using CornerRows = Eigen::Matrix<Corner, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using PointRows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+double number(const py::handle& of, const char* name) { return of.attr(name).cast<double>(); }
+
+std::vector<double> numbers(const py::handle& array) {
+  const auto doubles = array.cast<Doubles>();
+  return {doubles.data(), doubles.data() + doubles.size()};
+}
+
+std::vector<Vec3> points(const py::handle& array) {
+  const std::vector<double> flat = numbers(array);
+  std::vector<Vec3> out(flat.size() / 3);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = Vec3(flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]);
+  }
+  return out;
+}
+
+Vec3 point(const py::handle& array) { return points(array).at(0); }
+
+/// Returns a table whose rows are those of the last axis.
+Table table(const py::handle& array) {
+  const auto shape = array.attr("shape").cast<std::vector<std::size_t>>();
+  Table out{numbers(array), 1, shape.back()};
+  out.rows = out.numbers.size() / out.columns;
+  return out;
+}
+
+py::array_t<double> array_of(const std::vector<Vec3>& rows) {
+  py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}});
+  double* to = out.mutable_data();
+  for (const Vec3& row : rows) to = std::copy_n(row.data(), 3, to);
+  return out;
+}
+
+py::array_t<double> array_of(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+/// A mesh and its index, which the rules of many trials share.
+class Anatomy {
+ public:
+  Anatomy(const Eigen::Ref<const PointRows>& vertices,
+          const Eigen::Ref<const CornerRows>& triangles) {
+    Surface surface;
+    for (const auto& v : vertices.rowwise()) surface.vertices.emplace_back(v);
+    for (const auto& t : triangles.rowwise()) surface.triangles.push_back({t[0], t[1], t[2]});
+    mesh_ = std::make_shared<const Mesh>(std::move(surface));
+    index_ = make_or_load_index(mesh_, MotionConstraintSettings{});
+  }
+
+  std::shared_ptr<MotionConstraint> rule(const std::string& activation, double radius,
+                                         double margin, const py::object& corridor) const {
+    MotionConstraintSettings settings;
+    settings.activation = activation;
+    settings.options.radius = radius;
+    settings.options.margin = margin;
+    auto made =
+        std::make_shared<MotionConstraint>(make_motion_constraint(mesh_, index_, settings));
+    if (!corridor.is_none()) {
+      const Region slab = Region::slab(point(corridor.attr("point")),
+                                       point(corridor.attr("normal")),
+                                       number(corridor, "half_width"));
+      made->set_guides({Guide::point("corridor", slab)});
+    }
+    return made;
+  }
+
+ private:
+  std::shared_ptr<const Mesh> mesh_;
+  std::shared_ptr<const SpatialIndex> index_;
+};
+
+/// Returns the rule: empty for None, one of keepout's, or a Python object with a method step().
+Rule rule_of(const py::object& rule) {
+  if (rule.is_none()) return {};
+  if (py::isinstance<MotionConstraint>(rule)) {
+    const auto constraint = rule.cast<std::shared_ptr<MotionConstraint>>();
+    return [constraint](const Vec3& tip, const Vec3& desired) -> Vec3 {
+      return constraint->step({.tip = tip, .desired = desired}).motion;
+    };
+  }
+  // A handle, because a copy of a py::object would need Python's lock. The caller keeps the rule.
+  return [python = py::handle(rule)](const Vec3& tip, const Vec3& desired) -> Vec3 {
+    const py::gil_scoped_acquire lock;
+    return python.attr("step")(tip, desired).cast<Vec3>();
+  };
+}
+
+Path path_of(const py::object& path) {
+  return {points(path.attr("points")), points(path.attr("up")),   numbers(path.attr("order")),
+          point(path.attr("across")),  point(path.attr("heading")), number(path, "spacing"),
+          number(path, "length")};
+}
+
+RigidMotion motion_of(const py::object& motion) {
+  return {points(motion.attr("rotation")), point(motion.attr("translation"))};
+}
+
+std::unique_ptr<Hand> hand_of(const py::object& hand, const Task& task, const py::dict& draws) {
+  if (draws.contains("errors")) {
+    const double samples = draws["samples"].cast<double>();
+    return make_hand(OpenLoop{number(hand, "tolerance"), number(hand, "leaning"), samples,
+                              table(draws["errors"])},
+                     task);
+  }
+  const Vec3 heading = point(draws["heading"]);
+  const auto looks = draws["motor"].attr("shape").cast<std::vector<std::size_t>>()[1];
+  return make_hand(
+      Intermittent{number(hand, "refractory"), number(hand, "movement"), number(hand, "noise"),
+                   number(hand, "drift"), number(hand, "sight_across"),
+                   number(hand, "sight_in_depth"), number(hand, "lasting"),
+                   number(hand, "tolerance"), number(hand, "touch"), number(hand, "lift"),
+                   {heading[0], heading[1], heading[2]}, table(draws["motor"]),
+                   table(draws["sight"]), table(draws["view"]), looks},
+      task);
+}
+
+py::dict run_trial(const py::object& course, const py::object& rule, const py::object& op,
+                   const py::object& setup, const py::object& registered,
+                   const py::object& true_frame, const py::dict& draws) {
+  const py::module_ names = py::module_::import("experiments.trial");
+  const py::object bone = course.attr("bone");
+  Settings s{path_of(course.attr("path")), std::nullopt, number(course, "force_per_mm"),
+             number(course, "greatest_force"), number(course, "radius"),
+             number(course, "top_speed"), number(course, "period"),
+             course.attr("cycles").cast<int>(), number(names, "APPROACH"),
+             number(names, "NEAR_THE_END"), number(names, "START_HEIGHT"),
+             number(op, "motion_scale"), number(op, "mass"), number(op, "stiffness"),
+             number(op, "damping"), number(setup, "latency"), number(setup, "lag"),
+             number(setup, "tip_stiffness"), motion_of(registered), motion_of(true_frame),
+             points(draws["tremor"])};
+  if (!bone.is_none()) {
+    s.bone = BoneProperties{number(bone, "thickness"), number(bone, "resistance"),
+                            number(bone, "behind"), number(bone, "blade"), number(bone, "kerf")};
+  }
+  const Task task{s.period, number(course, "speed"), number(course, "depth"), s.path.length,
+                  s.force_per_mm, number(op, "felt_force"), number(op, "reaction"),
+                  s.bone.has_value(), !rule.is_none()};
+  const std::unique_ptr<Hand> hand = hand_of(op.attr("hand"), task, draws);
+  const Rule allowed = rule_of(rule);
+  const Trace trace = [&] {
+    const py::gil_scoped_release release;
+    return run(s, *hand, allowed);
+  }();
+  return py::dict("tip"_a = array_of(trace.tip), "setpoint"_a = array_of(trace.setpoint),
+                  "goal"_a = array_of(trace.goal), "force"_a = array_of(trace.force),
+                  "power"_a = array_of(trace.power), "contact"_a = array_of(trace.contact),
+                  "kerf"_a = array_of(trace.kerf).reshape({trace.kerf_rows, trace.kerf_columns}),
+                  "begun"_a = trace.begun, "finished"_a = trace.finished);
+}
+
+}  // namespace
+}  // namespace keepout::trial
+
+PYBIND11_MODULE(keepout_trial, module) {
+  using namespace keepout::trial;
+  module.doc() = "The loop of a trial of experiments/ in C++.";
+  py::register_local_exception<keepout::Error>(module, "Error", PyExc_ValueError);
+  py::class_<keepout::MotionConstraint, std::shared_ptr<keepout::MotionConstraint>>(
+      module, "Rule", py::module_local(), "A rule of keepout for one trial, without Python.");
+  py::class_<Anatomy>(module, "Anatomy",
+                      "A mesh with its index, for the rules of many trials. Anatomy(vertices,\n"
+                      "triangles): (n, 3) and (m, 3).")
+      .def(py::init<const Eigen::Ref<const PointRows>&, const Eigen::Ref<const CornerRows>&>(),
+           "vertices"_a, "triangles"_a, py::call_guard<py::gil_scoped_release>())
+      .def("rule", &Anatomy::rule, "activation"_a, "radius"_a, "margin"_a, "corridor"_a,
+           "Returns a new Rule: the motions of KeepoutRule in experiments/rules/.");
+  module.def("run", &run_trial, "course"_a, "rule"_a, "operator"_a, "setup"_a, "registered"_a,
+             "true_frame"_a, "draws"_a,
+             "Returns the members of a Trace of experiments/trial.py, without `registered`. Runs\n"
+             "without Python's lock, except in a rule with a Python method step().");
+}
