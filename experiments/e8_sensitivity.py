@@ -61,10 +61,16 @@ def run(unit: Unit) -> list[Row]:
     """Runs one trial of E3 or E4 with a changed value, and returns its primary ends."""
     of = unit.settings
     module, _ = OF[of["experiment"]]
-    row = module.run(unit)[0]
+    row = _trial(module, unit)
     about = {name: of[name] for name in ("experiment", "parameter", "mode", "number")}
     return [about | {"factor": of["factors"][of["parameter"]], "finished": row["finished"]}
             | {end.member: row[end.member] for end in _ends(module)}]
+
+
+def _trial(module: ModuleType, unit: Unit) -> Row:
+    """Returns the row of a trial of E3 or E4 with the changed values of the unit."""
+    row: Row = module.run(unit)[0]
+    return row
 
 
 def _ends(module: ModuleType) -> list[Measure]:
