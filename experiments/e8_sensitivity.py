@@ -69,7 +69,10 @@ def run(unit: Unit) -> list[Row]:
 
 def _trial(module: ModuleType, unit: Unit) -> Row:
     """Returns the row of a trial of E3 or E4 with the changed values of the unit."""
-    row: Row = module.run(unit)[0]
+    of = unit.settings
+    objects = {name: parameters.scaled(value, of["factors"])
+               for name, value in zip(("operator", "setup", "bone"), OF[module.NAME][1])}
+    row: Row = module.trial(of["mode"], of["seed"], of["number"], judged=False, **objects)
     return row
 
 
