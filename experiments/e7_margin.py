@@ -34,6 +34,7 @@ TITLE = "E7 Registration, margin and the dura"
 FLES = (0.3, 0.65, 1.0, 1.5)  # root mean square of the vector [mm]; 0.65 as in E3 and E4
 CONFIDENCES = (0.5, 0.9, 0.99, 0.999)
 LEAST_MARGIN = 0.01  # [mm] without a margin for the registration; certified needs some
+FIXED = (0.25, 0.5, 1.0)  # margins of a point that do not depend on the FLE [mm]
 POINT, INSTRUMENT = "point", "instrument"
 DRAWS = {POINT: 400, INSTRUMENT: 100}  # of each FLE in a full run
 QUICK_DRAWS = {POINT: 60, INSTRUMENT: 5}
@@ -90,7 +91,7 @@ def place() -> Place:
 
 
 def _draw(tool: str, fle: float, draw: int, seed: int) -> list[Row]:
-    random = np.random.default_rng([seed, 7, draw])
+    random = np.random.default_rng([seed, 7, round(1000 * fle), draw])
     here = place()
     touched = here.fiducials + random.standard_normal(here.fiducials.shape) * fle / np.sqrt(3.0)
     fit = keepout.fit_rigid(touched, here.fiducials)
@@ -98,6 +99,7 @@ def _draw(tool: str, fle: float, draw: int, seed: int) -> list[Row]:
     ends = here.points[[0, len(here.points) // 2, -1]]
     corners = np.concatenate([ends, ends + (30.0 if tool == INSTRUMENT else 5.0) * here.up[0]])
     margins = [(0.0, NOTHING, LEAST_MARGIN)]
+    margins += [(0.0, f"a fixed {length:g} mm", length) for length in FIXED if tool == POINT]
     for covers in (KNOWN, ESTIMATED) if tool == POINT else (JOINTS, NO_JOINTS):
         of_fle = None if covers == ESTIMATED else fle
         margins += [(c, covers, keepout.registration_margin(fit, corners, c, of_fle)) for c in CONFIDENCES]
