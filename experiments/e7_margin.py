@@ -182,7 +182,7 @@ class Arm:
             keepout.TableRow("wrist_pitch", alpha=-turn, theta=-turn, lower=-1.39626, upper=1.39626, velocity=8),
             keepout.TableRow("wrist_yaw", a=9.1, alpha=-turn, theta=-turn, lower=-1.39626, upper=1.39626, velocity=8),
         ]
-        flange = [[0, -1, 0, 0], [0, 0, 1, 10.2], [-1, 0, 0, 0], [0, 0, 0, 1]]
+        flange = np.array([[0, -1, 0, 0], [0, 0, 1, 10.2], [-1, 0, 0, 0], [0, 0, 0, 1]])
         ends = [(0, (0, 0, 0)), (4, (0, 0, 0)), (5, (9.1, 0, 0)), (6, (0, 10.2, 0))]
         bodies = [keepout.Body(name, pair, radius) for name, pair, radius in zip(
             ("shaft", "wrist", "jaws"), zip(ends, ends[1:]), self.RADII)]
@@ -323,7 +323,7 @@ def _figure(rows: list[Row]) -> Figure:
     color = figures.color("certified")
     for fle, marker in zip(FLES, "os^D"):
         of = [some for one, _, confidence, some in _cells(rows, POINT) if one == fle and not confidence]
-        of.sort(key=lambda some: some[0]["registration_margin_mm"])
+        of.sort(key=lambda some: float(some[0]["registration_margin_mm"]))
         lengths = [some[0]["registration_margin_mm"] for some in of]
         by_length.plot(lengths, [np.mean([row["one_way"] for row in some]) for some in of], color=figures.SOFT)
         _bars(by_length, lengths, of, marker, f"FLE {fle:g} mm", color)

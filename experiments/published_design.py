@@ -54,8 +54,8 @@ def samples(measure: Measure, rows: list[Row]) -> list[Array]:
 
 def pooled(of_trials: list[Array], numbers: Numbers) -> Pooled:
     """Returns the pooled samples of the trials of each design. `numbers`: (designs, trials of a design)."""
-    n, total, squares = (np.array([f(v) for v in of_trials], dtype=np.float64)[numbers].sum(axis=1)
-                         for f in (len, np.sum, lambda v: np.sum(v * v)))
+    of_each = np.array([[len(values), values.sum(), values @ values] for values in of_trials])  # (trials, 3)
+    n, total, squares = of_each[numbers].sum(axis=1).T
     mean = total / n
     variance = np.maximum(squares - n * mean**2, 0.0) / np.maximum(n - 1.0, 1.0)
     return Pooled(n, mean, np.sqrt(variance))
