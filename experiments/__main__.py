@@ -25,7 +25,7 @@ def main(arguments: list[str]) -> int:
     from . import modes, published_numbers, record, results, runner, summary
     from .experiment import Findings, Scale
 
-    unknown = sorted(set(filter(None, told.modes.split(","))) - set(modes.MODES))
+    unknown = sorted({name for name in told.modes.split(",") if name} - set(modes.MODES))
     if unknown:
         known = ", ".join(modes.BUILT_IN)
         print(f"keepout: --modes: there is no '{', '.join(unknown)}'; there are {known}", file=sys.stderr)

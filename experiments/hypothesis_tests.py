@@ -174,7 +174,7 @@ def holm(p_values: Sequence[float]) -> list[float]:
     order = np.argsort(p_values, kind="stable")
     adjusted = np.empty(len(order))
     adjusted[order] = np.maximum.accumulate(np.arange(len(order), 0, -1) * np.asarray(p_values)[order])
-    return np.minimum(adjusted, 1.0).tolist()
+    return [float(p) for p in np.minimum(adjusted, 1.0)]
 
 
 def p_text(p: float) -> str:

@@ -13,7 +13,7 @@ T = TypeVar("T")
 def names(of: object) -> list[str]:
     """Returns the names of the finite numbers other than 0 of a dataclass and of those in it."""
     found = []
-    for field in fields(of):  # type: ignore[arg-type]
+    for field in fields(of):
         value = getattr(of, field.name)
         if is_dataclass(value):
             found += names(value)
@@ -25,10 +25,10 @@ def names(of: object) -> list[str]:
 def scaled(of: T, factors: Mapping[str, float]) -> T:
     """Returns a dataclass with some of its numbers times a factor, by name; also in the dataclasses in it."""
     changes: dict[str, object] = {}
-    for field in fields(of):  # type: ignore[arg-type]
+    for field in fields(of):
         value, factor = getattr(of, field.name), factors.get(f"{type(of).__name__}.{field.name}")
         if is_dataclass(value):
             changes[field.name] = scaled(value, factors)
         elif factor is not None:
             changes[field.name] = value * factor
-    return replace(of, **changes)  # type: ignore[type-var]
+    return replace(of, **changes)

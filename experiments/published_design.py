@@ -35,14 +35,14 @@ class Pooled:
     sd: Array
 
 
-def draw(trials: int, of_each: int, designs: int, seed: int) -> Numbers:
-    """Returns (designs, of_each) numbers of different trials. The same seed draws the same designs.
+def draw(trials: int, of_each: int, designs: int, seeds: tuple[int, ...]) -> Numbers:
+    """Returns (designs, of_each) numbers of different trials. The same seeds draw the same designs.
 
     Raises ValueError if there are fewer trials than a design needs.
     """
     if trials < of_each:
         raise ValueError(f"a design needs {of_each} trials, but there are {trials}")
-    order = np.random.default_rng(seed).random((designs, trials)).argsort(axis=1)
+    order = np.random.default_rng(seeds).random((designs, trials)).argsort(axis=1)
     return order[:, :of_each]
 
 
@@ -54,8 +54,8 @@ def samples(measure: Measure, rows: list[Row]) -> list[Array]:
 
 def pooled(of_trials: list[Array], numbers: Numbers) -> Pooled:
     """Returns the pooled samples of the trials of each design. `numbers`: (designs, trials of a design)."""
-    n, total, squares = (np.array([f(v) for v in of_trials], dtype=np.float64)[numbers].sum(axis=1)
-                         for f in (len, np.sum, lambda v: np.sum(v * v)))
+    of_each = np.array([[len(values), values.sum(), values @ values] for values in of_trials])  # (trials, 3)
+    n, total, squares = of_each[numbers].sum(axis=1).T
     mean = total / n
     variance = np.maximum(squares - n * mean**2, 0.0) / np.maximum(n - 1.0, 1.0)
     return Pooled(n, mean, np.sqrt(variance))
@@ -77,7 +77,7 @@ def false_alarms(of_trials: list[Array], of_each: int, seed: int) -> Interval:
     n = len(of_trials)
     if n < 2 * of_each:
         return UNKNOWN
-    numbers = draw(n, 2 * of_each, TESTED_DESIGNS, seed)
+    numbers = draw(n, 2 * of_each, TESTED_DESIGNS, (seed,))
     alarms = student_p(pooled(of_trials, numbers[:, :of_each]), pooled(of_trials, numbers[:, of_each:])) < 0.05
     rate = float(alarms.mean())
     without = [alarms[~(numbers == trial).any(axis=1)] for trial in range(n)]
@@ -96,12 +96,8 @@ class Predicted:
 
     def text(self, printed: float) -> str:
         """Returns median and 95 % of the designs, and where the printed number falls."""
-        where = f"{self.percentile:.1f} %"
-        if self.percentile == 0.0:
-            where = "below all"
-        elif self.percentile == 100.0:
-            where = "above all"
-        return f"{self.designs.text()}; {printed:g} is at {where}"
+        where = {0.0: "below all", 100.0: "above all"}.get(self.percentile, f"at {self.percentile:.1f} %")
+        return f"{self.designs.text()}; {printed:g} is {where}"
 
 
 def predicted(printed: float, of_designs: Array) -> Predicted:

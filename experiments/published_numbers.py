@@ -77,8 +77,8 @@ def _of_end(measure: Measure, by_mode: ByMode, seed: int) -> Iterator[Printed]:
     """Yields mean, standard deviation and the difference of the means, as printed, with their places."""
     paper = measure.published
     assert paper is not None
-    pooled = {mode: published_design.pooled(of, published_design.draw(len(of), paper.trials, DESIGNS, seed))
-              for mode in (modes.NO_FIXTURE, *FIXTURES)
+    pooled = {mode: published_design.pooled(of, published_design.draw(len(of), paper.trials, DESIGNS, (seed, side)))
+              for side, mode in enumerate((modes.NO_FIXTURE, *FIXTURES))
               if len(of := published_design.samples(measure, by_mode.get(mode, []))) > paper.trials}
 
     def places(of_mode: dict[str, Array], number: float) -> dict[str, Predicted]:
@@ -106,7 +106,7 @@ def _extremes(by_mode: ByMode, seed: int) -> Iterator[Printed]:
                 largest = [max(extreme.sign * sample for sample in row[extreme.member] if sample is not None)
                            for row in by_mode.get(mode, []) if any(s is not None for s in row[extreme.member])]
                 if len(largest) > 2:
-                    designs = published_design.draw(len(largest), 2, DESIGNS, seed)
+                    designs = published_design.draw(len(largest), 2, DESIGNS, (seed,))
                     places[mode] = published_design.predicted(number, np.array(largest)[designs].max(axis=1))
             yield Printed(extreme.about, "mm", number, compared == FIXTURES, places)
 
@@ -218,17 +218,22 @@ def _figure(printed: list[Printed]) -> Figure:
             ax.plot([low, high], [place + offset] * 2, color=figures.color(mode), linewidth=3.0, alpha=0.6)
             ax.plot(middle, place + offset, "o", color=figures.color(mode), label=figures.label(mode))
     ax.axvline(0.0, color=figures.INK, linewidth=1.0)
-    ax.set_yticks(range(len(shown)), [f"{one.about}, {'fixture' if one.with_fixture else 'free'}"
-                                      for one in reversed(shown)])
+    ax.set_yticks(range(len(shown)), [_short(one) for one in reversed(shown)])
     ax.set_xscale("symlog", linthresh=4.0)
-    ax.set_xlabel("simulated minus printed, in quarters of the central 95 % of designs")
+    ax.set_xticks([-100, -10, 0, 10, 100], ["-100", "-10", "0", "10", "100"])
+    ax.set_xlabel("simulated minus printed,\nin quarters of the 95 % of designs")
     known = dict(zip(*reversed(ax.get_legend_handles_labels())))
-    ax.legend(known.values(), known.keys(), loc="lower center", bbox_to_anchor=(0.3, 1.0), ncol=3)
+    ax.legend(known.values(), known.keys(), loc="lower center", bbox_to_anchor=(0.0, 1.0), ncol=3)
     return Figure(
         "published_numbers", "Where the printed numbers fall",
         "Each line spans the central 95 % of the simulated designs, with a dot at their median. The printed number is "
         "at 0. A line that does not reach 0 contradicts the printed number.",
         figures.svg(fig))
+
+
+def _short(one: Printed) -> str:
+    about = one.about.replace("standard deviation", "sd").replace("fixture minus free hand", "difference")
+    return about if about.endswith("difference") else f"{about}, {'fixture' if one.with_fixture else 'free'}"
 
 
 def _headline(primary: list[Primary]) -> str:

@@ -73,7 +73,7 @@ def _modules(name: str) -> frozenset[Path]:
     """Returns the files of a module of this package and of those that it imports, without those of _SHOWING."""
     finder = ModuleFinder([str(HERE.parent)], excludes=[f"{HERE.name}.{module}" for module in _SHOWING])
     finder.import_hook(name)
-    return frozenset(Path(module.__file__) for module in finder.modules.values() if module.__file__)
+    return frozenset(Path(module.__file__) for module in finder.modules.values() if module.__file__)  # type: ignore[attr-defined]
 
 
 def _code(files: Iterable[Path]) -> bytes:

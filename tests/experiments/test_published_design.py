@@ -29,12 +29,12 @@ def test_a_design_pools_the_samples_and_its_p_is_that_of_scipy() -> None:
 
 
 def test_designs_have_different_trials_and_are_those_of_their_seed() -> None:
-    numbers = published_design.draw(6, 4, 500, seed=3)
+    numbers = published_design.draw(6, 4, 500, (3,))
     assert numbers.shape == (500, 4) and all(len(set(design)) == 4 for design in numbers.tolist())
-    assert np.array_equal(numbers, published_design.draw(6, 4, 500, seed=3))
+    assert np.array_equal(numbers, published_design.draw(6, 4, 500, (3,)))
     assert set(numbers.ravel()) == set(range(6))
     with pytest.raises(ValueError, match="needs 4 trials"):
-        published_design.draw(3, 4, 1, seed=1)
+        published_design.draw(3, 4, 1, (1,))
 
 
 @pytest.mark.parametrize("between", [0.0, 0.2])

@@ -28,8 +28,8 @@ def test_the_paper_s_own_rates_fall_below_1_khz_near_where_it_says():
     "KEEPOUT_COMMAND" not in os.environ or not BUNNY.exists(),
     reason="needs the command keepout, and the bunny: fixtures/prepare bunny")
 def test_rows_are_the_same_but_for_times_and_verified():
-    unit = Unit("few", {"triangles": 5000, "indices": ["wide_bvh", "pd_tree_1997"], "queries": 60,
-                        "seed": 4, "run": 0})
+    calls = [(["wide_bvh", "pd_tree_1997"], "all_faces,paper,certified", "5,1,0.2")]
+    unit = Unit("few", {"triangles": 5000, "calls": calls, "queries": 60, "seed": 4, "run": 0})
     runs = [
         [{name: value for name, value in row.items() if not name.startswith("measured_")}
          for row in e2_run_time.run(unit)]
@@ -44,7 +44,7 @@ def test_rows_are_the_same_but_for_times_and_verified():
 def test_what_the_command_refuses_is_told(monkeypatch):
     monkeypatch.setenv("KEEPOUT_COMMAND", "false")
     with pytest.raises(RuntimeError, match="keepout bench"):
-        e2_run_time.run(Unit("none", {"triangles": 1, "indices": [], "queries": 5, "seed": 1, "run": 0}))
+        e2_run_time.run(Unit("none", {"triangles": 1, "calls": [([], "paper", "5")], "queries": 5, "seed": 1, "run": 0}))
 
 
 def made_up(rates: dict[e2_run_time.Way, float]) -> list[dict]:
@@ -71,8 +71,24 @@ def test_findings_have_medians_of_a_thousand_steps_with_intervals_and_the_slowes
     ways = [e2_run_time.REPRODUCTION, *(way for _, way in e2_run_time.FACTORS)]
     found = e2_run_time.findings(made_up(dict(zip(ways, (1.0, 100.0, 3000.0, 2400.0)))), e2_run_time.Scale())
     factors, rates, slow = found.tables
-    assert e2_run_time.RUNS * e2_run_time.QUERIES >= 1000 and "at least 1,200 steps" in rates.note
+    assert e2_run_time.RUNS * e2_run_time.QUERIES >= 1000 and "1,200 steps" in rates.note
     assert [row[0] for row in factors.rows] == ["index", "sphere as long as the longest step", "rule", "all three"]
     assert all("[" in cell for row in rates.rows for cell in row[3:5])
     assert slow.rows[0][3] == "2e+03 / 3e+03"
     assert "times as fast" in found.headline and len(found.claims) == 3
+
+
+def test_a_single_run_has_no_interval():
+    one = made_up({e2_run_time.OURS: 5.0})[:1]
+    khz = e2_run_time.timed(one, "measured_khz")
+    assert e2_run_time._rate(khz[e2_run_time.OURS][51_978]) == "9.62"
+    assert math.isnan(e2_run_time.factor(khz, e2_run_time.OURS, e2_run_time.OURS, 51_978).low)
+
+
+@pytest.mark.parametrize("full", [False, True])
+def test_every_size_up_to_a_million_has_all_runs_of_the_factors(full):
+    units = e2_run_time.units(e2_run_time.Scale(full=full))
+    for size in {unit.settings["triangles"] for unit in units}:
+        runs = [u.settings["run"] for u in units
+                if u.settings["triangles"] == size and u.settings["calls"] == e2_run_time.OF_FACTORS]
+        assert runs == list(range(e2_run_time.RUNS if size <= 1_000_000 else 1))
