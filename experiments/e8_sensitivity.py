@@ -72,7 +72,8 @@ def _trial(module: ModuleType, unit: Unit) -> Row:
     of = unit.settings
     objects = {name: parameters.scaled(value, of["factors"])
                for name, value in zip(("operator", "setup", "bone"), OF[module.NAME][1])}
-    row: Row = module.trial(of["mode"], of["seed"], of["number"], judged=False, **objects)
+    row: Row = module.trial(
+        of["mode"], of["seed"], of["number"], judged=False, tremor=objects["operator"].tremor, **objects)
     return row
 
 
