@@ -152,7 +152,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     parts = [(name, factor(khz, before, after, sizes[-1])) for name, before, after in _changes()]
     headline = (
         f"On {sizes[-1]:,} triangles, from the rule of Li et al. on their tree with a sphere of 5 mm to the certified "
-        f"rule: {'; '.join(f'the {name} makes steps {times.text(2)} times as fast' for name, times in parts)}. "
+        f"rule: {'; '.join(f'the {name} makes steps {_text(times)} times as fast' for name, times in parts)}. "
         f"The certified rule makes steps at {_khz(dict(curves[OURS])[sizes[-1]])} kHz there.")
     return Findings(headline, _claims(khz, curves),
                     [_factor_table(khz, sizes), _rate_table(rows, khz, curves, sizes), _slow_table(rows, sizes)],
@@ -197,7 +197,7 @@ def _factor_table(khz: Timed, sizes: list[int]) -> Table:
     return Table(
         "From the rule of Li et al. on their tree to certified: what each change gains",
         ["change", "from", "to", *(f"{size:,}" for size in sizes)],
-        [[name, _way(before), _way(after), *(factor(khz, before, after, size).text(2) for size in sizes)]
+        [[name, _way(before), _way(after), *(_text(factor(khz, before, after, size)) for size in sizes)]
          for name, before, after in [*_changes(), ("all three", REPRODUCTION, OURS)]],
         f"How many times as fast a step becomes: median of {RUNS} runs, and their range, which contains the true median "
         f"with 96.9 %. Above {MANY_TRIANGLES:,} triangles there is one run, without a range. Both sides of a factor have "
@@ -263,9 +263,13 @@ def _khz(rate: float | None) -> str:
 
 
 def _rate(values: dict[int, float] | None) -> str:
-    if not values:
+    return _text(over_runs(values.values())) if values else "-"
+
+
+def _text(of: Interval) -> str:
+    """Returns a median with its range, if there is one; `-` for NaN."""
+    if not np.isfinite(of.value):
         return "-"
-    of = over_runs(values.values())
     return _khz(of.value) + (f" [{_khz(of.low)}, {_khz(of.high)}]" if np.isfinite(of.low) else "")
 
 
