@@ -15,10 +15,10 @@ from typing import Any
 import keepout
 import keepout_peers
 import numpy as np
-from scipy.stats import binomtest
 
 from . import figures
 from .experiment import Claim, Figure, Findings, Row, Scale, Table, Unit
+from .hypothesis_tests import Interval, share, sign_p
 from .modes import MODES, NO_FIXTURE, make_rule
 from .rules.native import terrain_of
 from .rules.rule import Task
@@ -164,15 +164,14 @@ def _shapes(rows: list[Row]) -> list[str]:
     return list(dict.fromkeys(row["shape"] for row in rows))
 
 
-def _interval(rows: list[Row]) -> tuple[float, float]:
-    """Returns the 95 % interval of Clopper and Pearson (1934) of the fraction of loops that enter."""
-    interval = binomtest(_entered(rows), _loop_count(rows)).proportion_ci(method="exact")
-    return float(interval.low), float(interval.high)
+def _rate_of(rows: list[Row]) -> Interval:
+    """Returns the fraction of loops that enter, with its 95 % interval."""
+    return share(_entered(rows), _loop_count(rows))
 
 
 def _rate(rows: list[Row]) -> str:
-    low, high = _interval(rows)
-    return f"{_entered(rows)} of {_loop_count(rows)} [{100 * low:.2g}, {100 * high:.2g} %]"
+    rate = _rate_of(rows)
+    return f"{_entered(rows)} of {_loop_count(rows)} [{100 * rate.low:.2g}, {100 * rate.high:.2g} %]"
 
 
 def _told(rows: list[Row]) -> str:
@@ -206,7 +205,7 @@ def _mcnemar(ours: list[Row], theirs: list[Row]) -> str:
         only_second += len(second - first)
     if only_first + only_second == 0:
         return f"no loop of {pairs} differs"
-    p = binomtest(only_first, only_first + only_second).pvalue
+    p = sign_p(only_first, only_second)
     return f"McNemar, {only_first} against {only_second} of {pairs} loops, p = {p:.2g}"
 
 
@@ -217,7 +216,7 @@ def _sign_test(ours: list[Row], theirs: list[Row]) -> str:
     more, less = sum(a > b + 1e-9 for a, b in lost), sum(a < b - 1e-9 for a, b in lost)
     if more + less == 0:
         return "no shape differs"
-    p = binomtest(more, more + less).pvalue
+    p = sign_p(more, less)
     return f"sign test, more on {more} shapes, less on {less}, p = {p:.2g}"
 
 
@@ -272,10 +271,10 @@ def _picture(of: dict[str, list[Row]]) -> Figure:
         across = [aside * length for length in lengths]
         look = {"color": figures.color(_of_look(mode)), "linestyle": _LINES.get(mode, "-"),
                 "linewidth": 2.6 if mode == OURS else 1.2, "zorder": 3 if mode == OURS else 2}
-        share = [100 * _entered(_at(rows, n)) / _loop_count(_at(rows, n)) for n in lengths]
-        bounds = np.array([_interval(_at(rows, n)) for n in lengths]).T * 100
-        upper.plot(across, share, marker="o", label=_label(mode), **look)
-        upper.vlines(across, *bounds, color=look["color"], linewidth=1.0, alpha=0.6)
+        rates = [_rate_of(_at(rows, n)) for n in lengths]
+        upper.plot(across, [100 * rate.value for rate in rates], marker="o", label=_label(mode), **look)
+        upper.vlines(across, [100 * rate.low for rate in rates], [100 * rate.high for rate in rates],
+                     color=look["color"], linewidth=1.0, alpha=0.6)
         if mode != NO_FIXTURE:
             for ax, part, whole in ((middle, "free_lost", "free_asked"), (lower, "excess", "excess_of")):
                 ax.plot(across, [100 * _ratio(_at(rows, n), part, whole) for n in lengths], marker="o", **look)

@@ -65,6 +65,9 @@ MODES = {
     "bullet_slide": Look("Bullet, sliding", "#5e099b", "#ecdcee"),
 }
 
+#: The colors of a rule of your own (`--rule`), whose label is its name.
+OWN = Look("", "#9e59fe", "#fd1d17")
+
 #: The modes that others are compared with: their boxes are fuller, and their names bold.
 STRESSED = ("paper", "certified")
 
@@ -74,6 +77,7 @@ _LOOKS = {
     "soft": Look("", SOFT, "#9eabbd"),
     "grid": Look("", GRID, "#2c3745"),
     "paper": Look("", PAPER, "#18202b"),
+    "own": OWN,
 } | {"mode-" + mode.replace(".", "-"): look for mode, look in MODES.items()}
 _DRAWN = {INK: "ink"} | {look.light: name for name, look in _LOOKS.items() if name != "ink"}
 
@@ -113,12 +117,12 @@ def new(
 
 def color(mode: str) -> str:
     """Returns the color of a mode, the same in all figures."""
-    return MODES[mode].light
+    return MODES.get(mode, OWN).light
 
 
 def label(mode: str) -> str:
     """Returns the label of a mode."""
-    return MODES[mode].name
+    return MODES[mode].name if mode in MODES else mode
 
 
 def box_plot(ax: Axes, groups: dict[str, NDArray[np.float64]], ylabel: str) -> None:

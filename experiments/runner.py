@@ -1,51 +1,108 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the units of experiments on all processors, and keeps the rows of each finished unit.
 
-The rows of a unit are kept in `kept/seed<seed>/<experiment>/<unit>.json`. They are reused while the unit, keepout and
-the sources behind the rows are unchanged, so a stopped run continues where it stopped. The tables contain all rows:
-`<experiment>.csv`, which depends on the seed only, and `<experiment>_times.csv` with measured times.
+The rows of a unit are kept in `kept/seed<seed>/<experiment>/<unit>.json`. They are reused while the unit and the code
+behind its rows are unchanged, so a stopped run continues where it stopped. The code of a mode counts only for the
+units of that mode: a new rule leaves the rows of all others. The tables contain all rows: `<experiment>.csv`, which
+depends on the seed only, and `<experiment>_times.csv` with measured times.
 """
 from __future__ import annotations
 
+import ast
 import csv
 import hashlib
 import importlib
+import io
 import json
 import multiprocessing
 import os
+import re
 import signal
 import sys
 import time
 import warnings
+from collections.abc import Iterable
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from functools import lru_cache
 from modulefinder import ModuleFinder
 from pathlib import Path
 from types import ModuleType
 
 import keepout
 
+from . import modes
 from .experiment import Row, Unit
 
 #: Members of a row with measured times begin with this.
 TIMED = "measured_"
 
 
-#: Modules that only show rows; rows do not depend on them.
-_SHOWING = ("__main__", "comparison", "figures", "published", "record", "runner", "summary")
+#: Significant digits of numbers in tables. Rows that are kept have all.
+DIGITS = 6
+
+#: Modules on which no row depends: they only show rows, or choose which ones are made.
+_SHOWING = ("__main__", "arguments", "comparison", "figures", "modes", "published", "published_design",
+            "published_numbers", "record", "runner", "summary")
+HERE = Path(__file__).parent
 
 
-def source_digest(experiment: str) -> str:
-    """Returns a digest of everything that the rows of an experiment depend on, except the unit."""
-    here = Path(__file__).parent
-    finder = ModuleFinder([str(here.parent)], excludes=[f"{here.name}.{module}" for module in _SHOWING])
-    finder.import_hook(f"{here.name}.{experiment}")
-    package = Path(keepout.__file__).parent
-    libraries = [*package.parent.glob("*.so"), *package.glob("*.so"), *package.glob("*.py")]
-    imported = [Path(module.__file__) for module in finder.modules.values() if module.__file__]
+def source_digest(experiment: str, mode: str | None = None, *, libraries: bool = True) -> str:
+    """Returns a digest of the code behind the rows of an experiment: its modules, and the rule of a mode.
+
+    The code counts, not its comments and docstrings. The C++ of benchmarks/native counts as a whole. A mode that modes.py does not have depends on the rules of the
+    references. With mode None, a unit depends on all rules of this package if the experiment uses any. libraries: True
+    adds keepout as it is built.
+    """
     digest = hashlib.sha256(keepout.__version__.encode())
-    for source in sorted([*libraries, *imported]):
-        digest.update(source.read_bytes())
+    if libraries:
+        package = Path(keepout.__file__).parent
+        for file in sorted([*package.parent.glob("*.so"), *package.glob("*.so"), *package.glob("*.py")]):
+            digest.update(_bytes_digest(file))
+    found = _modules(f"{HERE.name}.{experiment}")
+    digest.update(_code(found))
+    if HERE / "rules" / "rule.py" in found:
+        behind = modes.BUILT_IN if mode is None else (mode,) if mode in modes.MODES else modes.REFERENCES
+        for source in filter(None, map(modes.source, behind)):
+            own = source.module.endswith(".py")
+            files = {Path(source.module)} if own else _modules(f"{HERE.name}.rules.{source.module}")
+            digest.update(repr((source.name, source.options)).encode() + _code(files))
     return digest.hexdigest()[:16]
+
+
+@lru_cache(maxsize=None)
+def _modules(name: str) -> frozenset[Path]:
+    """Returns the files of a module of this package and of those that it imports, without those of _SHOWING.
+
+    The files of keepout_peers are its C++ sources.
+    """
+    finder = ModuleFinder([str(HERE.parent)], excludes=[f"{HERE.name}.{module}" for module in _SHOWING])
+    finder.import_hook(name)
+    native = (HERE.parent / "benchmarks" / "native").rglob("*.[ch]*") if "keepout_peers" in finder.any_missing() else ()
+    return frozenset(native) | frozenset(Path(module.__file__) for module in finder.modules.values() if module.__file__)  # type: ignore[attr-defined]
+
+
+def _code(files: Iterable[Path]) -> bytes:
+    """Returns the code of files in Python and C++ as text without comments, docstrings and layout."""
+    return "".join(_tree(file) for file in sorted(files)).encode()
+
+
+@lru_cache(maxsize=None)
+def _tree(file: Path) -> str:
+    if file.suffix != ".py":
+        return "".join(re.sub(r"//.*", "", file.read_text(encoding="utf-8")).split())
+    tree = ast.parse(file.read_bytes())
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list) and body and isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            first = body[0]
+            if isinstance(first, ast.Expr) and isinstance(getattr(first.value, "value", None), str):
+                node.body = body[1:]
+    return ast.dump(tree)
+
+
+@lru_cache(maxsize=None)
+def _bytes_digest(file: Path) -> bytes:
+    return hashlib.sha256(file.read_bytes()).digest()
 
 
 def _be_a_worker() -> None:
@@ -72,15 +129,18 @@ class Kept:
 
     def __init__(self, folder: Path, experiment: str) -> None:
         self._folder = folder / experiment
-        self._digest = source_digest(experiment)
+        self._experiment = experiment
 
     def _file(self, unit: Unit) -> Path:
         return self._folder / f"{unit.name}.json"
 
+    def _digest(self, unit: Unit) -> str:
+        return source_digest(self._experiment, unit.settings.get("mode"))
+
     def rows(self, unit: Unit) -> list[Row] | None:
         try:
             text = json.loads(self._file(unit).read_text())
-            same = text["digest"] == self._digest and text["settings"] == json.loads(json.dumps(unit.settings))
+            same = text["digest"] == self._digest(unit) and text["settings"] == json.loads(json.dumps(unit.settings))
             rows: list[Row] | None = text["rows"] if same else None
         except (OSError, ValueError, KeyError, TypeError):  # missing or incomplete
             return None
@@ -89,7 +149,7 @@ class Kept:
     def keep(self, unit: Unit, rows: list[Row]) -> list[Row]:
         """Writes the rows, and returns them as a later run reads them, so that both runs have the same rows."""
         self._folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps({"digest": self._digest, "settings": unit.settings, "rows": rows}, indent=1)
+        text = json.dumps({"digest": self._digest(unit), "settings": unit.settings, "rows": rows}, indent=1)
         part = self._file(unit).with_suffix(".part")
         part.write_text(text + "\n")
         part.replace(self._file(unit))
@@ -183,20 +243,22 @@ def run_units(
     return {e.NAME: [r for u in units[e.NAME] for r in results[e.NAME, u.name]] for e in experiments}
 
 
-def write_tables(experiment: str, rows: list[Row], folder: Path) -> None:
-    """Writes the tables of an experiment."""
+def tables(experiment: str, rows: list[Row]) -> dict[str, str]:
+    """Returns the tables of an experiment as CSV, by name. Numbers have DIGITS significant digits."""
     members = list(dict.fromkeys(name for row in rows for name in row))
     timed = [name for name in members if name.startswith(TIMED)]
     steady = [name for name in members if not name.startswith(TIMED)]
     texts = [name for name in steady if any(isinstance(row.get(name), str) for row in rows)]
-    tables = {experiment: steady}
-    if timed:
-        tables[f"{experiment}_times"] = texts + timed
-    for name, columns in tables.items():
-        with (folder / f"{name}.csv").open("w", newline="") as out:
-            writer = csv.writer(out, lineterminator="\n")
-            writer.writerow(columns)
-            writer.writerows([_cell(row.get(column)) for column in columns] for row in rows)
+    named = {experiment: steady} | ({f"{experiment}_times": texts + timed} if timed else {})
+    return {name: _table(columns, rows) for name, columns in named.items()}
+
+
+def _table(columns: list[str], rows: list[Row]) -> str:
+    out = io.StringIO(newline="")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([_cell(row.get(column)) for column in columns] for row in rows)
+    return out.getvalue()
 
 
 def _cell(value: object) -> str:
@@ -204,4 +266,6 @@ def _cell(value: object) -> str:
         return "yes" if value else "no"
     if isinstance(value, list):
         return " ".join(map(_cell, value))
+    if isinstance(value, float):
+        return f"{value:.{DIGITS}g}"
     return "" if value is None else str(value)

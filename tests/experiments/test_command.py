@@ -50,6 +50,27 @@ def test_two_runs_with_a_seed_write_the_same_bytes(made: Path, tmp_path: Path) -
         assert told == before
 
 
+def test_a_rule_of_your_own_is_a_mode_beside_the_references(tmp_path: Path) -> None:
+    done = run(tmp_path, "--modes", "vector_field", "--rule", "examples/python/own_rule.py:StopShort")
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "e6_counterexamples.csv").open() as table:
+        rows = list(csv.DictReader(table))
+    modes = dict.fromkeys(row["mode"] for row in rows)
+    assert list(modes) == ["paper", "certified", "vector_field", "StopShort"]
+    assert not any(row["passes"] == "yes" for row in rows if row["mode"] == "StopShort")
+    assert "StopShort" in (tmp_path / "README.md").read_text()
+
+
+def test_a_mode_that_is_unknown_is_named(tmp_path: Path) -> None:
+    done = run(tmp_path, "--modes", "certified,magic")
+    assert done.returncode == 2 and "there is no 'magic'" in done.stderr and "vector_field" in done.stderr
+
+
+def test_a_rule_that_its_file_does_not_have_is_named(tmp_path: Path) -> None:
+    done = run(tmp_path, "--rule", "examples/python/own_rule.py:Missing")
+    assert done.returncode == 1 and "Missing" in done.stderr and "Traceback" not in done.stderr
+
+
 def test_summary_record_and_page_say_the_same(made: Path) -> None:
     record = json.loads((made / "experiments.json").read_text())
     headline = record["experiments"][0]["headline"]

@@ -95,7 +95,7 @@ def test_every_value_is_a_point():
 
 @pytest.mark.parametrize("paper, shade", [("#ffffff", "light"), ("#18202b", "dark")])
 def test_modes_are_told_apart_by_all_eyes(paper, shade):
-    colors = {mode: getattr(look, shade) for mode, look in figures.MODES.items()}
+    colors = {mode: getattr(look, shade) for mode, look in {**figures.MODES, "MyRule": figures.OWN}.items()}
     names = [figures.label(mode) for mode in colors]
     assert len(set(names)) == len(names) and all(names)
     for mode, color in colors.items():
