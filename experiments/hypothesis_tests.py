@@ -159,7 +159,7 @@ def share(count: int, of: int) -> Interval:
 def sign_p(more: int, less: int) -> float:
     """Returns the exact two-sided p of the sign test of pairs; for pairs of yes and no it is McNemar's test.
 
-    more, less: pairs in which the first, or the second, has more. The p is 1 if there are none.
+    more, less: pairs in which the first, or the second, has more. Returns 1 without such pairs.
     """
     return float(stats.binomtest(more, more + less).pvalue) if more + less else 1.0
 

@@ -51,9 +51,9 @@ def short_trials(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def shorten(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ends each trial of E3 and E4 after SECONDS."""
-    operate = teleoperation.operate
-    monkeypatch.setattr(teleoperation, "operate", lambda mode, course, *others: operate(
-        mode, replace(course, time_limit=SECONDS), *others))
+    run = teleoperation.Trial.run
+    monkeypatch.setattr(teleoperation.Trial, "run", lambda trial: run(
+        replace(trial, course=replace(trial.course, time_limit=SECONDS))))
 
 
 def prepared() -> bool:

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
-from experiments import e3_path_tracing, e8_sensitivity, parameters
+from experiments import e3_path_tracing, e8_sensitivity, parameters, teleoperation
 from experiments.experiment import Scale
 from experiments.set_up_errors import SetUp
 
@@ -61,13 +61,12 @@ def test_bars_are_differences_of_pairs_the_longest_first() -> None:
 def test_a_changed_value_reaches_the_trial(monkeypatch: pytest.MonkeyPatch) -> None:
     seen = []
 
-    def operate(mode, course, index, operator, setup, seeds, corridor):  # type: ignore[no-untyped-def]
-        seen.append((operator, setup))
+    def run(trial: teleoperation.Trial) -> None:
+        seen.append((trial.operator, trial.setup))
         raise StopIteration
 
-    monkeypatch.setattr(e8_sensitivity.teleoperation, "operate", operate)
-    monkeypatch.setattr(e3_path_tracing.anatomy, "skull_path", lambda: None)
-    monkeypatch.setattr(e3_path_tracing.anatomy, "real_index", lambda name: None)
+    monkeypatch.setattr(teleoperation.Trial, "run", run)
+    monkeypatch.setattr(e3_path_tracing.anatomy, "printed_skull", lambda: (None, None))
     for unit in e8_sensitivity.units(Scale()):
         if unit.settings["parameter"] in ("as they are", "SetUp.fle", "Operator.mass"):
             with pytest.raises(StopIteration):
