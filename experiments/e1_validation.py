@@ -181,8 +181,8 @@ def _told(rows: list[Row]) -> str:
 
 
 def _ratio(rows: list[Row], part: str, whole: str) -> float:
-    total = sum(row[whole] for row in rows)
-    return sum(row[part] for row in rows) / total if total else float("nan")
+    total = float(sum(row[whole] for row in rows))
+    return float(sum(row[part] for row in rows)) / total if total else float("nan")
 
 
 def _percent(rows: list[Row], part: str = "free_lost", whole: str = "free_asked") -> str:

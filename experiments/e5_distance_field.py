@@ -373,7 +373,7 @@ def _figure(rows: list[Row]) -> Figure:
         ours = next(row for row in own if row["mode"] == OURS)
         for use, line in _LINES.items():
             fields = [row for row in own if row.get("use") == use]
-            look = {"color": figures.color("distance_field"), "linestyle": line, "marker": marker,
+            look: dict[str, Any] = {"color": figures.color("distance_field"), "linestyle": line, "marker": marker,
                     "label": f"{anatomy}, {USES[use]}"}
             refused = [100 * row["refused"] for row in fields]
             memory = [row["memory_whole"] / 1e6 for row in fields]

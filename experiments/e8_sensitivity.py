@@ -10,6 +10,7 @@ from __future__ import annotations
 import textwrap
 from dataclasses import dataclass
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 
@@ -70,8 +71,9 @@ def run(unit: Unit) -> list[Row]:
 def _trial(module: ModuleType, unit: Unit) -> Row:
     """Returns the row of a trial of E3 or E4 with the changed values of the unit."""
     of = unit.settings
-    objects = {name: parameters.scaled(value, of["factors"])
-               for name, value in zip(("operator", "setup", "bone"), OF[module.NAME][1])}
+    objects: dict[str, Any] = {
+        name: parameters.scaled(value, of["factors"])
+        for name, value in zip(("operator", "setup", "bone"), OF[module.NAME][1])}
     row: Row = module.trial(
         of["mode"], of["seed"], of["number"], judged=False, tremor=objects["operator"].tremor, **objects)
     return row

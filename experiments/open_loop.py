@@ -105,4 +105,5 @@ def adjustments(random: np.random.Generator, cycles: int, period: float, rms: fl
     """Returns (cycles,) [mm]: band noise from 0.5 to 2 Hz with this root mean square."""
     band = signal.butter(3, [0.5, 2.0], "bandpass", fs=1 / period, output="sos")
     noise: Array = signal.sosfiltfilt(band, random.standard_normal(cycles))
-    return noise * (rms / np.sqrt(np.mean(noise**2)))
+    noise *= rms / np.sqrt(np.mean(noise**2))
+    return noise

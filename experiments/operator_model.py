@@ -72,7 +72,9 @@ def tremor(random: np.random.Generator, cycles: int, period: float, rms: float) 
     spectrum[within] = random.standard_normal((int(within.sum()), 6)).view(np.complex128)
     noise: Array = np.fft.irfft(spectrum, cycles, axis=0)
     size = np.sqrt(np.mean(np.sum(noise**2, axis=1)))
-    return noise * (rms / size) if size > 0.0 else noise
+    if size > 0.0:
+        noise *= rms / size
+    return noise
 
 
 class Arm:

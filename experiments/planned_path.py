@@ -44,13 +44,15 @@ class PlannedPath:
     @cached_property
     def heading(self) -> Array:
         """The vector from the first point to the last, (3,)."""
-        return self.points[-1] - self.points[0]
+        heading: Array = self.points[-1] - self.points[0]
+        return heading
 
     @cached_property
     def order(self) -> Array:
         """The scalar product of each point with the heading, (n,). It ascends, because the path turns by much less
         than a right angle."""
-        return self.points @ self.heading
+        order: Array = self.points @ self.heading
+        return order
 
     def coordinates(self, place: Array) -> tuple[float, float, float]:
         """Returns where a place (3,) is: along the path, across it, and below it [mm]. Limited to the ends along."""
