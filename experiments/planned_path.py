@@ -67,7 +67,8 @@ class PlannedPath:
     def place(self, along: float, across: float, below: float) -> Array:
         """Returns the place (3,) with these coordinates."""
         point, up = self.at(along)
-        return point + across * self.across - below * up
+        place: Array = point + across * self.across - below * up
+        return place
 
     def abreast(self, places: Array) -> NDArray[np.intp]:
         """Returns the numbers of the points beside places (m, 3) or (3,), in the direction of the whole path."""

@@ -13,6 +13,8 @@ from experiments.rules.rule import Corridor, Task
 
 MARGIN = 0.2
 SLIDING = ["fcl_slide", "bullet_slide"]
+NEEDS_FCL = pytest.mark.skipif("fcl_slide" not in FIXTURES, reason="keepout_peers is built without FCL")
+NEEDS_BULLET = pytest.mark.skipif("bullet_slide" not in FIXTURES, reason="keepout_peers is built without Bullet")
 PLANES = [mode for mode in FIXTURES if mode not in SLIDING]
 
 #: The plane z = 0 for |x|, |y| <= 50, free above. CORNER adds a wall at x = 0 that is free for x > 0.
@@ -52,7 +54,8 @@ def test_a_motion_into_a_plane_slides_along_it(mode):
     assert motion == pytest.approx([0.3, 0.1, -0.4], abs=1e-7)
 
 
-@pytest.mark.parametrize("mode, gap", [("fcl_slide", 0.1), ("bullet_slide", 0.001)])
+@pytest.mark.parametrize("mode, gap", [
+    pytest.param("fcl_slide", 0.1, marks=NEEDS_FCL), pytest.param("bullet_slide", 0.001, marks=NEEDS_BULLET)])
 def test_a_sweep_stops_short_of_contact_by_at_most_a_gap_and_slides(mode, gap):
     rule = rule_on(mode, FLOOR, TWO_OF_A_QUAD)
     motion = rule.step(np.array([1.0, 2.0, 1.0]), np.array([0.3, 0.1, -2.0]))
@@ -134,6 +137,7 @@ def test_the_paper_s_rule_lets_a_counterexample_through(mode, passes):
     assert peers.Judge(OCTAHEDRON, OF_OCTAHEDRON).crossings([tip], [end])[0] == passes
 
 
+@NEEDS_FCL
 def test_conservative_advancement_of_fcl_misses_contacts_that_its_default_solver_finds():
     # benchmarks/native/rules/sweep.h says why this solver is not compared. If FCL repairs it, this test fails.
     vertices, triangles = peers.named_mesh("sphere")
