@@ -161,7 +161,7 @@ def test_a_tool_that_is_stuck_does_not_come_to_the_end_of_the_path(monkeypatch: 
     slides = along()
     make_rule = modes.make_rule
     monkeypatch.setattr(modes, "make_rule", lambda *task: Stops(make_rule(*task)))
-    assert along() < 0.6 < 2.0 < slides
+    assert along() < 0.6 < 1.0 < slides
 
 
 def test_the_same_seed_is_the_same_trial_and_another_is_not() -> None:

@@ -28,9 +28,9 @@ def test_pairs_are_loops_that_both_modes_have():
 
 
 def test_without_an_entry_the_interval_ends_at_the_bound_of_clopper_and_pearson():
-    low, high = e1._interval([row("certified", 1.0, [], loops=100)])
-    assert low == 0.0
-    assert high == pytest.approx(1.0 - 0.025 ** (1 / 100))
+    rate = e1._rate_of([row("certified", 1.0, [], loops=100)])
+    assert rate.low == 0.0
+    assert rate.high == pytest.approx(1.0 - 0.025 ** (1 / 100))
 
 
 def test_best_are_the_modes_without_an_entry_that_lose_least():
