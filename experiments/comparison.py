@@ -85,8 +85,9 @@ class Against:
 
 
 def main_rows(rows: list[Row]) -> list[Row]:
-    """Returns the trials with the usual tremor and corridor, and with errors of the set-up."""
-    return [row for row in rows if row["tremor"] == TREMOR and not row["ideal"] and row["corridor"] == CORRIDOR]
+    """Returns the trials with the usual operator and corridor, and with errors of the set-up."""
+    return [row for row in rows if row["tremor"] == TREMOR and not row["ideal"] and row["corridor"] == CORRIDOR
+            and not row.get("varied")]
 
 
 def rows_by_mode(rows: list[Row]) -> ByMode:

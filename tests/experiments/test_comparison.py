@@ -2,7 +2,7 @@
 """Tests the tables of E3 and E4: n in every cell, unfinished trials, and which tests are exploratory."""
 import numpy as np
 from experiments import published
-from experiments.comparison import Measure, compare
+from experiments.comparison import Measure, compare, main_rows
 from experiments.experiment import Row
 from experiments.teleoperation import CORRIDOR, TREMOR
 
@@ -46,3 +46,10 @@ def test_primary_tests_are_not_among_the_exploratory_ones() -> None:
     assert [row[:4] for row in tests.rows] == [
         ["duration [s]", "the paper's rule", "4", "3"], ["deepest [mm]", "the paper's rule", "4", "4"],
         ["deepest [mm]", "certified", "4", "4"]]
+
+
+def test_a_changed_operator_sweep_or_set_up_is_not_among_the_main_rows() -> None:
+    usual = rows()
+    others = [usual[0] | other for other in (
+        {"varied": {"noise": 0.15}}, {"tremor": 2 * TREMOR}, {"ideal": True}, {"corridor": CORRIDOR / 2})]
+    assert main_rows([*usual, *others]) == usual
