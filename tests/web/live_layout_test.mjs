@@ -192,7 +192,7 @@ test("the hand stays while a rule is chosen, and the inside is red", async () =>
   const { x, y } = await handAt();
   await tab.mouse.move(x, y);
   await tab.mouse.down();
-  await tab.mouse.move(x - 250, y, { steps: 20 });
+  await tab.mouse.move(x - 150, y, { steps: 20 });
   await sleep(500);
   const held = Number.parseFloat(await textOf(tab, "#newtons"));
   assert.ok(held > 1, `the hand pulls by ${held} N`);

@@ -2,7 +2,7 @@
 /**
  * Tests how a page of `keepout live` shows the margin, and how it chooses the quality of the picture:
  *
- *   live_margin_test.mjs KEEPOUT FOLDER [BROWSER]
+ *   live_margin_test.mjs KEEPOUT FOLDER
  *
  * The tool is pressed on a cube. The callout must have the engine's clearance. Modules of the page that need no
  * browser are tested alone.
@@ -14,11 +14,11 @@ import { after, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { empty, launched, note, opened, packages, root, sleep, textOf } from "./tabs.mjs";
 
-const [keepout, folder, browserPath] = process.argv.slice(2);
+const [keepout, folder] = process.argv.slice(2);
 empty(folder);
 const file = join(root, "tests/install/cube.obj");
 execFileSync(keepout, ["live", file, "--no-open", "--out", "page.html"], { cwd: folder });
-const browser = await launched(browserPath);
+const browser = await launched();
 after(() => browser.close());
 const tab = await opened(browser, join(folder, "page.html"), { width: 1000, height: 640 });
 
@@ -186,7 +186,7 @@ test("callout and magnifier appear near the surface, with the engine's clearance
   const [callout, clearance] = [await textOf(tab, ".callout"), await textOf(tab, "#clearance")];
   assert.equal(callout, `clearance ${clearance}`);
   assert.match(clearance, /^0\.2\d mm$/);
-  assert.match(await textOf(tab, ".magnifier b"), /^\d+(\.\d)?× section$/);
+  assert.match(await textOf(tab, ".magnifier b"), /^\d+(\.\d)?×, margin 0\.20 mm$/);
   const painted = await tab.$eval(".magnifier canvas", (canvas) => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
     return new Set(new Uint32Array(data.buffer)).size;

@@ -2,7 +2,7 @@
 /**
  * Tests the two scenes of `keepout live` in a browser:
  *
- *   live_sides_test.mjs KEEPOUT JUDGE_PATH FOLDER [BROWSER]
+ *   live_sides_test.mjs KEEPOUT JUDGE_PATH FOLDER
  *
  * A stroke is played to both tools, and both paths are saved. Both must have bitwise the same hand in each cycle.
  * The exact oracle must find that the tool under the rule of Li et al. (2020) goes through the wall, and that the
@@ -27,23 +27,20 @@ import {
   textOf,
 } from "./tabs.mjs";
 
-const [keepout, judge, folder, browserPath] = process.argv.slice(2);
+const [keepout, judge, folder] = process.argv.slice(2);
 const aneurysm = join(process.env.KEEPOUT_CACHE || join(root, ".cache"), "fixtures/aneurysm.stl");
 // Software draws a small view faster.
 const wide = { width: 960, height: 600 };
 empty(folder);
 const run = (program, ...args) => execFileSync(program, args, { encoding: "utf8", cwd: folder });
-const browser = await launched(browserPath);
+const browser = await launched(folder);
 after(() => browser.close());
 let tab;
 
 async function openPage(mesh, viewport) {
   const page = `page_${viewport.width}.html`;
   run(keepout, "live", mesh, "--no-open", "--out", page);
-  tab = await opened(browser, join(folder, page), viewport, async (one) => {
-    const client = await one.createCDPSession();
-    await client.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
-  });
+  tab = await opened(browser, join(folder, page), viewport);
   await tab.waitForFunction(
     () =>
       !document.querySelector("#grip").hidden &&
@@ -91,7 +88,7 @@ function judged(mesh, name, lines, kept) {
 
 /** Plays the stroke of a page, and judges both sides. Returns both paths. `mesh`: the file for the judge. */
 async function testStroke(name, mesh) {
-  await tab.$eval("#fail", (button) => button.click());
+  await tab.$eval("#sides-play", (button) => button.click());
   await tab.waitForFunction(
     () => document.querySelector("#sides-words").textContent.includes("adds no plane"),
     { timeout: 120_000 },
@@ -159,6 +156,11 @@ test("counterexamples: the rule of Li et al. goes through, the certified one sta
     all.map(({ value }) => value),
   );
   assert.equal(names.length, 3);
+  await tab.$eval("#fail", (button) => button.click());
+  await tab.waitForFunction(
+    () => document.querySelector("#sides .chip").textContent === "goes through the surface",
+  );
+  assert.equal(await tab.$eval("#sides-show", ({ value }) => value), "CE5_closed_octahedron");
   for (const name of names) {
     await tab.select("#sides-show", name);
     await tab.waitForFunction(

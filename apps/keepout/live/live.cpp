@@ -165,8 +165,9 @@ void print_page(std::ostream& out, const LiveOptions& options, const std::string
                  : "; open it in a browser:")
       << "\n  " << url << '\n'
       << (options.robot.empty()
-              ? "Drag the red ball, the commanded position, into the anatomy: the blue ball is the "
-                "tool, which\nfollows as far as keepout allows."
+              ? "Drag the red ring, which is your hand, into the anatomy: the ball is the tool, "
+                "which "
+                "follows\nas far as keepout allows."
               : "Drag the jaw into the anatomy: the instrument follows as far as keepout proves "
                 "that shaft,\nwrist and jaw maintain their clearance.")
       << " Drag elsewhere to turn the view, and use the wheel to zoom.\n";

@@ -147,6 +147,7 @@ std::string headline(const std::vector<RunTally>& runs, const TipScene& scene, d
                            : let_in)
         .push_back("'" + runs[r].guard + "'");
   }
+  const RunTally& free = runs.front();
   const bool is_closed = scene.has_depth();
   std::string text;
   if (!let_in.empty()) {
@@ -158,7 +159,8 @@ std::string headline(const std::vector<RunTally>& runs, const TipScene& scene, d
     }
     text += ".";
   } else if (!kept_out.empty()) {
-    text =
+    if (!free.kept_out()) text = "Without a fixture the tool " + words(free, scene) + ". ";
+    text +=
         rules_text(kept_out) + (scene.has_tool ? " kept the whole tool off the surface."
                                 : is_closed    ? " kept the tool out of the anatomy."
                                             : " kept the tool from passing through the surface.");
@@ -168,7 +170,6 @@ std::string headline(const std::vector<RunTally>& runs, const TipScene& scene, d
             " tested nothing: the tool stood still in all " + counted(runs.back().cycles, "cycle") +
             ".";
   }
-  const RunTally& free = runs.front();
   if (free.starts_too_close > 0) {
     text += " " + grouped(free.starts_too_close) + " of " + counted(free.strokes, "stroke") +
             " began nearer to the surface than the required clearance, " + length_text(required) +

@@ -183,7 +183,7 @@ TEST_F(Live, SaysWhereThePageIsAndWhatToDoInIt) {
   EXPECT_TRUE(outcome.output.starts_with("my page.html, 0.0 MB; open it in a browser:\n"))
       << outcome.output;
   EXPECT_CONTAINS(outcome.output, "\n  " + file_url(folder_.file("my page.html")) + '\n');
-  EXPECT_CONTAINS(outcome.output, "Drag the red ball");
+  EXPECT_CONTAINS(outcome.output, "Drag the red ring");
 }
 
 TEST_F(Live, WhatIsWrongIsToldAndNoPageIsWritten) {

@@ -197,6 +197,7 @@ TEST(Verdict, SaysIfARuleWasNotTestedBecauseTheToolStoodStill) {
   EXPECT_CONTAINS(headline,
                   "Rule 'paper' kept the tool out of the anatomy. Rule 'certified' tested "
                   "nothing: the tool stood still in all ");
+  EXPECT_CONTAINS(headline, "Without a fixture the tool went up to 0.1");
   EXPECT_EQ(record["runs"][1]["words"], "stood still in all 5 cycles");
   EXPECT_LACKS(headline, "began nearer");
 }

@@ -55,7 +55,7 @@ export class Magnifier {
       band.style.background = color;
       legend.append(band);
     }
-    const words = make("figcaption", {}, this.caption, legend, this.ticks, "to the tool");
+    const words = make("figcaption", {}, this.caption, legend, this.ticks, "from surface to tool");
     this.element = make("figure", { class: "magnifier" }, this.canvas, words);
     this.element.hidden = true;
     this.canvas.role = "img";
@@ -96,7 +96,9 @@ export class Magnifier {
       (widestGap * width * pixel) / Math.max(Math.abs(clearance), 1e-9),
       (widestMargin * width * pixel) / Math.max(margin, 1e-9),
     );
-    set(this.caption, `${factor < 1.95 ? factor.toFixed(1) : factor.toFixed(0)}× section`);
+    const times = factor < 1.95 ? factor.toFixed(1) : factor.toFixed(0);
+    const kept = isGuarded && margin > 0 ? `, margin ${millimetres(margin)}` : "";
+    set(this.caption, `${times}×${kept}`);
     const scale = factor / pixel;
     const middle = point.clone().addScaledVector(normal, 0.5 * clearance);
     const [right, up] = axesOf(contact, camera);

@@ -541,7 +541,7 @@ function addTipControls(): SideBySide {
     sample: (name) => meshes.sample(name),
     savePath: (lines, madeWith) => takePath("save", lines, madeWith),
   });
-  element("fail", HTMLButtonElement).onclick = () => two.playStroke();
+  element("fail", HTMLButtonElement).onclick = () => two.showTrials();
 
   // A double-click on the anatomy places the tool there.
   view.addEventListener("dblclick", (event) => {

@@ -180,7 +180,9 @@ export class MarginView {
     set(this.callout, `${body ?? "clearance"} ${millimetres(clearance)}`);
     this.callout.className = `callout${clearance < 0 ? " bad" : ""}`;
     this.callout.hidden = this.leader.hidden = false;
-    this.callout.style.transform = `translate(${u}px, ${v}px) translate(-50%, -50%)`;
+    const half = 0.5 * this.callout.offsetWidth + 6;
+    const inView = Math.min(Math.max(u, half), width - half);
+    this.callout.style.transform = `translate(${inView}px, ${v}px) translate(-50%, -50%)`;
     const angle = Math.atan2(v - y, u - x);
     this.leader.style.width = `${Math.hypot(u - x, v - y)}px`;
     this.leader.style.transform = `translate(${x}px, ${y}px) rotate(${angle}rad)`;

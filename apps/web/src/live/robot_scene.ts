@@ -85,13 +85,8 @@ export class RobotScene extends ToolScene {
   showAll(): void {
     if (this.now === null) return;
     const { tip, port, outwards } = this.placesOf(this.now);
-    const points = [tip, port.clone().addScaledVector(outwards, seenAbovePort)];
-    const box = this.anatomy.geometry.boundingBox ?? new three.Box3();
-    for (const x of [box.min.x, box.max.x]) {
-      for (const y of [box.min.y, box.max.y]) {
-        for (const z of [box.min.z, box.max.z]) points.push(new three.Vector3(x, y, z));
-      }
-    }
+    const above = port.clone().addScaledVector(outwards, seenAbovePort);
+    const points = [tip, above, ...this.boxCorners()];
     const target = new three.Box3().setFromPoints(points).getCenter(new three.Vector3());
     const ways = firstTurns.map((turn) =>
       new three.Vector3(-0.15, 0.95, 0.28)
@@ -128,7 +123,6 @@ export class RobotScene extends ToolScene {
   }
 
   protected override firstView(): void {
-    this.anatomy.geometry.computeBoundingBox();
     this.showAll();
   }
 
@@ -211,27 +205,6 @@ export class RobotScene extends ToolScene {
     this.camera.position.copy(from);
     this.controls.update();
     this.redraw();
-  }
-
-  /** Moves the camera along its direction until all points are just within the open view. */
-  private fit(points: readonly three.Vector3[]): void {
-    const { camera, controls } = this;
-    const open = this.openView();
-    for (let i = 0; i < 12; ++i) {
-      camera.updateMatrixWorld();
-      const most = Math.max(
-        ...points.map((point) => {
-          const { x, y } = point.clone().project(camera);
-          return Math.max(Math.abs(x) / open.x, Math.abs(y) / open.y);
-        }),
-      );
-      const away = camera.position
-        .clone()
-        .sub(controls.target)
-        .multiplyScalar(1.02 * most);
-      camera.position.copy(controls.target).add(away);
-      controls.update();
-    }
   }
 }
 

@@ -37,7 +37,7 @@ export function robotStatusShown(
   const stop =
     rule === "tip_only"
       ? `The tip of the jaw has stopped at ${surface}: only the tip is guarded.`
-      : `${who} touches ${surface} and stops: ${millimetres(clearance)} of clearance remains.`;
+      : `${surface.charAt(0).toUpperCase()}${surface.slice(1)} stops ${who.toLowerCase()}: ${millimetres(clearance)} of clearance remains.`;
   return { ...usual, sentence: stop };
 }
 

@@ -95,11 +95,10 @@ export abstract class Scene {
     this.controls.minDistance = 0.02 * this.size;
     this.controls.maxDistance = 4 * this.size;
     this.controls.target.set(0, 0, 0);
-    this.camera.position
-      .set(-0.15, 0.95, 0.16)
-      .normalize()
-      .multiplyScalar(this.size * Math.max(1.15, 0.94 / (this.camera.aspect * this.room())));
+    this.camera.position.set(-0.15, 0.95, 0.16).setLength(this.size);
     this.controls.update();
+    this.anatomy.geometry.computeBoundingBox();
+    this.fit(this.boxCorners());
     this.clear();
     this.resize();
   }
@@ -144,6 +143,35 @@ export abstract class Scene {
     if (this.panes.count === 2)
       return { x: 0.9, y: Math.max(1 - 130 / this.panes.area().height, 0.4) };
     return { x: this.room(), y: Math.max(1 - 60 / this.container.clientHeight, 0.3) };
+  }
+
+  /** Returns the corners of the box around the anatomy. */
+  protected boxCorners(): three.Vector3[] {
+    const { min, max } = this.anatomy.geometry.boundingBox ?? new three.Box3();
+    return [min.x, max.x].flatMap((x) =>
+      [min.y, max.y].flatMap((y) => [min.z, max.z].map((z) => new three.Vector3(x, y, z))),
+    );
+  }
+
+  /** Moves the camera along its direction until all points are just within the open view. */
+  protected fit(points: readonly three.Vector3[]): void {
+    const { camera, controls } = this;
+    const open = this.openView();
+    for (let i = 0; i < 12; ++i) {
+      camera.updateMatrixWorld();
+      const most = Math.max(
+        ...points.map((point) => {
+          const { x, y } = point.clone().project(camera);
+          return Math.max(Math.abs(x) / open.x, Math.abs(y) / open.y);
+        }),
+      );
+      const away = camera.position
+        .clone()
+        .sub(controls.target)
+        .multiplyScalar(1.02 * most);
+      camera.position.copy(controls.target).add(away);
+      controls.update();
+    }
   }
 
   /** Turns the camera to a place without turning the view. */

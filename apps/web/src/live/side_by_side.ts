@@ -113,7 +113,13 @@ export class SideBySide {
     element("compare", HTMLButtonElement).focus();
   }
 
-  /** Plays the stroke on which the rule of Li et al. lets the tool through. */
+  /** Shows the counterexamples to the rule of Li et al., the closed solid first. */
+  showTrials(): void {
+    this.enter();
+    this.choose("CE5_closed_octahedron");
+  }
+
+  /** Plays the stroke through the wall of an open mesh. */
   playStroke(): void {
     const found = wallStrokes
       .map((stroke) => ({ stroke, choice: this.host.sample(stroke.mesh) }))

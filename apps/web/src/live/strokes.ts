@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import type { ToolSettings, Vec3 } from "../engine/keepout.ts";
 
-/** A motion of the hand on which the rule of Li et al. (2020) lets the tool through a wall. */
+/** A motion of the hand behind an open surface, where the rule of Li et al. (2020) lets the tool through. */
 export interface WallStroke {
   /** The anatomy: its name on a command line. */
   readonly mesh: string;
@@ -17,8 +17,8 @@ export interface WallStroke {
 }
 
 const oneSide =
-  "Li et al.’s rule adds no plane for a tip behind the surface. A tool gets there through the open end. " +
-  "The certified rule guards both sides.";
+  "Li et al.’s rule guards the front of a surface: it adds no plane for a tip behind it, where an open mesh lets the " +
+  "tool in. The certified rule guards both sides.";
 
 /** The best one first. */
 export const wallStrokes: readonly WallStroke[] = [
