@@ -15,7 +15,7 @@ from . import figures, hypothesis_tests, modes
 from .experiment import Array, Figure, Findings, Row, Table
 from .hypothesis_tests import Interval, p_text
 from .published import Comparison
-from .teleoperation import CORRIDOR, TREMOR
+from .teleoperation import CORRIDOR
 
 #: A rule may be called best if its setpoint is never this deep in its own frame [mm].
 SOUND = 0.05
@@ -86,8 +86,7 @@ class Against:
 
 def main_rows(rows: list[Row]) -> list[Row]:
     """Returns the trials with the usual operator and corridor, and with errors of the set-up."""
-    return [row for row in rows if row["tremor"] == TREMOR and not row["ideal"] and row["corridor"] == CORRIDOR
-            and not row.get("varied")]
+    return [row for row in rows if not row["changed"] and not row["ideal"] and row["corridor"] == CORRIDOR]
 
 
 def rows_by_mode(rows: list[Row]) -> ByMode:
@@ -134,7 +133,7 @@ def compare(
 ) -> Findings:
     """Compares all modes with no fixture by all measures; adds a table of the sweeps with the members `swept`.
 
-    Each row is a trial with `mode`, `number`, `tremor`, `corridor` [mm] and `ideal`.
+    Each row is a trial with `mode`, `number`, `changed`, `corridor` [mm] and `ideal`.
     """
     by_mode = rows_by_mode(main_rows(rows))
     return Findings(
@@ -223,24 +222,24 @@ def _mean(values: list[float | None]) -> str:
 
 
 def _sweep_table(rows: list[Row], members: tuple[str, ...]) -> Table:
-    """Returns the means by tremor, corridor and errors of the set-up."""
+    """Returns the means by changed number, corridor and errors of the set-up."""
 
-    def kind(row: Row) -> tuple[int, bool, float, float]:
-        return modes.MODES.index(row["mode"]), row["ideal"], row["corridor"], row["tremor"]
+    def kind(row: Row) -> tuple[int, bool, float, str]:
+        return modes.MODES.index(row["mode"]), row["ideal"], row["corridor"], row["changed"]
 
     lines = []
     for of in sorted({kind(row) for row in rows}):
         here = [row for row in rows if kind(row) == of]
-        mode, ideal, corridor, tremor = of
+        mode, ideal, corridor, changed = of
         lines.append([
-            figures.label(modes.MODES[mode]), f"{1000 * tremor:.0f}",
+            figures.label(modes.MODES[mode]), changed or "-",
             "-" if modes.MODES[mode] == modes.NO_FIXTURE else f"{corridor:g}", "none" if ideal else "all",
             str(len(here)), _crossings(here), *_greatest(here, "deepest_registered_mm", "deepest_mm"),
             *(_mean([row[member] for row in here]) for member in members),
         ])
     return Table(
-        "Tremor, corridor, and a set-up without errors",
-        ["mode", "tremor [µm]", "corridor ± [mm]", "errors of the set-up", "trials",
+        "Other numbers, other corridors, and a set-up without errors",
+        ["mode", "changed", "corridor ± [mm]", "errors of the set-up", "trials",
          "setpoint passes through", "deepest setpoint [mm]", "deepest tip [mm]",
          *(member.removesuffix("_mm").removesuffix("_s").replace("_", " ") for member in members)],
         lines,

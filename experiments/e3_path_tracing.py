@@ -12,40 +12,37 @@ from typing import Any
 
 import numpy as np
 
-from . import anatomy, figures, modes, published, teleoperation
+from . import anatomy, figures, modes, parameters, published, teleoperation
 from .comparison import Measure, compare, main_rows
-from .experiment import Figure, Findings, Row, Scale, Table, Unit
-from .operator_model import Operator
+from .experiment import Figure, Findings, Row, Scale, Unit
+from .parameters import Values
 from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, SENSITIVITY, SWEEP, SWEPT, TREMOR, Planned, Trial, vary
+from .teleoperation import CORRIDOR, SWEEP, SWEPT, Planned, Simulation, Trial
 from .trial import Course, Trace
 
 NAME = "e3_path_tracing"
 TITLE = "E3 Path tracing (section V-A)"
 
-VARIED = (modes.NO_FIXTURE, "certified")  # the modes of the table of sensitivity
 SPEED = 2.0  # [mm/s], ours: Li et al. do not give it
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Returns five trials for each mode, as in Li et al.; full: 40. Adds a sweep of tremor, trials without errors of
-    the set-up, and trials with other values of the operator."""
-    of_all: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(40 if scale.full else 5)]
-    swept = [(mode, n, {"tremor": t}) for mode in SWEPT for t in SWEEP for n in range(10 if scale.full else 1)]
-    ideal = [(mode, n, {"ideal": True}) for mode in modes.MODES for n in range(2 if scale.full else 1)]
-    varied: list[Planned] = [(mode, n, {"varied": {name: value}}) for name, ends in SENSITIVITY.items()
-                             for value in ends for mode in VARIED for n in range(20 if scale.full else 3)]
-    return [teleoperation.unit(mode, n, scale.seed, **of) for mode, n, of in of_all + swept + ideal + varied]
+    """Returns five trials for each mode, as in Li et al.; full: 40. Adds a sweep of tremor, and trials without errors of
+    the set-up."""
+    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(40 if scale.full else 5)]
+    trials += [(mode, n, {"changed": {"Operator.tremor": t}}) for mode in SWEPT for t in SWEEP
+               for n in range(10 if scale.full else 1)]
+    trials += [(mode, n, {"ideal": True}) for mode in modes.MODES for n in range(2 if scale.full else 1)]
+    return [teleoperation.unit(mode, n, scale.seed, **of) for mode, n, of in trials]
 
 
-def planned(mode: str, seed: int, number: int = 0, *, tremor: float = TREMOR, ideal: bool = False,
-            corridor: float = CORRIDOR, varied: dict[str, float] | None = None, operator: Operator = Operator(),
-            setup: SetUp = SetUp()) -> Trial:
+def planned(mode: str, seed: int, number: int = 0, *, ideal: bool = False, corridor: float = CORRIDOR,
+            changed: Values | None = None, simulation: Simulation = Simulation()) -> Trial:
     """Returns the trial of a mode. Modes with the same seed and number meet the same operator and registration."""
     path, index = anatomy.printed_skull()
     course = Course(path=path, depth=0.0, speed=SPEED, time_limit=240.0)
-    return Trial(mode, (seed, 3, number), course, index, vary(replace(operator, tremor=tremor), varied),
-                 SetUp.ideal() if ideal else setup, corridor)
+    of = parameters.changed(simulation, changed or {})
+    return Trial(mode, (seed, 3, number), course, index, of.operator, SetUp.ideal() if ideal else of.setup, corridor)
 
 
 def trial(mode: str, seed: int, number: int = 0, *, judged: bool = True, **settings: Any) -> Row:
@@ -61,10 +58,9 @@ def run(unit: Unit) -> list[Row]:
     made = planned(**told)
     trace = made.run()
     along, _, depth = made.course.path.depths(trace.tip[trace.begun :])
-    drawn = told["mode"] in SWEPT and not told["ideal"] and told["number"] < 5
-    about = {name: value for name, value in told.items() if name != "seed"}
+    drawn = told["mode"] in SWEPT and not told["ideal"] and not told["changed"] and told["number"] < 5
     return [
-        about | made.measures(trace) | _distances(trace, made.course)
+        teleoperation.about(told) | made.measures(trace) | _distances(trace, made.course)
         | {
             "along_mm": np.round(along[::25], 2).tolist() if drawn else None,
             "height_mm": np.round(-depth[::25], 4).tolist() if drawn else None,
@@ -96,41 +92,10 @@ MEASURES = (
 
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
-    """Compares each mode with no fixture; adds the overlay of trajectories, and sweeps of the operator's values."""
+    """Compares each mode with no fixture; adds the overlay of trajectories."""
     swept = ("spectral_arc_length", "sparc", "absolute_depth_mm", "deviation_mm")
-    usual = [row for row in rows if not row["varied"]]
-    found = compare(NAME, usual, MEASURES, scale.seed, swept)
-    return replace(found, figures=[*found.figures, _overlay(main_rows(usual))],
-                   tables=[*found.tables, _sensitivity([row for row in rows if row["varied"]])])
-
-
-def _sensitivity(rows: list[Row]) -> Table:
-    """Returns the smoothness with other values of the operator, without a fixture and with the certified rule."""
-    members = ("spectral_arc_length", "sparc", "irregularity", "duration_s")
-    lines, rises = [], 0
-    kinds = list(dict.fromkeys(tuple(row["varied"].items()) for row in rows))
-    for kind in kinds:
-        here = {mode: [row for row in rows if tuple(row["varied"].items()) == kind and row["mode"] == mode]
-                for mode in VARIED}
-        means = {mode: [_mean([row[member] for row in of]) for member in members] for mode, of in here.items()}
-        free, held = means[VARIED[0]], means[VARIED[1]]
-        rises += held[0] > free[0]
-        lines.append([", ".join(f"{name} = {value:g}" for name, value in kind),
-                      ", ".join(f"{sum(row['finished'] for row in of)} of {len(of)}" for of in here.values()),
-                      *(f"{a:.2f} → {b:.2f}" for a, b in zip(free, held, strict=True))])
-    return Table(
-        "Other values of the operator",
-        ["value", "finished, free and certified", "arc length", "SPARC",
-         "arc length beyond 1, for each root of a second", "duration [s]"],
-        lines,
-        f"Means without a fixture → with certified. The arc length rises at {rises} of {len(kinds)} points. "
-        "The arc length depends on the duration; SPARC and the last but one column hardly do.",
-    )
-
-
-def _mean(values: list[float | None]) -> float:
-    told = [value for value in values if value is not None]
-    return float(np.mean(told)) if told else float("nan")
+    found = compare(NAME, rows, MEASURES, scale.seed, swept)
+    return replace(found, figures=[*found.figures, _overlay(main_rows(rows))])
 
 
 def _overlay(rows: list[Row]) -> Figure:

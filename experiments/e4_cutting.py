@@ -9,18 +9,17 @@ an over-cut.
 """
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from . import anatomy, modes, published, teleoperation
-from .bone import CELL, BoneProperties
+from . import anatomy, modes, parameters, published, teleoperation
+from .bone import CELL
 from .comparison import Measure, compare
 from .experiment import Findings, Row, Scale, Unit
-from .operator_model import Operator
+from .parameters import Values
 from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, SWEEP, SWEPT, TREMOR, Planned, Trial, vary
+from .teleoperation import CORRIDOR, SWEEP, SWEPT, Planned, Simulation, Trial
 from .trial import Course, Trace
 
 NAME = "e4_cutting"
@@ -39,21 +38,20 @@ def units(scale: Scale) -> list[Unit]:
     trials += [(mode, 0, {"ideal": True}) for mode in SWEPT]
     trials += [("certified", n, {"corridor": c}) for c in CORRIDORS for n in range(10 if scale.full else 1)]
     if scale.full:
-        trials += [(mode, n, {"tremor": t}) for mode in SWEPT for t in SWEEP for n in range(10)]
+        trials += [(mode, n, {"changed": {"Operator.tremor": t}}) for mode in SWEPT for t in SWEEP for n in range(10)]
     return [teleoperation.unit(mode, n, scale.seed, **of) for mode, n, of in trials]
 
 
-def planned(mode: str, seed: int, number: int = 0, *, tremor: float = TREMOR, ideal: bool = False,
-            corridor: float = CORRIDOR, varied: dict[str, float] | None = None, operator: Operator = Operator(),
-            setup: SetUp = SetUp(), bone: BoneProperties = BoneProperties()) -> Trial:
+def planned(mode: str, seed: int, number: int = 0, *, ideal: bool = False, corridor: float = CORRIDOR,
+            changed: Values | None = None, simulation: Simulation = Simulation()) -> Trial:
     """Returns the trial of a mode. Modes with the same seed and number meet the same operator and registration.
 
     `ideal`: no errors of the set-up, and no bone: no force, no deflection.
     """
     path, index = anatomy.phantom()
-    course = Course(path=path, depth=anatomy.SHELL, speed=SPEED, bone=None if ideal else bone, time_limit=600.0)
-    return Trial(mode, (seed, 4, number), course, index, vary(replace(operator, tremor=tremor), varied),
-                 SetUp.ideal() if ideal else setup, corridor)
+    of = parameters.changed(simulation, changed or {})
+    course = Course(path=path, depth=anatomy.SHELL, speed=SPEED, bone=None if ideal else of.bone, time_limit=600.0)
+    return Trial(mode, (seed, 4, number), course, index, of.operator, SetUp.ideal() if ideal else of.setup, corridor)
 
 
 def trial(mode: str, seed: int, number: int = 0, *, judged: bool = True, **settings: Any) -> Row:
@@ -65,8 +63,7 @@ def trial(mode: str, seed: int, number: int = 0, *, judged: bool = True, **setti
 
 def run(unit: Unit) -> list[Row]:
     """Runs one trial."""
-    about = {name: value for name, value in unit.settings.items() if name != "seed"}
-    return [about | trial(**unit.settings)]
+    return [teleoperation.about(unit.settings) | trial(**unit.settings)]
 
 
 def _cut_measures(trace: Trace, course: Course) -> Row:

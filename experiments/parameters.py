@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The numbers of the simulation by name, such as `Operator.tremor`, to change one at a time."""
+"""The numbers of the simulation by name, such as `Operator.tremor`, to change some of them."""
 from __future__ import annotations
 
 import math
@@ -9,26 +9,35 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
+#: Numbers by name.
+Values = Mapping[str, float]
 
-def names(of: object) -> list[str]:
-    """Returns the names of the finite numbers other than 0 of a dataclass and of those in it."""
-    found = []
-    for field in fields(of):
+
+def numbers(of: object) -> dict[str, float]:
+    """Returns the finite numbers of a dataclass and of those in it, by name."""
+    found: dict[str, float] = {}
+    for field in fields(of):  # type: ignore[arg-type]
         value = getattr(of, field.name)
         if is_dataclass(value):
-            found += names(value)
-        elif isinstance(value, float) and value != 0.0 and math.isfinite(value):
-            found.append(f"{type(of).__name__}.{field.name}")
+            found |= numbers(value)
+        elif isinstance(value, float) and math.isfinite(value):
+            found[f"{type(of).__name__}.{field.name}"] = value
     return found
 
 
-def scaled(of: T, factors: Mapping[str, float]) -> T:
-    """Returns a dataclass with some of its numbers times a factor, by name; also in the dataclasses in it."""
+def changed(of: T, values: Values) -> T:
+    """Returns a dataclass with other values of some of its numbers. Raises KeyError for a name that it has not."""
+    if unknown := values.keys() - numbers(of):
+        raise KeyError(f"no number is named {', '.join(sorted(unknown))}")
+    return _changed(of, values)
+
+
+def _changed(of: T, values: Values) -> T:
     changes: dict[str, object] = {}
-    for field in fields(of):
-        value, factor = getattr(of, field.name), factors.get(f"{type(of).__name__}.{field.name}")
+    for field in fields(of):  # type: ignore[arg-type]
+        value, name = getattr(of, field.name), f"{type(of).__name__}.{field.name}"
         if is_dataclass(value):
-            changes[field.name] = scaled(value, factors)
-        elif factor is not None:
-            changes[field.name] = value * factor
-    return replace(of, **changes)
+            changes[field.name] = _changed(value, values)
+        elif name in values:
+            changes[field.name] = values[name]
+    return replace(of, **changes)  # type: ignore[type-var]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
 
@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from scipy import signal
 
 from . import modes
+from .bone import BoneProperties
 from .experiment import Array, Row, Unit
 from .operator_model import Operator, streams
+from .parameters import Values
 from .rules.rule import Corridor, Task
 from .set_up_errors import SetUp, fiducials_around, registered_from_true
 from .smoothness import spectral_arc_length, sparc
@@ -24,45 +26,40 @@ from .trial import Course, Trace, draw, run_trial
 MARGIN = 0.01  # [mm] for each rule: Li et al. (2020) have none, and the certified rule needs some
 CORRIDOR = 1.0  # [mm] on each side of the sagittal plane (V)
 
-#: The tremor of all comparisons, and the sweep [mm RMS at the hand]. 0.049 mm: surgeons who hold an instrument still
-#: (Riviere, Rader, Khosla, 1997). 0.65 mm: 0.13 mm at the tip.
-TREMOR = Operator().tremor
+#: The sweep of the tremor [mm RMS at the hand]. 0.049 mm: surgeons who hold an instrument still (Riviere, Rader,
+#: Khosla, 1997). 0.65 mm: 0.13 mm at the tip.
 SWEEP = (0.0, 0.049, 0.65)
 #: The modes of the sweeps and of the drawn trajectories.
 SWEPT = ("none", "paper", "certified")
-
-#: Values of the operator that are varied one by one, and the ends of their ranges. From literature: refractory 0.17 s
-#: (Miall, Weir, Stein, 1993) and 0.55 s (van de Kamp et al., 2013, order 2). Noise 6 % (finger force with sight and
-#: touch) and 15 % (matching of forces; both Jones, 2000). Tremor 0.049 mm (Riviere, Rader, Khosla, 1997) and 0.285 mm
-#: (all error of two surgeons in vivo, PubMed Central PMC3989364). The other ranges are ours: about half and twice the
-#: value.
-SENSITIVITY = {
-    "refractory": (0.17, 0.55), "movement": (0.3, 0.8), "noise": (0.06, 0.15), "tremor": (0.049, 0.285),
-    "sight_in_depth": (0.25, 1.0), "tolerance": (0.25, 1.0),
-}
 
 #: A mode, the number of the trial, and the settings of unit() that differ from its defaults.
 Planned = tuple[str, int, dict[str, Any]]
 
 
-def unit(mode: str, number: int, seed: int, *, tremor: float = TREMOR, ideal: bool = False,
-         corridor: float = CORRIDOR, varied: dict[str, float] | None = None) -> Unit:
-    """Returns the unit of one trial of a mode. `ideal`: the set-up has no errors. `varied`: see vary()."""
-    kind = f"tremor{round(tremor * 1000)}um-corridor{round(corridor * 1000)}um{'-ideal' if ideal else ''}"
-    kind += "".join(f"-{name}{value:g}" for name, value in (varied or {}).items())
-    settings = {"mode": mode, "tremor": tremor, "ideal": ideal, "corridor": corridor, "varied": varied,
-                "number": number, "seed": seed}
+@dataclass(frozen=True)
+class Simulation:
+    """All that is simulated beside the rule: their numbers can be changed, see parameters.changed()."""
+
+    operator: Operator = field(default_factory=Operator)
+    setup: SetUp = field(default_factory=SetUp)
+    bone: BoneProperties = field(default_factory=BoneProperties)
+
+
+def unit(mode: str, number: int, seed: int, *, ideal: bool = False, corridor: float = CORRIDOR,
+         changed: Values | None = None) -> Unit:
+    """Returns the unit of one trial of a mode. `ideal`: the set-up has no errors. `changed`: other values of numbers of
+    a Simulation."""
+    kind = f"corridor{round(corridor * 1000)}um{'-ideal' if ideal else ''}"
+    kind += "".join(f"-{name}{value:g}" for name, value in (changed or {}).items())
+    settings = {"mode": mode, "ideal": ideal, "corridor": corridor, "changed": dict(changed or {}), "number": number,
+                "seed": seed}
     return Unit(f"{mode}-{kind}-{number}", settings)
 
 
-def vary(operator: Operator, values: dict[str, float] | None) -> Operator:
-    """Returns the operator with other values of itself or of its hand, by name."""
-    for name, value in (values or {}).items():
-        if hasattr(operator, name):
-            operator = replace(operator, **{name: value})
-        else:
-            operator = replace(operator, hand=replace(operator.hand, **{name: value}))
-    return operator
+def about(settings: dict[str, Any]) -> Row:
+    """Returns the settings of a trial as members of its row. `changed` is text, such as "Operator.tremor=0.049"."""
+    changed = " ".join(f"{name}={value:g}" for name, value in settings["changed"].items())
+    return {name: value for name, value in settings.items() if name != "seed"} | {"changed": changed}
 
 
 @dataclass(frozen=True)

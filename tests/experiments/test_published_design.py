@@ -7,7 +7,7 @@ from scipy import stats
 from experiments import e3_path_tracing, e4_cutting, modes, published, published_design, published_numbers
 from experiments.comparison import Measure, against, best
 from experiments.experiment import Row, Scale
-from experiments.teleoperation import CORRIDOR, TREMOR
+from experiments.teleoperation import CORRIDOR
 
 DEPTH = Measure("depth", "depth", "mm", samples="samples")
 
@@ -93,7 +93,7 @@ def test_a_mode_is_best_only_if_it_beats_the_next() -> None:
 
 def trials_of(mode: str, count: int, random: np.random.Generator) -> tuple[list[Row], list[Row]]:
     """Returns made-up rows of E3 and E4."""
-    common = {"mode": mode, "tremor": TREMOR, "corridor": CORRIDOR, "ideal": False, "finished": True,
+    common = {"mode": mode, "changed": "", "corridor": CORRIDOR, "ideal": False, "finished": True,
               "deepest_registered_mm": 0.0}
     e3 = [common | {"number": n, "spectral_arc_length": random.normal(-8.0)} for n in range(count)]
     e4 = []

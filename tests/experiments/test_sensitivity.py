@@ -24,37 +24,42 @@ class Outer:
     inner: Inner = field(default_factory=Inner)
 
 
-def test_every_number_has_a_name_and_is_scaled_alone() -> None:
-    assert parameters.names(Outer()) == ["Outer.width", "Inner.depth"]
-    assert parameters.scaled(Outer(), {"Inner.depth": 2.0}) == replace(Outer(), inner=Inner(depth=6.0))
-    assert parameters.scaled(Outer(), {"Outer.width": 0.5}) == replace(Outer(), width=1.0)
-    assert parameters.scaled(SetUp(), {}) == SetUp()
+def test_every_number_has_a_name_and_is_changed_alone() -> None:
+    assert parameters.numbers(Outer()) == {"Outer.width": 2.0, "Outer.off": 0.0, "Inner.depth": 3.0}
+    assert parameters.changed(Outer(), {"Inner.depth": 6.0}) == replace(Outer(), inner=Inner(depth=6.0))
+    assert parameters.changed(Outer(), {"Outer.off": 0.5}) == replace(Outer(), off=0.5)
+    assert parameters.changed(SetUp(), {}) == SetUp()
+    with pytest.raises(KeyError, match="Inner.width"):
+        parameters.changed(Outer(), {"Inner.width": 1.0})
 
 
-def test_each_value_is_halved_and_doubled_in_pairs_and_no_value_of_the_task() -> None:
+def test_each_value_is_changed_to_both_ends_of_its_range_in_pairs_and_no_value_of_the_task() -> None:
     units = e8_sensitivity.units(Scale(full=True))
-    keys = [(u.settings["experiment"], u.settings["parameter"], *u.settings["factors"].values()) for u in units]
-    assert all(keys.count(key) == 2 * 3 for key in set(keys))
-    assert {key[2] for key in keys} == {0.5, 1.0, 2.0}
-    names = {key[1] for key in keys}
-    assert "SetUp.fle" in names and "BoneProperties.resistance" in names
-    assert not names & set(e8_sensitivity.FIXED)
-    assert all(set(unit.name) <= set("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.") for unit in units)
+    keys = [(u.settings["experiment"], u.settings["parameter"], u.settings["value"]) for u in units]
+    assert {keys.count(key) for key in set(keys)} == {2 * 3, 2 * 20}
+    for name in ("SetUp.fle", "BoneProperties.resistance", *e8_sensitivity.RANGES):
+        values = sorted(value for experiment, parameter, value in set(keys)
+                        if parameter == name and experiment == "e4_cutting")
+        usual = parameters.numbers(teleoperation.Simulation())[name]
+        assert len(values) == 2 and values[0] < usual < values[1]
+        assert name in e8_sensitivity.RANGES or values == [usual / 2, usual * 2]
+    assert not {key[1] for key in keys} & set(e8_sensitivity.FIXED)
 
 
 def test_bars_are_differences_of_pairs_the_longest_first() -> None:
     end = next(m for m in e3_path_tracing.MEASURES if m.published)
     values = {("as they are", 1.0): 1.0, ("a", 0.5): 0.5, ("a", 2.0): 2.0, ("b", 0.5): 1.0, ("b", 2.0): 1.25}
-    rows = [{"experiment": e3_path_tracing.NAME, "parameter": parameter, "factor": factor, "mode": mode,
-             "number": number, end.member: -8.0 + number + (gain if mode == "certified" else 0.0)}
-            for (parameter, factor), gain in values.items() for mode in ("none", "certified") for number in range(2)]
+    rows = [{"experiment": e3_path_tracing.NAME, "parameter": parameter, "value": value, "mode": mode,
+             "number": number, "sparc": -2.0, "irregularity": 1.0,
+             end.member: -8.0 + number + (gain if mode == "certified" else 0.0)}
+            for (parameter, value), gain in values.items() for mode in ("none", "certified") for number in range(2)]
     rows[-1][end.member] = None  # an unfinished trial: one pair less
     base, found = e8_sensitivity.bars(rows, end)
     assert base.value == 1.0
-    assert [(bar.parameter, bar.half.value, bar.double.value, bar.pairs) for bar in found] == [
+    assert [(bar.parameter, bar.low.value, bar.high.value, bar.pairs) for bar in found] == [
         ("a", 0.5, 2.0, 2), ("b", 1.0, 1.25, 1)]
     findings = e8_sensitivity.findings(rows, Scale())
-    assert "4 of 4" in findings.headline and len(findings.tables) == 1
+    assert "4 of 4" in findings.headline and len(findings.tables) == 3
     assert [row[0] for row in findings.tables[0].rows] == ["a", "b"]
 
 
@@ -68,7 +73,7 @@ def test_a_changed_value_reaches_the_trial(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(teleoperation.Trial, "run", run)
     monkeypatch.setattr(e3_path_tracing.anatomy, "printed_skull", lambda: (None, None))
     for unit in e8_sensitivity.units(Scale()):
-        if unit.settings["parameter"] in ("as they are", "SetUp.fle", "Operator.mass"):
+        if unit.settings["number"] == 0 and unit.settings["parameter"] in ("as they are", "SetUp.fle", "Operator.mass"):
             with pytest.raises(StopIteration):
                 e8_sensitivity.run(unit)
     (base, setup), *changed = seen[::2]  # both modes have the same values

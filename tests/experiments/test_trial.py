@@ -11,7 +11,7 @@ from experiments.open_loop import OpenLoop
 from experiments.operator_model import Operator
 from experiments.rules.rule import Rule
 from experiments.set_up_errors import SetUp
-from experiments.teleoperation import Trial
+from experiments.teleoperation import Simulation, Trial
 from experiments.trial import Course, Trace, run_in_python
 
 try:
@@ -23,7 +23,7 @@ from keepout_peers import Judge  # noqa: E402
 
 #: The arrays of a trace.
 ARRAYS = ("tip", "setpoint", "goal", "force", "power", "contact", "kerf")
-HANDS = {"intermittent": Operator(), "open_loop": Operator(hand=OpenLoop())}
+HANDS = {"intermittent": Simulation(), "open_loop": Simulation(Operator(hand=OpenLoop()))}
 
 
 def short_trial(mode: str, seed: int = 1, setup: SetUp = SetUp(), cut: bool = True):
@@ -31,7 +31,7 @@ def short_trial(mode: str, seed: int = 1, setup: SetUp = SetUp(), cut: bool = Tr
     path, index = anatomy.phantom()
     bone = BoneProperties(resistance=0.2) if cut else None
     course = Course(path=path, depth=anatomy.SHELL, speed=0.5, bone=bone, time_limit=8.0)
-    trial = Trial(mode, (seed,), course, index, HANDS["open_loop"], setup)
+    trial = Trial(mode, (seed,), course, index, HANDS["open_loop"].operator, setup)
     trace = trial.run()
     return trace, trial.measures(trace)
 
@@ -48,7 +48,7 @@ def test_the_loop_in_c_plus_plus_has_the_bits_of_the_loop_in_python(mode: str, h
         if mode not in teleoperation.SWEPT and experiment is e3_path_tracing:
             continue  # to save time: a rule in Python is called back in the same way in both
         ideal = mode == "all_faces"  # no latency, no registration error, and no bone in E4
-        trial = seconds_of(experiment.planned(mode, 1, ideal=ideal, operator=HANDS[hand]), 2.0)
+        trial = seconds_of(experiment.planned(mode, 1, ideal=ideal, simulation=HANDS[hand]), 2.0)
         native, python = trial.run(), trial.run(run_in_python)
         for name in ARRAYS:
             assert np.array_equal(getattr(native, name), getattr(python, name)), name
