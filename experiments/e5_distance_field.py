@@ -105,7 +105,7 @@ def units(scale: Scale) -> list[Unit]:
     return [
         Unit(anatomy, {
             "anatomy": anatomy, "seed": scale.seed, "samples": 20_000 if scale.full else 4000,
-            "loops": 150 if scale.full else 60,
+            "loops": 150 if scale.full else 60, "cells": CELLS,
         }, alone=True)
         for anatomy in (FULL_ANATOMY if scale.full else ANATOMY)
     ]
@@ -139,7 +139,7 @@ def run(unit: Unit) -> list[Row]:
 
     memory = {"memory": index.memory, "memory_whole": index.memory, "refused": 0.0, "measured_build_s": built}
     rows = [row_of(mode, make(task, index), memory) for mode, make in RULES.items()]
-    for cell in CELLS:
+    for cell in asked["cells"]:
         field = native.field_of(mesh, cell, MARGIN)
         begun = time.perf_counter()
         in_box = field.sample(center - HALF_BOX, center + HALF_BOX)

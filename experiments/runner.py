@@ -21,6 +21,7 @@ import signal
 import sys
 import time
 import warnings
+from collections import Counter
 from collections.abc import Iterable
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from functools import lru_cache
@@ -110,9 +111,11 @@ def _be_a_worker() -> None:
     warnings.filterwarnings("ignore", "Mesh: ")  # counterexamples are open, and cavities face inward
 
 
-def _run(module: str, unit: Unit) -> list[Row]:
+def _run(module: str, unit: Unit) -> tuple[list[Row], float]:
+    """Returns the rows of a unit, and the seconds that they took."""
+    begun = time.monotonic()
     rows: list[Row] = importlib.import_module(module).run(unit)
-    return rows
+    return rows, time.monotonic() - begun
 
 
 class UnitError(RuntimeError):
@@ -157,6 +160,10 @@ class Kept:
         return plain
 
 
+#: Units of a kind take about the same time: an experiment, and a mode or "".
+Kind = tuple[str, str]
+
+
 class Progress:
     """A line on the terminal, or a line every 10 seconds in a file: the finished units, and the time left.
 
@@ -167,28 +174,49 @@ class Progress:
 
     def __init__(self, units: int) -> None:
         self._units = units
-        self._done = self._ran = 0
-        self._begun = self._shown = time.monotonic()
-        self._alone = True
+        self._done = 0
+        self._shown = time.monotonic()
+        self._jobs = 1
+        self._left: list[Kind] = []
+        self._seconds: dict[Kind, list[float]] = {}
         self._name = "nothing is finished yet"
 
-    def begin(self, *, alone: bool) -> None:
-        """Starts a batch of units that are `alone` or not; the time left is shown only for those that are not."""
-        self._alone, self._ran, self._begun = alone, 0, time.monotonic()
+    def begin(self, left: list[Kind], jobs: int) -> None:
+        """Starts a batch of units, by their kinds, in `jobs` processes."""
+        self._left, self._jobs = list(left), jobs
 
-    def count(self, name: str, *, kept: bool) -> None:
+    def ran(self, kind: Kind, seconds: float) -> None:
+        """Notes the time of a unit of this batch."""
+        self._left.remove(kind)
+        self._seconds.setdefault(kind, []).append(seconds)
+
+    def count(self, name: str) -> None:
+        """Counts a finished unit, or one that was kept."""
         self._done += 1
-        self._ran += not kept
         self._name = name
         self.show(now=sys.stderr.isatty() or self._done == self._units)
+
+    def time_left(self) -> float:
+        """Returns the expected time of the batch [s]; 0 before a unit of it has finished.
+
+        A unit takes as long as the finished ones of its kind, or else of its experiment, or else of all.
+        """
+
+        def expected(kind: Kind) -> float:
+            of = self._seconds
+            known = of.get(kind) or [s for k in of if k[0] == kind[0] for s in of[k]] or sum(of.values(), [])
+            return sum(known) / len(known)
+
+        if not self._seconds:
+            return 0.0
+        return sum(count * expected(kind) for kind, count in Counter(self._left).items()) / self._jobs
 
     def show(self, *, now: bool = False) -> None:
         """Prints the line if it is due, or immediately with `now`."""
         if os.environ.get("KEEPOUT_QUIET") or not (now or time.monotonic() - self._shown >= self.INTERVAL):
             return
         self._shown = time.monotonic()
-        told = self._ran and not self._alone
-        left = (self._shown - self._begun) / self._ran * (self._units - self._done) if told else 0.0
+        left = self.time_left()
         rest = f", {left / 60:.0f} min left" if left >= 60 else f", {left:.0f} s left" if left else ""
         line = f"{self._done} of {self._units} units{rest}: {self._name}"
         on_terminal = sys.stderr.isatty()
@@ -208,23 +236,27 @@ def run_units(
     results: dict[tuple[str, str], list[Row]] = {}
     left: list[tuple[ModuleType, Unit]] = []
 
-    def done(experiment: ModuleType, unit: Unit, rows: list[Row], *, kept: bool) -> None:
+    def done(experiment: ModuleType, unit: Unit, rows: list[Row]) -> None:
         results[experiment.NAME, unit.name] = rows
-        progress.count(f"{experiment.NAME} {unit.name}", kept=kept)
+        progress.count(f"{experiment.NAME} {unit.name}")
+
+    def kind(experiment: ModuleType, unit: Unit) -> Kind:
+        return experiment.NAME, unit.settings.get("mode", "")
 
     for experiment in experiments:
         for unit in units[experiment.NAME]:
             if (rows := kept[experiment.NAME].rows(unit)) is None:
                 left.append((experiment, unit))
             else:
-                done(experiment, unit, rows, kept=True)
+                done(experiment, unit, rows)
 
     for alone in (True, False):
         batch = [(e, u) for e, u in left if u.alone is alone]
         if not batch:
             continue
-        progress.begin(alone=alone)
-        with ProcessPoolExecutor(1 if alone else jobs, initializer=_be_a_worker) as pool:
+        processes = 1 if alone else jobs
+        progress.begin([kind(e, u) for e, u in batch], processes)
+        with ProcessPoolExecutor(processes, initializer=_be_a_worker) as pool:
             try:
                 running = {pool.submit(_run, e.__name__, u): (e, u) for e, u in batch}
                 while running:
@@ -234,7 +266,9 @@ def run_units(
                         experiment, unit = running.pop(future)
                         if fault := future.exception():
                             raise UnitError(f"{experiment.NAME} {unit.name}: {fault!r:.500}")
-                        done(experiment, unit, kept[experiment.NAME].keep(unit, future.result()), kept=False)
+                        rows, seconds = future.result()
+                        progress.ran(kind(experiment, unit), seconds)
+                        done(experiment, unit, kept[experiment.NAME].keep(unit, rows))
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 for worker in multiprocessing.active_children():

@@ -26,7 +26,7 @@ SHORT: dict[str, dict[str, Any]] = {
     "e1_validation": {"loops": 2},
     "e2_run_time": {"triangles": 5000, "queries": 40},
     "e3_path_tracing": {"number": 5},  # the first five have drawn trajectories: long rows
-    "e5_distance_field": {"loops": 2, "samples": 300},
+    "e5_distance_field": {"anatomy": "airway", "loops": 2, "samples": 300, "cells": [1.0]},
     "e7_margin": {"draws": 1},
 }
 
@@ -48,12 +48,13 @@ def prepared() -> bool:
     try:
         anatomy.mesh_file("skull")
         anatomy.mesh_file("bunny")
+        anatomy.mesh_file("airway")
     except (OSError, anatomy.subprocess.CalledProcessError):
         return False
     return True
 
 
-@pytest.mark.skipif(not prepared(), reason="needs the CT skull and the bunny: fixtures/prepare skull bunny")
+@pytest.mark.skipif(not prepared(), reason="needs sample meshes: fixtures/prepare skull bunny airway")
 @pytest.mark.parametrize("experiment", NAMES)
 def test_rows_are_the_golden_ones(experiment: str) -> None:
     made = runner.tables(experiment, rows_of(experiment))[experiment]

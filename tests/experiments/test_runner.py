@@ -138,6 +138,16 @@ def test_without_a_terminal_lines_come_while_a_unit_runs_unless_it_is_quiet(
     assert quiet or lines[-1] == "1 of 1 units: counted unit-0"
 
 
+def test_the_time_left_is_that_of_finished_units_of_the_same_kind() -> None:
+    slow, fast, other = ("e3", "fcl_slide"), ("e3", "certified"), ("e7", "")
+    progress = runner.Progress(6)
+    progress.begin([slow, slow, fast, fast, other], 2)
+    assert progress.time_left() == 0.0
+    progress.ran(slow, 12.0)
+    progress.ran(fast, 2.0)
+    assert progress.time_left() == pytest.approx((12.0 + 2.0 + 7.0) / 2)  # the other: the mean of all
+
+
 def test_a_torn_file_is_done_again(counted: types.ModuleType, tmp_path: Path) -> None:
     runner.run_units([counted], units(1), tmp_path, 1)
     file = tmp_path / "counted" / "unit-0.json"
