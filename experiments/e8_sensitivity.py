@@ -45,7 +45,7 @@ def units(scale: Scale) -> list[Unit]:
     three, and E4 with three."""
     planned = []
     for experiment in EXPERIMENTS if scale.full else [e3_path_tracing.NAME]:
-        for parameter, ends in {BASE: (1.0,), **ranges(experiment)}.items():
+        for parameter, ends in [(BASE, (1.0,)), *ranges(experiment).items()]:
             many = experiment == e3_path_tracing.NAME and parameter in (BASE, *RANGES)
             pairs = (20 if many else 3) if scale.full else (3 if many else 1)
             planned += [(experiment, parameter, value, mode, number)
@@ -110,8 +110,9 @@ def bars(rows: list[Row], measure: Measure) -> tuple[Interval, list[Bar]]:
     found = []
     for parameter in dict.fromkeys(row["parameter"] for row in rows if row["parameter"] != BASE):
         low, high = sorted({row["value"] for row in rows if row["parameter"] == parameter})
-        sides = [difference(parameter, value) for value in (low, high)]
-        found.append(Bar(parameter, (low, high), *map(hypothesis_tests.mean_difference, sides), min(map(len, sides))))
+        below, above = difference(parameter, low), difference(parameter, high)
+        found.append(Bar(parameter, (low, high), hypothesis_tests.mean_difference(below),
+                         hypothesis_tests.mean_difference(above), min(len(below), len(above))))
     return (hypothesis_tests.mean_difference(difference(BASE, 1.0)),
             sorted(found, key=lambda bar: (-bar.swing, bar.parameter)))
 

@@ -16,7 +16,7 @@ Values = Mapping[str, float]
 def numbers(of: object) -> dict[str, float]:
     """Returns the finite numbers of a dataclass and of those in it, by name."""
     found: dict[str, float] = {}
-    for field in fields(of):  # type: ignore[arg-type]
+    for field in fields(of):
         value = getattr(of, field.name)
         if is_dataclass(value):
             found |= numbers(value)
@@ -34,10 +34,10 @@ def changed(of: T, values: Values) -> T:
 
 def _changed(of: T, values: Values) -> T:
     changes: dict[str, object] = {}
-    for field in fields(of):  # type: ignore[arg-type]
+    for field in fields(of):
         value, name = getattr(of, field.name), f"{type(of).__name__}.{field.name}"
         if is_dataclass(value):
             changes[field.name] = _changed(value, values)
         elif name in values:
             changes[field.name] = values[name]
-    return replace(of, **changes)  # type: ignore[type-var]
+    return replace(of, **changes)
