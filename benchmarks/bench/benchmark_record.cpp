@@ -185,7 +185,7 @@ std::string headline(const Benchmark& benchmark) {
     return time_text(median(row)) + " with " + plain((*row)["index"]) + " and " +
            plain((*row)["solver"]);
   };
-  return "Under rule " + plain((*fastest)["activation"]) + " on " + plain((*fastest)["mesh"]) +
+  return "Under rule '" + plain((*fastest)["activation"]) + "' on " + plain((*fastest)["mesh"]) +
          " (" + counted((*fastest)["triangles"], "triangle") + "), a step takes " + time(fastest) +
          (fastest == slowest
               ? "."

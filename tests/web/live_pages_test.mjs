@@ -467,8 +467,15 @@ test(
     assert.equal(await desk.$eval(".callout", ({ className }) => className), "callout bad");
     await desk.screenshot({ path: join(folder, "unguarded.png") });
     await desk.mouse.up();
-    await desk.click("#again");
     await sleep(500);
+    const depth = await textOf(desk, "#clearance");
+    await desk.keyboard.press("3");
+    await desk.waitForFunction(() => !document.querySelector("#out").hidden);
+    await sleep(500);
+    assert.equal(await textOf(desk, "#clearance"), depth, "the depth under the certified rule");
+    await desk.click("#out");
+    await desk.waitForFunction(() => document.querySelector("#status b").textContent === "free");
+    assert.ok(await desk.$eval("#out", ({ hidden }) => hidden));
     await desk.keyboard.press("2");
     await pressIn();
     await desk.waitForFunction(() => document.querySelector("#held").textContent === "by the jaw");

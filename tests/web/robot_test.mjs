@@ -250,6 +250,18 @@ test("only the certified mode keeps the shaft out; the tip mode keeps the tip ou
   for (const { loop } of [tip, leaning, certified]) loop.discard();
 });
 
+test("a body wholly inside a solid is as deep under the certified rule as without a fixture", () => {
+  const solid = boxes([began.flange.place, 60]);
+  const [none, certified] = ["none", "certified"].map((rule) => {
+    const { loop, clearances } = led(solid, rule, down, 0, 1);
+    loop.discard();
+    return clearances;
+  });
+  assert.deepEqual(certified, none);
+  const jaw = certified.at(-1);
+  assert.ok(jaw < -30, `the jaw is ${jaw} mm from the surface`);
+});
+
 test("a point in the hollow of a shell is enclosed, and one beside it is not", () => {
   const shell = boxes([began.flange.place, 60], [began.flange.place, 40]);
   const tool = new Tool(keepout, shell, { ...settings, rule: "none" }, port);

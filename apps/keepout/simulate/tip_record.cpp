@@ -120,6 +120,15 @@ std::string rules_text(const std::vector<std::string>& rules) {
   return (rules.size() == 1 ? "Rule " : "Rules ") + listed(rules);
 }
 
+/// Returns in how many cycles the tool stood still under each rule; empty if that does not differ.
+std::string still_text(const std::vector<RunTally>& runs) {
+  std::vector<std::string> counts;
+  for (std::size_t r = 1; r < runs.size(); ++r)
+    counts.push_back(grouped(runs[r].with(Outcome::stopped)));
+  const bool is_same = std::ranges::count(counts, counts.front()) == std::ssize(counts);
+  return is_same ? "" : "; it stood still in " + listed(counts) + " cycles";
+}
+
 /// Returns a sentence on whether all rules kept the tool in its guides.
 std::string guide_sentence(const std::vector<RunTally>& runs) {
   std::size_t left = 0;
@@ -160,10 +169,12 @@ std::string headline(const std::vector<RunTally>& runs, const TipScene& scene, d
     text += ".";
   } else if (!kept_out.empty()) {
     if (!free.kept_out()) text = "Without a fixture the tool " + words(free, scene) + ". ";
-    text +=
-        rules_text(kept_out) + (scene.has_tool ? " kept the whole tool off the surface."
-                                : is_closed    ? " kept the tool out of the anatomy."
-                                            : " kept the tool from passing through the surface.");
+    const std::string differs = still.empty() ? still_text(runs) : "";
+    text += rules_text(kept_out) +
+            (scene.has_tool ? " kept the whole tool off the surface"
+             : is_closed    ? " kept the tool out of the anatomy"
+                            : " kept the tool from passing through the surface") +
+            differs + ".";
   }
   if (!still.empty()) {
     text += (text.empty() ? "" : " ") + rules_text(still) +

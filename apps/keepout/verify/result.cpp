@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <sstream>
 
@@ -139,6 +140,13 @@ Json total_of(const Json& rows) {
   return total;
 }
 
+std::string rate_bound(std::uint64_t trajectories) {
+  const double bound = -std::expm1(std::log(0.05) / static_cast<double>(trajectories));
+  return "With 95 % confidence, at most " + rounded(100 * bound, 2) +
+         " % of such trajectories have a breach: " + counted(trajectories, "independent start") +
+         ".";
+}
+
 CampaignResult finished(Json record) {
   Json& total = record["total"] = total_of(record.at("meshes"));
   const std::uint64_t steps = count(total, "steps");
@@ -154,6 +162,8 @@ CampaignResult finished(Json record) {
   record["headline"] = (breaches == 0 ? "No breach" : counted(breaches, "breach")) + " in " +
                        counted(steps, "step") + ".";
   std::vector<std::string> account;
+  const std::uint64_t trajectories = count(total, "trajectories");
+  if (breaches == 0 && trajectories > 0) account.push_back(rate_bound(trajectories));
   if (breaches > record.at("breaches").size()) {
     account.push_back("The record contains " + grouped(record.at("breaches").size()) +
                       " of the breaches.");

@@ -42,6 +42,11 @@ Json json_of(std::span<const std::uint64_t> counts) {
   return json;
 }
 
+/// Returns the sentence that bounds the rate of breaches if no trajectory had one: the upper limit
+/// of Clopper and Pearson (1934) at 95 %, one-sided. The unit is the trajectory, because its steps
+/// depend on each other. Precondition: `trajectories` > 0.
+std::string rate_bound(std::uint64_t trajectories);
+
 /// Writes totals, headline and account into a record of some shards.
 CampaignResult finished(Json record);
 

@@ -92,8 +92,7 @@ struct Instrument final : Tool {
     bodies.assign(made.bodies().begin(), made.bodies().end());
     end = {static_cast<int>(positions), made.chain().flange().position};
     const auto rule = settings["rule"].as<std::string>();
-    is_certified = rule == "certified";
-    if (is_certified) {
+    if (rule == "certified") {
       constraint = make_instrument_constraint(of.mesh, of.index, instrument_at(settings),
                                               {.options = {.margin = number(settings, "margin")}});
     } else if (rule == "tip_only") {
@@ -178,8 +177,6 @@ struct Instrument final : Tool {
       const double distance = anatomy.clearance(at.x(), at.y(), at.z());
       return std::isnan(distance) ? nearest(at).closest.distance : distance;
     };
-    // A certified body is outside, unless its step has failed.
-    if (is_certified && unsigned_least.distance > bodies[body].radius) return unsigned_least;
     if (unsigned_least.distance > at_surface && signed_distance(unsigned_least.place) > 0.0) {
       return unsigned_least;
     }
@@ -205,7 +202,6 @@ struct Instrument final : Tool {
   Anatomy& anatomy;
   keepout::InstrumentConstraint constraint;
   std::optional<keepout::MotionConstraint> tip;  // guards the end of the jaw alone
-  bool is_certified = false;
   keepout::NearestTriangle nearest;
   std::span<double> joints;  // in the cycle
   double max_step;

@@ -151,7 +151,7 @@ void MotionConstraint::require_usable(const StepOptions& options) {
         "the margin is too small for a mesh and a radius of this size: margin " +
         text_of(options.margin) + " and tool_radius " + text_of(options.tool_radius) +
         " together must be well above 1e-9 of the longest edge and of the radius, which is " +
-        text_of(options.radius));
+        text_of(options.radius) + ": raise the margin or the tool_radius");
   }
 }
 

@@ -202,6 +202,20 @@ TEST(Verdict, SaysIfARuleWasNotTestedBecauseTheToolStoodStill) {
   EXPECT_LACKS(headline, "began nearer");
 }
 
+TEST(Verdict, SaysHowLongTheToolStoodStillIfThatDiffers) {
+  Cycles slow = plunge(-0.05);
+  slow.front().outcome = Outcome::stopped;
+  const auto headline = [&](const Cycles& second) {
+    return record_of({stroke_of({plunge(0.15), slow, second})})["headline"].get<std::string>();
+  };
+  EXPECT_CONTAINS(
+      headline(plunge(-0.05)),
+      "Rules 'certified' and 'paper' kept the tool out of the anatomy; it stood still in 1 "
+      "and 0 cycles.");
+  EXPECT_CONTAINS(headline(slow),
+                  "Rules 'certified' and 'paper' kept the tool out of the anatomy.");
+}
+
 TEST(Verdict, SaysIfStrokesBeganNearerThanTheRequiredClearance) {
   RunTally run;
   run.add({cycle(0.01)}, {.required = 0.2, .actual = 0.01});

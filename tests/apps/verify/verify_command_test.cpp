@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The command keepout verify: options, shards, files.
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 
 #include "apps/command_process.h"
@@ -45,6 +47,13 @@ TEST_F(Verify, ShardsAddUpToTheWhole) {
   const std::string both = "cube.stl terrain.stl --steps 5250 --seed 3 ";
   const Outcome whole = succeeded(run(both + "--json whole.json"));
   EXPECT_CONTAINS(whole.output, "No breach in 5,250 steps");
+  const double trajectories = read("whole.json")["total"]["trajectories"];
+  const std::string account = read("whole.json")["account"].dump();
+  const std::string stated = account.substr(account.find("at most ") + 8);
+  // If this fraction of all trajectories had a breach, none in this sample would have a probability
+  // of 5 %. Rounding to two digits changes the bound by at most 5 %.
+  const double bound = std::stod(stated) / 100;
+  EXPECT_NEAR(std::log(0.05) / std::log1p(-bound), trajectories, 0.05 * trajectories);
   const std::string machine = read("whole.json")["shards"].dump();
   EXPECT_CONTAINS(machine, ", " + std::string(simd_target()) + ", ");
   for (const char* shard : {"1", "2", "3"}) {
@@ -199,6 +208,8 @@ TEST_F(Verify, OfARobotWritesARecord) {
   EXPECT_EQ(record["rows"].size(), 5u);
   EXPECT_EQ(record["rows"][1]["speed"], 2.0);
   EXPECT_EQ(record["total"]["cycles"], 2500u);
+  // 1 - 0.05^(1 / 5) = 0.451: each row is one trajectory.
+  EXPECT_CONTAINS(outcome.output, "at most 45 % of such trajectories have a breach: 5 independent");
 }
 
 TEST_F(Verify, ScenariosAreChosenByName) {

@@ -135,6 +135,8 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
   }
   total.update(
       {{"blocked", blocked}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
+  const std::uint64_t starts = sums["starts"].get<std::uint64_t>();
+  if (broken == 0 && starts > 0) account.push_back(rate_bound(starts));
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
   if (!is_actual)
     account.emplace_back("The linearized motion was certified, for comparison: this is unsafe.");

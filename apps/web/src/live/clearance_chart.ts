@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import uPlot from "uplot";
 import { colorOf } from "../page/color_of.ts";
+import { signed } from "../page/elements.ts";
 import { colors } from "./markers.ts";
 
 /** The length of the visible past. [s] */
@@ -40,9 +41,14 @@ export class ClearanceChart {
           {
             ...axis,
             size: 22,
-            values: (_plot, values) => values.map((v) => (v === 0 ? "now" : `${v} s`)),
+            values: (_plot, values) => values.map((v) => (v === 0 ? "now" : `${signed(v)} s`)),
           },
-          { ...axis, size: 56, space: 24, values: (_plot, values) => values.map((v) => `${v} mm`) },
+          {
+            ...axis,
+            size: 56,
+            space: 24,
+            values: (_plot, values) => values.map((v) => `${signed(v)} mm`),
+          },
         ],
         series: [
           {},

@@ -19,13 +19,14 @@ type Trial = Shown["examples"][number];
 const reasons: Readonly<Record<string, string>> = {
   CE2_boundary:
     "The tip is just beside the rim of an open surface. The edge that it is nearest to has no " +
-    "neighbor, so none of the conditions of Li et al. holds. Their rule adds no plane, and the motion goes through.",
+    "neighbor, so none of the conditions of Li et al. holds. Their rule adds no plane, and the motion goes through. " +
+    "The surface is red from behind: drag to turn the view.",
   CE5_closed_octahedron:
     "The nearest point of the triangle ahead lies on a ridge. Li et al.’s rule leaves the triangle to its " +
     "neighbor there. The neighbor’s plane does not cover it: the tool ends inside.",
   CE6c_larger_saddle:
     "The commanded motion is free, and the certified rule returns it unchanged. Li et al.’s rule adds the " +
-    "plane of a triangle that is not in the way. The motion along that plane meets another triangle.",
+    "plane of a triangle that is not in the way. The motion along that plane meets another triangle. The surface is red from behind.",
 };
 /** The colors of a counterexample's triangles on the free side and on the forbidden side. */
 const faces = { free: colors.bone, forbidden: "#8f4a4e" } as const;
@@ -87,13 +88,13 @@ export class CounterexampleView {
       const { clearance } = ends[i] as Trial["ends"][number];
       const isIn = stage.crossedAt !== null;
       const words = isIn ? "goes through the surface" : "stays out";
-      this.heads[i]?.show(words, isIn ? "stopped" : "free", clearance, 3);
+      this.heads[i]?.show(words, isIn ? "stopped" : "free", clearance, isIn, 3);
     });
     const asked = Math.hypot(...example.desired).toFixed(2);
     set(
       "sides-words",
       `${reasons[name] ?? ""} One step: the hand asks for ${asked} mm (dashed), the margin is ` +
-        `${this.shown.margin} mm. The forbidden side is red.`,
+        `${this.shown.margin} mm. The tool is a point, in the middle of the ball.`,
     );
     const [first] = this.stages;
     if (first !== undefined) this.aim(example, first, (ends[0] as Trial["ends"][number]).place);

@@ -28,8 +28,8 @@ export class Demonstration {
   private contact = 0;
 
   /**
-   * `hold`: called with the hand, or null at the end. `say`: called with each phase, and with null at the end, if
-   * the demonstration is complete.
+   * `hold`: called with the hand, or null at the end. `say`: called with each phase, and with null at the end, unless
+   * the visitor takes over. If the hand meets no surface, the demonstration ends after the approach.
    */
   constructor(
     private readonly start: Frame,
@@ -58,7 +58,7 @@ export class Demonstration {
     } else if (share >= 1) {
       if (this.phase === "press") this.enter("slide", time);
       else if (this.phase === "slide") this.enter("back", time);
-      else return this.end(this.phase === "back");
+      else return this.end(true);
     }
     return true;
   }

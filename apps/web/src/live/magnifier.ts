@@ -39,7 +39,8 @@ type Piece = readonly [ax: number, ay: number, bx: number, by: number, nx: numbe
 export class Magnifier {
   readonly element: HTMLElement;
   private readonly canvas = make("canvas", {});
-  private readonly caption = make("b");
+  private readonly times = make("span");
+  private readonly kept = make("span");
   private readonly ticks = make("span", { class: "ticks" });
   private colors: Readonly<Record<string, string>> = {};
   private solid = "";
@@ -55,7 +56,9 @@ export class Magnifier {
       band.style.background = color;
       legend.append(band);
     }
-    const words = make("figcaption", {}, this.caption, legend, this.ticks, "from surface to tool");
+    const caption = make("b", {}, this.times, this.kept);
+    const meaning = make("span", {}, "from surface to tool");
+    const words = make("figcaption", {}, caption, legend, this.ticks, meaning);
     this.element = make("figure", { class: "magnifier" }, this.canvas, words);
     this.element.hidden = true;
     this.canvas.role = "img";
@@ -98,7 +101,8 @@ export class Magnifier {
     );
     const times = factor < 1.95 ? factor.toFixed(1) : factor.toFixed(0);
     const kept = isGuarded && margin > 0 ? `, margin ${millimetres(margin)}` : "";
-    set(this.caption, `${times}×${kept}`);
+    set(this.times, `${times}×`);
+    set(this.kept, kept);
     const scale = factor / pixel;
     const middle = point.clone().addScaledVector(normal, 0.5 * clearance);
     const [right, up] = axesOf(contact, camera);

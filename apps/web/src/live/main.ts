@@ -291,15 +291,16 @@ function demonstrate(now: State): void {
   if (!demonstration.advance(now)) demonstration = "over";
 }
 
-/** Returns the motion of the hand: a tip moves across the view, an instrument along its shaft. */
+/** Returns the motion of the hand: a tip moves to the nearest surface, an instrument along its shaft. */
 function courseOf({ flange, cores, clearances }: State): Course {
   const back = cores.slice(0, 3).map((value, i) => value - (flange.place[i] as number));
   const length = Math.hypot(...back);
   const along = back.map((value) => -value / length) as unknown as Vec3;
   const most = 0.06 * scene.diagonal;
   return {
-    towards: isTip ? scene.across(-1, 0, 0) : along,
-    across: isTip ? scene.across(0, 1, 0) : scene.across(1, 0, 0),
+    ...(isTip
+      ? scene.ontoSurface(flange.place)
+      : { towards: along, across: scene.across(1, 0, 0) }),
     distance: Math.max(2 * Math.min(...clearances), 10),
     depth: Math.min(6, most),
     width: Math.min(10, most),
@@ -501,6 +502,7 @@ element("again", HTMLButtonElement).onclick = () => {
   if (base !== undefined && base.join() !== portBase?.join() && shown !== null) load(shown);
   else begin();
 };
+element("out", HTMLButtonElement).onclick = () => element("again", HTMLButtonElement).click();
 for (const use of ["save", "replay"] as const) {
   element(use, HTMLButtonElement).onclick = () => tell({ kind: "ask for path", use });
 }

@@ -8,7 +8,7 @@ import type { Tissue } from "../page/tissue.ts";
 import type { ToolBody } from "../page/tool_shade.ts";
 import { type Contact, Magnifier } from "./magnifier.ts";
 import { colors, sheet } from "./markers.ts";
-import { millimetres, set } from "./page.ts";
+import { besideCards, millimetres, roomBetweenCards, set } from "./page.ts";
 
 /** The tool beside the surface, as far as the margin needs it. */
 export interface NearTool {
@@ -68,6 +68,11 @@ export class MarginView {
     this.within = shownWithin(size);
     this.magnifier.show(tissue, coloredWithin(size));
     this.hide();
+  }
+
+  /** Returns the point of the surface that is nearest to another point; that point itself without a surface. */
+  nearestTo(point: three.Vector3): three.Vector3 {
+    return this.near?.nearest(point)?.point ?? point.clone();
   }
 
   /** Takes the color of the tool. */
@@ -176,22 +181,27 @@ export class MarginView {
     const rise = Math.min((-turn * nx) / length, -0.5);
     const run = (turn * ny) / length;
     const [dx, dy] = [run, rise].map((part) => part / Math.hypot(run, rise)) as [number, number];
-    const [u, v] = [x + 62 * dx, Math.max(y + 62 * dy, 16)];
     set(this.callout, `${body ?? "clearance"} ${millimetres(clearance)}`);
     this.callout.className = `callout${clearance < 0 ? " bad" : ""}`;
     this.callout.hidden = this.leader.hidden = false;
-    const half = 0.5 * this.callout.offsetWidth + 6;
-    const inView = Math.min(Math.max(u, half), width - half);
-    this.callout.style.transform = `translate(${inView}px, ${v}px) translate(-50%, -50%)`;
-    const angle = Math.atan2(v - y, u - x);
-    this.leader.style.width = `${Math.hypot(u - x, v - y)}px`;
-    this.leader.style.transform = `translate(${x}px, ${y}px) rotate(${angle}rad)`;
     // The magnifier makes way for the tool.
     const { element } = this.magnifier;
     const box = element.offsetWidth + 24;
     const open = Number.parseFloat(getComputedStyle(element).left) || 0;
     const covers = y < element.offsetHeight + 60 && x < open + box + 30;
     if (covers || x > 0.55 * width) element.classList.toggle("right", covers);
+    // No card and no magnifier covers the callout.
+    const half = 0.5 * this.callout.offsetWidth + 6;
+    const edge = half + 0.5 * (1 - roomBetweenCards(this.container)) * width - besideCards;
+    const u = Math.min(Math.max(x + 62 * dx, edge), width - edge);
+    const { offsetLeft, offsetTop, offsetWidth, offsetHeight } = element;
+    const isBeside = u + half < offsetLeft || u - half > offsetLeft + offsetWidth;
+    const top = isBeside ? 16 : offsetTop + offsetHeight + 18;
+    const v = Math.min(Math.max(y + 62 * dy, top), height - 16);
+    this.callout.style.transform = `translate(${u}px, ${v}px) translate(-50%, -50%)`;
+    const angle = Math.atan2(v - y, u - x);
+    this.leader.style.width = `${Math.hypot(u - x, v - y)}px`;
+    this.leader.style.transform = `translate(${x}px, ${y}px) rotate(${angle}rad)`;
   }
 }
 

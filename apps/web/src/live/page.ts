@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-import { make } from "../page/elements.ts";
+import { make, signed } from "../page/elements.ts";
 import type { EmbeddedMesh } from "./protocol.ts";
 
 /** The settings that `keepout live` has put into the page, besides the meshes. */
@@ -43,7 +43,10 @@ export function set(where: string | Element | null, text: string): void {
 }
 
 export const millimetres = (length: number, digits = 2): string =>
-  `${length.toFixed(digits).replace("-", "\u2212")} mm`;
+  `${signed(length.toFixed(digits))} mm`;
+
+/** The free width on the inner side of each column of cards. [px] */
+export const besideCards = 40;
 
 /**
  * Returns the fraction of the view's width between the columns of cards; on a phone they are below
@@ -51,7 +54,7 @@ export const millimetres = (length: number, digits = 2): string =>
  */
 export function roomBetweenCards(view: HTMLElement): number {
   const column = document.querySelector(".column")?.getBoundingClientRect().right ?? 0;
-  return Math.max(1 - (2 * (column + 40)) / view.clientWidth, 0.3);
+  return Math.max(1 - (2 * (column + besideCards)) / view.clientWidth, 0.3);
 }
 
 /** Returns the scene of the view; if it cannot be created, the page shows why. */

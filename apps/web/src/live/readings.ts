@@ -19,6 +19,7 @@ import { statusShown } from "./status_words.ts";
 export class Readings {
   private readonly status = element("status", HTMLElement);
   private readonly figure = element("clearance", HTMLElement);
+  private readonly out = element("out", HTMLButtonElement);
   private readonly bodies = new Map<string, HTMLElement>();
   private spokenAt = 0;
   private words: AnatomyWords = anatomyWords("");
@@ -36,7 +37,10 @@ export class Readings {
     const isGuarded = settings.rule !== "none";
     this.showStatus(state, settings.rule, facts);
     set("whereabouts", whereabouts(state, settings.rule, this.words));
-    this.showClearances(state, facts);
+    this.showClearances(state, facts, isGuarded);
+    // This rule holds a tool that is inside: only the user can take it out.
+    const isStuck = Math.min(...state.clearances) < 0 && state.motion.every((part) => part === 0);
+    this.out.hidden = !isStuck || !isGuarded || settings.rule === "tip_only";
     this.showGuides(state, facts);
     const newtons = Math.hypot(...state.force);
     const bar = document.querySelector<HTMLElement>("#force i");
@@ -85,7 +89,7 @@ export class Readings {
     set(row, guides.length > 0 ? words : "–");
   }
 
-  private showClearances(state: State, { bodies }: ToolFacts): void {
+  private showClearances(state: State, { bodies }: ToolFacts, isGuarded: boolean): void {
     const { clearances } = state;
     const least = Math.min(...clearances);
     this.figure.parentElement?.classList.toggle("inside", least < 0);
@@ -96,8 +100,9 @@ export class Readings {
     }
     set("clearance-words", `from the ${bodies[clearances.indexOf(least)]?.name} to the surface`);
     const held = state.held > 0 ? reachedBody(state, clearances) : -1;
-    const nothing = state.guides > 0 ? "by a guide" : "nothing";
-    set("held", held < 0 ? nothing : `by the ${bodies[held]?.name}`);
+    const byOther = state.guides > 0 ? "by a guide" : "–";
+    const otherwise = isGuarded && least < 0 ? "by the mesh" : byOther;
+    set("held", held < 0 ? otherwise : `by the ${bodies[held]?.name}`);
     // Both jaws have one row.
     for (const name of new Set(bodies.map((body) => body.name))) {
       const of = clearances.filter((_, i) => bodies[i]?.name === name);

@@ -7,6 +7,7 @@ import type { Tissue } from "../page/tissue.ts";
 import { colors } from "./markers.ts";
 import type { State } from "./protocol.ts";
 import { InstrumentParts } from "./robot_parts.ts";
+import { firstJaw } from "./robot_surroundings.ts";
 import { ToolScene } from "./tool_scene.ts";
 
 /** The visible width of the close-up. [mm] */
@@ -17,8 +18,6 @@ const seenAbovePort = 45;
 const firstTurns = [0, 0.6, -0.6, 1.2, -1.2, 1.9, -1.9, 2.6, -2.6] as const;
 /** The most that the hand can be pushed past the jaw, along the view. [mm] */
 const mostAhead = 12;
-/** The number of cores before the jaws: shaft and wrist. */
-const firstJaw = 2;
 
 /**
  * The anatomy with a da Vinci instrument: what is drawn of it in the body lies within the capsules

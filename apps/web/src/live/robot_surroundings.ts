@@ -18,6 +18,9 @@ export interface Surroundings {
   readonly isEnclosed: boolean;
 }
 
+/** The number of bodies before the jaws: shaft and wrist. */
+export const firstJaw = 2;
+
 const signs = [-1, 1] as const;
 /** To the sides and the corners of a cube. */
 const directions: readonly Vec3[] = [

@@ -4,7 +4,7 @@ import type { Rule, ToolFacts } from "../engine/keepout.ts";
 import type { AnatomyWords } from "./anatomy_words.ts";
 import { millimetres } from "./page.ts";
 import type { State } from "./protocol.ts";
-import { reachedBody } from "./robot_surroundings.ts";
+import { firstJaw, reachedBody } from "./robot_surroundings.ts";
 import { type StatusShown, statusShown } from "./status_words.ts";
 
 const without: Partial<Record<Rule, string>> = {
@@ -24,7 +24,7 @@ export function robotStatusShown(
   const clearance = state.clearances[body] ?? Number.NaN;
   const who = `The ${bodies[body]?.name}`;
   if (clearance < 0) {
-    const end = without[rule] ?? "choose “Start over”";
+    const end = without[rule] ?? "it stands still";
     const sentence = `${who} is ${millimetres(-clearance)} deep in ${surface}: ${end}.`;
     return { chip: "inside", sentence, mood: "stopped" };
   }
@@ -43,14 +43,16 @@ export function robotStatusShown(
 
 /** Returns where the end of the jaw and the hand are, if that is hard to see; else "". */
 export function whereabouts(
-  { surroundings }: State,
+  { surroundings, clearances }: State,
   rule: Rule,
   { surface, hollow }: AnatomyWords,
 ): string {
   if (surroundings === null) return "";
-  const jaw = surroundings.isEnclosed
-    ? `The jaw is in the hollow of ${hollow}, outside of ${surface}.`
-    : "";
+  const isJawOut = Math.min(...clearances.slice(firstJaw)) >= 0;
+  const jaw =
+    surroundings.isEnclosed && isJawOut
+      ? `The jaw is in the hollow of ${hollow}, outside of ${surface}.`
+      : "";
   const hand = surroundings.isHandBehind && rule !== "none" ? `The hand is behind ${surface}.` : "";
   return [jaw, hand].filter((sentence) => sentence !== "").join(" ");
 }

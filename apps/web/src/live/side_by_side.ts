@@ -238,6 +238,7 @@ export class SideBySide {
       isThrough ? "went through the wall" : chip,
       isThrough ? "stopped" : mood,
       Math.min(...state.clearances),
+      state.crossings % 2 === 1,
     );
   }
 }

@@ -14,11 +14,18 @@ export class SideHead {
     ];
   }
 
-  /** `clearance`: NaN if it is unknown. [mm] */
-  show(chip: string, mood: StatusShown["mood"], clearance: number, digits = 2): void {
+  /** `clearance`: NaN if it is unknown. [mm] `isBehind`: true if the tool went through the surface. */
+  show(
+    chip: string,
+    mood: StatusShown["mood"],
+    clearance: number,
+    isBehind = false,
+    digits = 2,
+  ): void {
     this.chip.className = `chip ${mood}`;
     set(this.chip, chip);
     const isKnown = Number.isFinite(clearance);
-    set(this.figure, isKnown ? `${millimetres(clearance, digits)} from the surface` : "–");
+    const length = millimetres(isBehind ? Math.abs(clearance) : clearance, digits);
+    set(this.figure, isKnown ? `${length} ${isBehind ? "behind" : "from"} the surface` : "–");
   }
 }

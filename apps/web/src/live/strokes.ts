@@ -34,7 +34,7 @@ export const wallStrokes: readonly WallStroke[] = [
     length: 26,
     toolRadius: 0.5,
     begin:
-      "The hand goes into the vessel at its open end. Then it pushes at the wall, from inside.",
+      "The hand goes into the sample aneurysm at its open end. Then it pushes at the wall, from inside.",
     why: oneSide,
   },
   {
@@ -45,9 +45,11 @@ export const wallStrokes: readonly WallStroke[] = [
     ],
     target: [0, -25, 10],
     direction: [0.3, 0.6, 1],
-    length: 75,
+    length: 56,
     toolRadius: 1,
-    begin: "The wall of this tube faces inwards. The hand pushes at it from outside.",
+    begin:
+      "The anatomy is now a sample mesh: a tube, whose wall faces inwards. The hand pushes at it from outside. " +
+      "“One scene” goes back to your anatomy.",
     why: oneSide,
   },
 ];

@@ -214,6 +214,17 @@ export class ToolScene extends Scene {
     return { from: this.outside(this.camera.position), to: this.outside(hit.point) };
   }
 
+  /** Returns the directions from a place to the nearest surface, and along it: up or right in the view. */
+  ontoSurface(place: Vec3): { towards: Vec3; across: Vec3 } {
+    const at = this.inside(place);
+    const towards = this.margin.nearestTo(at).sub(at).normalize();
+    const [right, up] = [this.across(1, 0, 0), this.across(0, 1, 0)].map((way) =>
+      new three.Vector3(...way).projectOnPlane(towards),
+    ) as [three.Vector3, three.Vector3];
+    const across = (up.length() > 0.5 ? up : right).normalize();
+    return { towards: towards.toArray(), across: across.toArray() };
+  }
+
   /** Returns the initial distance of a tip from its required clearance. [mm] */
   beginning(): number {
     return Math.min(10, 0.06 * this.size);

@@ -55,8 +55,9 @@ function tellState(time: number): void {
   const { last, hand, tool, cycles, limited, placed, crossings, crossedAt } = loop;
   const { bodies } = tool.facts;
   const clearances = bodies.map((_, i) => tool.made.clearance(i));
-  // The engine's own distance of the nearest body, if known.
-  if (last.nearest >= 0) clearances[last.nearest] = last.distance;
+  // The engine's own distance of the nearest body, if known. A negative one is not the depth, because it ends
+  // where the axis of the body meets the surface.
+  if (last.nearest >= 0 && last.distance > 0) clearances[last.nearest] = last.distance;
   const around = surroundings?.find(tool, last, hand, clearances) ?? null;
   const away = anatomy.of.clearance(...hand.place) - (bodies.at(-1)?.radius ?? 0);
   const handClearance = around?.isHandBehind ? -Math.abs(away) : away;

@@ -32,6 +32,10 @@ function filled<Made extends Element>(
 /** Returns a count with thousands separators: 24,000. */
 export const grouped = (count: number): string => Math.round(count).toLocaleString("en");
 
+/** Returns the text of a number with the sign for minus, which is as wide as a digit; 1e-9 keeps its hyphen. */
+export const signed = (number: number | string): string =>
+  `${number}`.replace(/^-(?!\S*e)/, "\u2212");
+
 /** Offers a file to the user as a download. */
 export function saveFile(name: string, text: string, type: string): void {
   const href = URL.createObjectURL(new Blob([text], { type }));

@@ -159,6 +159,16 @@ export const tipOfColumns = (
     columns.map(({ heading, from, format }) => [heading, shown(row + from, format)]),
   );
 
+/** The look of a dashed line at a value that matters. */
+export const levelLine = { stroke: "var(--soft)", strokeDasharray: "5 4" };
+
+/** A background of a text in the color of the card, so that no line strikes through it. */
+export const onCard = { fill: "currentColor", stroke: "var(--card)", strokeWidth: 3 };
+
+/** Returns the name of a value of one axis that matters. */
+export const levelName = (axis: "x" | "y", level: number, name: string, place: Plot.TextOptions) =>
+  Plot.text([name], { [axis]: level, ...onCard, fill: levelLine.stroke, ...place });
+
 /** Returns a dashed line across the plot at a value of one axis, with its name. */
 export function levelMarks(
   axis: "x" | "y",
@@ -166,11 +176,8 @@ export function levelMarks(
   name: string,
   place: Plot.TextOptions,
 ): Plot.Markish[] {
-  const [stroke, line] = ["var(--soft)", axis === "x" ? Plot.ruleX : Plot.ruleY];
-  return [
-    line([level], { stroke, strokeDasharray: "5 4" }),
-    Plot.text([name], { [axis]: level, fill: stroke, ...place }),
-  ];
+  const line = axis === "x" ? Plot.ruleX : Plot.ruleY;
+  return [line([level], levelLine), levelName(axis, level, name, place)];
 }
 
 /** Returns a logarithmic scale with ticks that fit the values. */

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** A plot of the clearances that were left, with a row for each checker or mesh. */
 import * as Plot from "@observablehq/plot";
-import { levelMarks, tickText } from "./charts.ts";
+import { levelLine, levelName, tickText } from "./charts.ts";
 import { extremes } from "./extremes.ts";
 import { valueAt } from "./record.ts";
-import { type Inscribed, inRow, rowChart } from "./row_chart.ts";
+import { belowTexts, type Inscribed, inRow, isLong, rowChart } from "./row_chart.ts";
 
 /** A row, by its pointer, and the values that it shows as dots. */
 export interface ClearanceRow {
@@ -49,10 +49,22 @@ export function clearanceRows(wanted: {
     ...wanted,
     data: () => rows,
     x: () => ({ label, domain, grid: true, tickFormat: tickText, ...scale }),
-    marks: (seen) => [
-      ...levels.flatMap(([level, name]) =>
-        levelMarks("x", level, name, { frameAnchor: "bottom", dx: 5, dy: 4, textAnchor: "start" }),
-      ),
+    marks: (seen, { y }) => [
+      ...levels.flatMap(([level, name]) => {
+        const isLeft = level < (low + high) / 2; // the name lies on the inner side
+        const place = { dx: isLeft ? 5 : -5, textAnchor: isLeft ? "start" : "end" } as const;
+        return [
+          // Ends below the texts of each row, which it would strike through.
+          Plot.tickX(seen, { x: () => level, y, ...belowTexts, ...levelLine }),
+          ...(isLong(seen) ? (["top", "bottom"] as const) : (["bottom"] as const)).map((side) =>
+            levelName("x", level, name, {
+              ...place,
+              frameAnchor: side,
+              dy: side === "top" ? -4 : 4,
+            }),
+          ),
+        ];
+      }),
       Plot.dot(
         seen.flatMap(({ dots, color }, place) => dots.map((dot) => ({ ...dot, color, place }))),
         {

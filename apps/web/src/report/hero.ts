@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** The first figure of `simulate`: commanded path and tool path in one section of the anatomy. */
+import type * as three from "three";
 import { make } from "../page/elements.ts";
 import { type Anatomy, cornersAround } from "./anatomy.ts";
 import { AnatomyView } from "./anatomy_view.ts";
@@ -17,6 +18,7 @@ import { timeSlider } from "./time_slider.ts";
 export function heroFigure(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
   const { moment, runs } = record;
   const { stroke } = moment;
+  const isClosed = record.mesh.surface === "closed";
   const frame = closeUp(record, moment, anatomy);
   const hand = (record.hand[stroke] ?? []).map(anatomy.placed);
   const cut = hang(hand, moment.cycle, frame);
@@ -67,9 +69,23 @@ export function heroFigure(record: SimulationRecord, anatomy: Anatomy): HTMLElem
       },
     };
   });
+  // The paths of the tool hide the commanded path where both agree.
+  const paths = shownRuns.flatMap((run) =>
+    (runs[run]?.strokes[stroke]?.tip ?? []).map(anatomy.placed),
+  );
+  const isHidden = (place: three.Vector3) =>
+    paths.some((tip) => tip.distanceTo(place) < 0.01 * frame.height);
+  const isSeen = hand.some((place, i) => {
+    const { x, y } = place.clone().project(frame.camera);
+    return !isInside[i] && Math.max(Math.abs(x), Math.abs(y)) < 1 && !isHidden(place);
+  });
+  const beyond = record.has_convex_tool ? "in contact" : isClosed ? "inside" : "beyond the surface";
+  const commandedNames = [
+    ...(isSeen ? [swatched("--commanded", "commanded path")] : []),
+    ...(ways.bad.length > 0 ? [swatched("--alarm", `commanded path, ${beyond}`)] : []),
+  ];
   const marks: Mark[] = [...drawnRuns.flatMap((run) => run.marks), ...handMarks];
   const lengths = [...commanded, ...drawnRuns.flatMap((run) => run.lengths)];
-  const isClosed = record.mesh.surface === "closed";
   const group = make("div", { class: "hero" });
   const view = new AnatomyView(group, anatomy, near, frame, true);
   view.add(
@@ -91,7 +107,7 @@ export function heroFigure(record: SimulationRecord, anatomy: Anatomy): HTMLElem
           ? " is where the tip is inside, or would be without a fixture."
           : " is where the tip has passed through the surface, or would have without a fixture.",
     ),
-    make("p", {}, swatched("--commanded", "commanded path")),
+    ...commandedNames.map((name) => make("p", {}, name)),
     ...shownRuns.map((number, place) =>
       make("p", {}, runName(number), make("br"), now[place] as HTMLElement),
     ),

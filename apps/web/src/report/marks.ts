@@ -26,6 +26,9 @@ interface Box {
   readonly bottom: number;
 }
 
+/** The width of a letter of a label, at most. [px] */
+const letter = 9;
+
 /** A circle at a place. `label`: its text, beside a ring or below a ball. */
 export function mark(
   kind: string,
@@ -61,6 +64,7 @@ export function placeMarks(
     if (mark.label) labeled.push({ mark, x, y });
   }
   const picture = { left: 0, right: width, top: 0, bottom: height };
+  const labels: Box[] = [];
   const rings = labeled.filter(
     ({ mark, x, y }) =>
       has(mark, "ring") && overlap(picture, { left: x, right: x, top: y, bottom: y }),
@@ -68,25 +72,34 @@ export function placeMarks(
   for (const spot of labeled) {
     if (rings.includes(spot)) continue;
     if (has(spot.mark, "numbered")) textOf(spot.mark).setAttribute("display", "none");
-    else placeLabel(spot, width, height);
+    else labels.push(placeLabel(spot, labels, width, height));
   }
   labelRings(groupsOf(rings), width, height);
 }
 
 /**
- * Puts the label of a mark below it. If the mark is outside the picture, the label points to it.
+ * Puts the label of a mark below it, or below the labels that are there. If the mark is outside the
+ * picture, the label points to it. Returns the place of the label.
  */
-function placeLabel({ mark, x, y }: Spot, width: number, height: number): void {
+function placeLabel(
+  { mark, x, y }: Spot,
+  others: readonly Box[],
+  width: number,
+  height: number,
+): Box {
   const arrow = y > height ? "↓ " : y < 0 ? "↑ " : x > width ? "→ " : x < 0 ? "← " : "";
   const isLeft = x > 0.55 * width;
   const within = (value: number, low: number, high: number) => Math.min(Math.max(value, low), high);
-  write(
-    [mark],
-    isLeft ? "end" : "start",
-    within(x + (isLeft ? -14 : 14), 0.04 * width, 0.96 * width),
-    within(y + 28, 0.08 * height, 0.84 * height),
-    arrow,
-  );
+  const at = within(x + (isLeft ? -14 : 14), 0.04 * width, 0.96 * width);
+  const wide = letter * (arrow + mark.label?.textContent).length;
+  const [left, right] = isLeft ? [at - wide, at] : [at, at + wide];
+  const first = within(y + 28, 0.08 * height, 0.84 * height);
+  const boxAt = (base: number) => ({ left, right, top: base - 15, bottom: base + 4 });
+  const bases = [0, 1, -1, 2, -2].map((lines) => first + 21 * lines);
+  const isFree = (base: number) => !others.some((other) => overlap(other, boxAt(base)));
+  const base = bases.find(isFree) ?? first;
+  write([mark], isLeft ? "end" : "start", at, base, arrow);
+  return boxAt(base);
 }
 
 /** Writes the labels of marks at a position, separated by commas, as the text of the first. */
@@ -128,7 +141,7 @@ function labelRings(groups: readonly (readonly Spot[])[], width: number, height:
   groups.forEach((group, number) => {
     const ring = rings[number] as Box;
     const texts = group.map(({ mark }) => mark.label?.textContent ?? "");
-    const wide = 9 * texts.join(", ").length;
+    const wide = letter * texts.join(", ").length;
     const [low, tall, gap] = [4, 17, 8];
     const [x, y] = [(ring.left + ring.right) / 2, (ring.top + ring.bottom) / 2];
     const right = ["start", ring.right + gap, y + 5] as const;

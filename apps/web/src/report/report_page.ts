@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { make, saveFile } from "../page/elements.ts";
 import { entries, type ReportRecord, readRecord, recordText, valueAt } from "./record.ts";
-import { paragraphs, rounded, show, shown, shownMembers, shownWhole } from "./shown.ts";
+import {
+  headlineText,
+  paragraphs,
+  rounded,
+  show,
+  shown,
+  shownMembers,
+  shownWhole,
+} from "./shown.ts";
 
 /** The content of a page between its headline and its machine. */
 type Sections = (main: HTMLElement, record: ReportRecord) => void | Promise<void>;
@@ -13,7 +21,7 @@ export async function showReport(kinds: Readonly<Record<string, Sections>>): Pro
     const record = await readRecord();
     const sections = kinds[record.keepout_record];
     if (!sections) throw new Error(`this page does not show '${record.keepout_record}'`);
-    document.title = `${record.headline} – keepout ${record.keepout_record}`;
+    document.title = `${headlineText(record.headline)} – keepout ${record.keepout_record}`;
     main.replaceChildren(
       show(make("p", { class: "eyebrow" }), "/subject"),
       show(make("h1"), "/headline"),

@@ -9,7 +9,7 @@ import type { Body, Layer } from "./painting.ts";
 import { entries, type ReportRecord, valueAt } from "./record.ts";
 import { differences, lead, section } from "./report_page.ts";
 import { pictureGrid, ruleColor, swatched } from "./runs.ts";
-import { counted, deep, listed, millimetres, show, shown } from "./shown.ts";
+import { counted, deep, listed, millimetres, ruleName, show, shown } from "./shown.ts";
 import type { Place, RecordedMesh } from "./simulation_record.ts";
 import { type Column, column, harm, named, tableSection } from "./table.ts";
 import { strokeChooser, timeSlider } from "./time_slider.ts";
@@ -35,26 +35,36 @@ export async function robotSimulationSections(
   record: ReportRecord,
 ): Promise<void> {
   const simulation = record as RobotSimulationRecord;
-  main.append(...differences(...reached(simulation)));
+  main.append(...differences(...reached()));
   for (const mesh of simulation.meshes.keys()) main.append(await meshSection(simulation, mesh));
   main.append(figures(simulation));
 }
 
-/** Returns for each body the modes in which the mesh reached into it, on the first mesh. */
-function reached({ bodies }: RobotSimulationRecord): (Node | string)[][] {
-  const key = (row: string) => `${valueAt(`${row}/mesh`)} ${valueAt(`${row}/speed`)}`;
-  const rows = entries("/rows").filter((row) => key(row) === key("/rows/0"));
-  return bodies.map(({ name }, body) => {
-    const parts = rows
-      .filter((row) => Number(valueAt(`${row}/${name}_in_mesh`)) > 0)
-      .map((row) => [
-        ...counted(`${row}/${name}_in_mesh`, "cycle"),
-        " in mode ",
-        shown(`${row}/mode`),
+/** Returns for each mode, at each speed, the cycles in which the mesh reached in or was too close, on the first mesh. */
+function reached(): (Node | string)[][] {
+  const rows = entries("/rows").filter((row) => valueAt(`${row}/mesh`) === valueAt("/rows/0/mesh"));
+  const modes = new Set(rows.map((row) => valueAt<string>(`${row}/mode`)));
+  return [...modes].map((mode) => {
+    const own = rows.filter((row) => valueAt(`${row}/mode`) === mode);
+    const cyclesOf = (key: string, rows: readonly string[]) =>
+      rows.map((row) => [
+        ...counted(`${row}/${key}`, "cycle"),
+        " at speed ",
+        shown(`${row}/speed`),
       ]);
+    const has = (row: string, key: string) => Number(valueAt(`${row}/${key}`)) > 0;
+    const inside = own.filter((row) => has(row, "in_mesh"));
+    const near = own.filter((row) => !inside.includes(row) && has(row, "below"));
+    const parts = [
+      inside.length > 0
+        ? ["the mesh reached into the instrument in ", ...listed(cyclesOf("in_mesh", inside))]
+        : [],
+      near.length > 0
+        ? ["a body was too close, but not in the mesh, in ", ...listed(cyclesOf("below", near))]
+        : [],
+    ].filter((part) => part.length > 0);
     if (parts.length === 0) return [];
-    const begin = ["The mesh reached into the ", shown(`/bodies/${body}/name`), " in "];
-    return [...begin, ...listed(parts), "."];
+    return ["In mode ", shown(`${own[0]}/mode`), ", ", ...listed(parts), "."];
   });
 }
 
@@ -173,7 +183,7 @@ function strokeView(
     const layer: Layer = { lengths: [], cut: null };
     const now = make("span", { class: "now" });
     const name = swatched(ruleColor(run.mode), shown(`${from}/runs/${number}/mode`));
-    view.add(`The instrument beside the anatomy, ${run.mode}.`, layer, [], name, now);
+    view.add(`The instrument beside the anatomy, ${ruleName(run.mode)}.`, layer, [], name, now);
     return (cycle: number) => {
       const clearances = (run.clearance_mm[cycle] ?? []).map(
         (mm) => mm ?? Number.POSITIVE_INFINITY,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import * as Plot from "@observablehq/plot";
 import { drawn } from "../page/elements.ts";
-import { type Chart, chart } from "./charts.ts";
+import { type Chart, chart, onCard } from "./charts.ts";
 import { type Format, show } from "./shown.ts";
 
 /** A value of the record within a text of a plot. */
@@ -34,6 +34,11 @@ const rowHeight = 42;
 /** The position of a mark or a bar in its row: below the texts. */
 export const inRow = { dy: 9 };
 export const barInRow = { insetTop: 22, insetBottom: 7 };
+/** The part of a row that its texts leave to a line. */
+export const belowTexts = { insetTop: 20, insetBottom: 0 };
+
+/** True if the rows do not fit a screen, so that the plot has an axis on top too. */
+export const isLong = (rows: readonly unknown[]): boolean => rows.length > 12;
 
 /** Returns a line in each row from one value to another, and a mark at the first. */
 export function spans<Datum>(
@@ -59,18 +64,19 @@ export function rowChart<Datum>(wanted: RowChart<Datum>): HTMLElement {
     color: (datum) => look(datum)?.color ?? "var(--ink)",
     symbol: (datum) => (look(datum)?.symbol ?? "circle") as string,
   };
-  const text = { y, dy: -9, fontSize: 13 };
+  const text = { y, dy: -9, fontSize: 13, ...onCard };
   const band = { stroke: "var(--ink)", strokeOpacity: 0.06, strokeWidth: rowHeight };
   const draw = () => {
     const all = data();
     const seen = all.filter((datum) => legend?.shows(series(datum)) ?? true);
+    const [axis, marginTop] = isLong(seen) ? (["both", 46] as const) : (["bottom", 4] as const);
     return {
-      height: rowHeight * seen.length + 46,
+      height: rowHeight * seen.length + 42 + marginTop,
       inset: 0,
-      marginTop: 4,
+      marginTop,
       marginLeft: 14,
       marginRight: 14,
-      x: { ...x(all), inset: 7 },
+      x: { ...x(all), inset: 7, axis },
       y: { type: "band", domain: seen.map(y), axis: null, padding: 0 } as const,
       marks: [
         Plot.ruleY(seen, Plot.pointerY({ y, maxRadius: rowHeight, ...band })),

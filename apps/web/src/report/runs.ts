@@ -4,16 +4,14 @@ import { make } from "../page/elements.ts";
 import { lastKey, valueAt } from "./record.ts";
 import { shown } from "./shown.ts";
 
-/** Rules, modes and checkers with a color of their own, which is the same on all pages. */
-const named = ["none", "all-faces", "paper", "certified", "linearized", "tip-only", "sliding"];
-
 /**
- * Returns the variable of the page's style with the color of a rule, a mode or a checker. Only
- * checkers by samples have no color of their own.
+ * Returns the variable of the page's style with the color of a rule, a mode or a checker. Those
+ * without a color of their own in rule_colors.css, such as checkers by samples, share one.
  */
 export function ruleColor(rule: string): string {
-  const key = rule.replaceAll(/[ _]/g, "-").replace("linearised", "linearized");
-  return `--rule-${named.includes(key) ? key : "sampled"}`;
+  const own = `--rule-${rule.replaceAll(" ", "_").replace("linearised", "linearized")}`;
+  const isKnown = getComputedStyle(document.documentElement).getPropertyValue(own) !== "";
+  return isKnown ? own : "--rule-sampled";
 }
 
 /** Returns a swatch of a color, before a name. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /** Texts of values of the record: each element states the pointer to its value. */
-import { grouped, make } from "../page/elements.ts";
+import { grouped, make, signed } from "../page/elements.ts";
 import { entries, lastKey, valueAt } from "./record.ts";
 
 /** Converts a number to text. */
@@ -64,11 +64,35 @@ export const inUnit =
   (value) =>
     `${format(value)}\u00a0${unit}`;
 
+/** The names of rules and modes, as `keepout live` shows them. */
+const ruleNames: Readonly<Record<string, string>> = {
+  none: "None",
+  "no fixture": "No fixture",
+  all_faces: "All faces",
+  paper: "Li et al.",
+  certified: "Certified",
+  linearized: "Linearized",
+  "tip only": "Tip only",
+};
+
+/** Returns the displayed name of a rule or a mode. */
+export const ruleName = (name: string): string => ruleNames[name] ?? name;
+
+/** Pointers to names of rules and modes, and to headlines, which have them in quotation marks. */
+const toRules = /^\/runs\/\d+\/name$|\/(mode|activation)$/;
+const toHeadlines = /\/headline$/;
+
+/** Returns a headline with the displayed names of rules. */
+export const headlineText = (text: string): string =>
+  text.replaceAll(/'(\w+)'/g, (quoted, name) => ruleNames[name] ?? quoted);
+
 /** Returns the text of a value of the record; a dash if it is missing or has no meaning. */
 function textOf(pointer: string, format: Format = trimmed): string {
   const value = valueAt<unknown>(pointer);
   if (value === null || value === undefined || value === "") return "–";
-  return typeof value === "number" ? format(value) : String(value);
+  if (typeof value === "number") return signed(format(value));
+  if (toHeadlines.test(pointer)) return headlineText(String(value));
+  return toRules.test(pointer) ? ruleName(String(value)) : String(value);
 }
 
 /** Shows the value of the record at a pointer in an element. */

@@ -18,7 +18,7 @@ import { coloured, parted, widths } from "./paths.ts";
 import { entries, lastKey, type ReportRecord, valueAt } from "./record.ts";
 import { lead, method, section } from "./report_page.ts";
 import { pictureGrid, runColor, runName } from "./runs.ts";
-import { microseconds, millimetres, rounded, show, shown } from "./shown.ts";
+import { microseconds, millimetres, rounded, ruleName, show, shown } from "./shown.ts";
 import { stepTimes } from "./simulation_charts.ts";
 import { simulationDifferences, simulationNumbers } from "./simulation_findings.ts";
 import { type Run, type SimulationRecord, trespass, worstCycle } from "./simulation_record.ts";
@@ -50,7 +50,7 @@ function overview(record: SimulationRecord, anatomy: Anatomy): HTMLElement {
   const view = new AnatomyView(group, anatomy, anatomy.corners, wholeView(record, anatomy));
   record.runs.forEach((run, number) => {
     const layer = { lengths: strokes(record, anatomy, run, number), cut: null };
-    const description = `The anatomy with the paths of the tool tip, ${run.name}; in red where ${record.has_convex_tool ? "the tool touches the surface or is inside" : "the tip is where it must not be"}.`;
+    const description = `The anatomy with the paths of the tool tip, ${ruleName(run.name)}; in red where ${record.has_convex_tool ? "the tool touches the surface or is inside" : "the tip is where it must not be"}.`;
     const bad = record.has_convex_tool ? "touched" : "went in";
     const [verdict, words] = run.kept_out ? ["good", "stayed out"] : ["bad", bad];
     view.add(

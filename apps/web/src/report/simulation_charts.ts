@@ -2,7 +2,16 @@
 
 import * as Plot from "@observablehq/plot";
 import { drawn, make } from "../page/elements.ts";
-import { chart, Legend, type Look, levelMarks, logarithmic, tickText, tipOf } from "./charts.ts";
+import {
+  chart,
+  Legend,
+  type Look,
+  levelMarks,
+  logarithmic,
+  onCard,
+  tickText,
+  tipOf,
+} from "./charts.ts";
 import { extremes } from "./extremes.ts";
 import { valueAt } from "./record.ts";
 import { panels } from "./report_page.ts";
@@ -31,7 +40,7 @@ function legendOf(runs: Iterable<number>): Legend {
   return new Legend(new Map(looks), (run) => shown(`/runs/${run}/name`));
 }
 
-/** The certified rule is a strong line, in front of wide and pale lines of the other runs. */
+/** The certified rule is a strong line, in front of thin and pale lines of the other runs. */
 const isStrong = (run: number): boolean => run === bestRun(valueAt<readonly Run[]>("/runs") ?? []);
 
 /** Lines of points, one for each run. */
@@ -44,8 +53,8 @@ const lines = (points: readonly Point[]): Plot.Markish[] => [
         y: "y",
         z: "run",
         stroke: ({ run }: Point) => `var(${runColor(run)})`,
-        strokeWidth: strong ? 2.5 : ({ run }: Point) => Math.max(6 - run, 3.5),
-        strokeOpacity: strong ? 1 : 0.45,
+        strokeWidth: strong ? 3.5 : 1.8,
+        strokeOpacity: strong ? 1 : 0.75,
         clip: true,
       },
     ),
@@ -139,10 +148,8 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
         stroke: "var(--alarm)",
         strokeWidth: 3,
       }),
-      Plot.text(seen.slice(-1), {
-        ...{ x: "x", y: "y", dx: 12, textAnchor: "start", fill: "var(--alarm)" },
-        text: () => "through the surface",
-        stroke: "var(--card)",
+      Plot.text(seen.length > 0 ? ["× through the surface"] : [], {
+        ...{ frameAnchor: "top", dy: 4, ...onCard, fill: "var(--alarm)" },
       }),
     ];
   };

@@ -14,19 +14,31 @@ const has = (from: string): boolean => Number(valueAt(from)) > 0;
 const guard = (run: string): Words =>
   isGuarded(run) ? [" with ", shown(`${run}/name`)] : [" without a fixture"];
 
+/** True if a list ends in a name with a dot, as Li et al. */
+const endsInDot = (parts: readonly Words[]): boolean => {
+  const last = parts.at(-1)?.at(-1) ?? "";
+  return (typeof last === "string" ? last : (last.textContent ?? "")).endsWith(".");
+};
+
+/** True if these words are in the headline, and need not be said again. */
+const headlineSays = (words: string): boolean => String(valueAt("/headline")).includes(words);
+
 /** Returns how far the tool went in, where it stood still, and the time of a step. */
 export function simulationDifferences(record: SimulationRecord): HTMLElement[] {
   const runs = entries("/runs");
   const failed = runs.filter((run) => !valueAt(`${run}/kept_out`));
-  const deep = failed.filter((run) => has(`${run}/summary/deepest_mm`));
-  const through = failed.filter((run) => !deep.includes(run) && has(`${run}/summary/crossings`));
+  const all = failed.filter((run) => has(`${run}/summary/deepest_mm`));
+  const isTold = (run: string) =>
+    !isGuarded(run) && headlineSays("Without a fixture the tool went up to");
+  const deep = all.filter((run) => !isTold(run));
+  const through = failed.filter((run) => !all.includes(run) && has(`${run}/summary/crossings`));
   const guarded = runs.filter(isGuarded);
   const timed = guarded.filter((run) => has(`${run}/summary/p50_us`));
   const [tool, crossed, noun] = record.has_convex_tool
     ? ["The tool", "touched the surface in ", "cycle"]
     : ["The tip", "passed through the surface ", "time"];
   const sentence = (begin: string, parts: readonly Words[]): Words =>
-    parts.length > 0 ? [begin, ...listed(parts), "."] : [];
+    parts.length > 0 ? [begin, ...listed(parts), endsInDot(parts) ? "" : "."] : [];
   return differences(
     sentence(
       `${tool} went `,
@@ -36,7 +48,7 @@ export function simulationDifferences(record: SimulationRecord): HTMLElement[] {
       `${tool} ${crossed}`,
       through.map((run) => [...counted(`${run}/summary/crossings`, noun), ...guard(run)]),
     ),
-    guarded.some((run) => has(`${run}/summary/stopped`))
+    !headlineSays("stood still in") && guarded.some((run) => has(`${run}/summary/stopped`))
       ? sentence(
           "It stood still for ",
           guarded.map((run) => [...counted(`${run}/summary/stopped`, "cycle"), ...guard(run)]),

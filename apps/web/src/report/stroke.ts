@@ -10,7 +10,7 @@ import { coloured, parted, widths } from "./paths.ts";
 import { valueAt } from "./record.ts";
 import { lead, section } from "./report_page.ts";
 import { ordinal, pictureGrid, runColor, runName } from "./runs.ts";
-import { millimetres, show } from "./shown.ts";
+import { millimetres, ruleName, show } from "./shown.ts";
 import { clearanceCharts, showDepth, shownClearance } from "./simulation_charts.ts";
 import {
   type Run,
@@ -114,7 +114,7 @@ function strokeView(
       element.style.setProperty("--color", `var(${runColor(number)})`);
     }
     const now = make("span", { class: "now" });
-    const description = `Section along the path of the tip, ${run.name}: ${label.textContent}.`;
+    const description = `Section along the path of the tip, ${ruleName(run.name)}: ${label.textContent}.`;
     view.add(description, { lengths, cut }, Object.values(marks), runName(number), now);
     return (cycle: number) => {
       marks.tool.place = at(cycle);

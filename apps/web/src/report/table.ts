@@ -83,7 +83,7 @@ export const tableSection = (
 
 /** Returns a field that hides the rows of a table that lack one of the typed words. */
 export function rowFilter(content: HTMLTableElement): HTMLElement {
-  const field = make("input", { type: "search", placeholder: "wide_bvh paper" });
+  const field = make("input", { type: "search", placeholder: "wide_bvh certified" });
   field.addEventListener("input", () => {
     const words = field.value.toLowerCase().split(/\s+/);
     for (const row of content.tBodies[0]?.rows ?? []) {
@@ -95,10 +95,13 @@ export function rowFilter(content: HTMLTableElement): HTMLElement {
 }
 
 function heading({ heading: text, look }: Column): HTMLElement {
-  const isText = look === "name" || look === "words";
+  const kinds = [
+    ...(look === "name" || look === "words" ? ["name"] : []),
+    ...(text.length > 14 ? ["long"] : []),
+  ];
   return make(
     "th",
-    { scope: "col", ...(isText ? { class: "name" } : {}) },
+    { scope: "col", ...(kinds.length > 0 ? { class: kinds.join(" ") } : {}) },
     make("button", { type: "button" }, text),
   );
 }
