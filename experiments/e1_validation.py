@@ -97,7 +97,7 @@ def _loops(unit: Unit, length: float, index: keepout.Index, judge: Any) -> Row:
         seeds = np.random.SeedSequence(key).generate_state(3, np.uint64).tolist()
         start = keepout_peers.start(terrain, route, 1.5 * MARGIN, HEIGHT, seeds[0])
         found.append(keepout_peers.push(
-            judge, rule, keepout_peers.PointHand(terrain, route, length, seeds[1]), start, margin=task.margin,
+            judge, rule, keepout_peers.PointPusher(terrain, route, length, seeds[1]), start, margin=task.margin,
             cycles=round(WAY / length), cycles_inside=round(INSIDE_WAY / length), best_steps=BEST_STEPS,
             seed=seeds[2]))
     sums = {name: sum(loop[name] for loop in found)

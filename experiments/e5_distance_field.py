@@ -239,7 +239,7 @@ def pushes_at(truth: Truth, walls: Walls, random: np.random.Generator, loops: in
 def pushed(rule: Rule, truth: Truth, pushes: Pushes) -> Row:
     """Pushes tips at walls. Returns the walls of the tips that enter, how deep they get, and the step time."""
     found = [
-        keepout_peers.push(truth.judge, rule, keepout_peers.SteadyHand(desired), start, margin=MARGIN,
+        keepout_peers.push(truth.judge, rule, keepout_peers.SteadyPusher(desired), start, margin=MARGIN,
                            cycles=CYCLES, cycles_inside=CYCLES)
         for start, desired in zip(pushes.starts, pushes.desired)
     ]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """E8: how each value of the simulation changes the primary ends of E3 and E4, and SPARC.
 
-Each number of operator, set-up and bone is changed alone, to the two ends of its range. Ranges are from literature
-where RANGES has one; all others are half and twice the value. The trials are those of E3 and E4, with no fixture and
-with certified; pairs have the same seed. An end that changes its sign with a value that no source fixes is not a
-finding about fixtures.
+Each number of operator, set-up and bone is changed alone, to the two ends of its range. FROM_LITERATURE has the
+published ranges. All other ranges are ours: OURS, or half and twice the value. The trials are those of E3 and E4, with
+no fixture and with certified; pairs have the same seed. An end that changes its sign with a value that no source fixes
+is not a finding about fixtures.
 """
 from __future__ import annotations
 
@@ -27,15 +27,18 @@ COMPARED = (modes.NO_FIXTURE, "certified")
 EXPERIMENTS = {module.NAME: module for module in (e3_path_tracing, e4_cutting)}
 BASE = "as they are"
 
-#: Ranges of values of the operator. From literature: refractory 0.17 s (Miall, Weir, Stein, 1993) and 0.55 s (van de
-#: Kamp et al., 2013, order 2). Noise 6 % (finger force with sight and touch) and 15 % (matching of forces; both Jones,
-#: 2000). Tremor 0.049 mm (Riviere, Rader, Khosla, 1997) and 0.285 mm (all error of two surgeons in vivo, PubMed Central
-#: PMC3989364). The other ranges are ours: about half and twice the value.
-RANGES = {
-    "Intermittent.refractory": (0.17, 0.55), "Intermittent.movement": (0.3, 0.8), "Intermittent.noise": (0.06, 0.15),
-    "Operator.tremor": (0.049, 0.285), "Intermittent.sight_in_depth": (0.25, 1.0),
-    "Intermittent.tolerance": (0.25, 1.0),
+#: Published ranges of values of the operator. Refractory time: 0.17 s (Miall, Weir, Stein, 1993) and 0.55 s (van de
+#: Kamp et al., 2013, order 2). Noise: 6 % (finger force with sight and touch) and 15 % (matching of forces; both Jones,
+#: 2000). Tremor: 0.049 mm (Riviere, Rader, Khosla, 1997) and 0.285 mm (all error of two surgeons in vivo, PubMed Central
+#: PMC3989364).
+FROM_LITERATURE = {
+    "Intermittent.refractory": (0.17, 0.55), "Intermittent.noise": (0.06, 0.15), "Operator.tremor": (0.049, 0.285),
 }
+#: Ranges of the operator that are not about half and twice the value.
+OURS = {
+    "Intermittent.movement": (0.3, 0.8), "Intermittent.sight_in_depth": (0.25, 1.0), "Intermittent.tolerance": (0.25, 1.0),
+}
+RANGES = FROM_LITERATURE | OURS
 #: Numbers of the task, not of the simulation.
 FIXED = ("BoneProperties.thickness", "BoneProperties.blade")
 
@@ -121,7 +124,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     of_ends = [(end, *bars(of, end)) for name, module in EXPERIMENTS.items()
                if (of := [row for row in rows if row["experiment"] == name]) for end in _ends(module)]
     told = "; ".join(f"{end.name}, {_better(end, found)}"
-                     + (f" ({_better(end, [bar for bar in found if bar.parameter in RANGES])} of the points with a range from sources)"
+                     + (f" ({_better(end, [bar for bar in found if bar.parameter in FROM_LITERATURE])} with a range from literature)"
                         if end.member == "spectral_arc_length" else "") for end, _, found in of_ends)
     return Findings(
         f"Points at which certified is better than no fixture, with one value changed: {told}.",
@@ -140,10 +143,10 @@ def _table(measure: Measure, base: Interval, found: list[Bar]) -> Table:
     return Table(
         f"Certified minus no fixture, {measure.name}: one value changed",
         ["value", "low", "difference", "high", "difference", "swing", "pairs"],
-        [[bar.parameter + (" *" if bar.parameter in RANGES else ""), f"{bar.ends[0]:g}", bar.low.text(),
+        [[bar.parameter + (" *" if bar.parameter in FROM_LITERATURE else ""), f"{bar.ends[0]:g}", bar.low.text(),
           f"{bar.ends[1]:g}", bar.high.text(), f"{bar.swing:.2g}", str(bar.pairs)] for bar in found],
-        f"With all values as they are: {base.text()}{measure.of_unit}. *: low and high are a range of the sources of "
-        "the operator; the others are half and twice the value. Means of pairs of trials with Student's interval, if "
+        f"With all values as they are: {base.text()}{measure.of_unit}. *: low and high are from literature; "
+        "the other ranges are ours, most of them half and twice the value. Means of pairs of trials with Student's interval, if "
         "there are two pairs. Exploratory.",
     )
 

@@ -37,18 +37,21 @@ py::dict rows_of(const Push& push) {
 }  // namespace
 
 void bind_pushes(py::module_& module) {
-  py::class_<Hand>(module, "Hand", "A simulated hand that tries to push a tip through a surface.")
-      .def("next", &Hand::next, "tip"_a, "Returns the desired motion, (3,) in mm.");
-  py::class_<PointHand, Hand>(module, "PointHand", R"(A hand that sees the tip and the surface.
+  py::class_<Pusher>(module, "Pusher",
+                     "A simulated operator that tries to push a tip through a surface.")
+      .def("next", &Pusher::next, "tip"_a, "Returns the desired motion, (3,) in mm.");
+  py::class_<PointPusher, Pusher>(module, "PointPusher",
+                                  R"(An operator that sees the tip and the surface.
 
-PointHand(terrain, route, longest, seed): one of ROUTES; `longest` motion of a cycle in mm.
+PointPusher(terrain, route, longest, seed): one of ROUTES; `longest` motion of a cycle in mm.
 benchmarks/native/push.h describes the routes.)")
       .def(py::init([](const Terrain& terrain, const std::string& route, double longest,
                        std::uint64_t seed) {
-             return std::make_unique<PointHand>(terrain, route_of(route), longest, Random(seed));
+             return std::make_unique<PointPusher>(terrain, route_of(route), longest, Random(seed));
            }),
            "terrain"_a, "route"_a, "longest"_a, "seed"_a, py::keep_alive<1, 2>());
-  py::class_<SteadyHand, Hand>(module, "SteadyHand", "A hand that always commands one motion.")
+  py::class_<SteadyPusher, Pusher>(module, "SteadyPusher",
+                                   "An operator that always commands one motion.")
       .def(py::init<const Vec3&>(), "motion"_a);
   module.attr("ROUTES") =
       py::tuple(py::cast(std::vector<std::string>(route_names.begin(), route_names.end())));
@@ -64,18 +67,18 @@ benchmarks/native/push.h describes the routes.)")
       "surface. Raises ValueError if no place has the clearance.");
   module.def(
       "push",
-      [](Judge& judge, const py::object& rule, Hand& hand, const Vec3& start, double margin,
+      [](Judge& judge, const py::object& rule, Pusher& pusher, const Vec3& start, double margin,
          int cycles, int cycles_inside, int best_steps, std::uint64_t seed) {
         const RuleArgument chosen(rule);
         Push found;
         {
           const py::gil_scoped_release unlocked;
-          found = push(judge, chosen.rule(), hand, start,
+          found = push(judge, chosen.rule(), pusher, start,
                        {margin, cycles, cycles_inside, best_steps, seed});
         }
         return rows_of(found);
       },
-      "judge"_a, "rule"_a, "hand"_a, "start"_a, py::kw_only(), "margin"_a, "cycles"_a,
+      "judge"_a, "rule"_a, "pusher"_a, "start"_a, py::kw_only(), "margin"_a, "cycles"_a,
       "cycles_inside"_a = 0, "best_steps"_a = 0, "seed"_a = 0,
       "Pushes a tip from `start` and judges each step; the rule is of C++ or Python, or None.\n"
       "Returns the members of Push in benchmarks/native/push.h as a dict.");

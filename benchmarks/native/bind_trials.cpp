@@ -70,12 +70,13 @@ RigidMotion motion_of(const py::object& motion) {
   return {points(motion.attr("rotation")), point(motion.attr("translation"))};
 }
 
-std::unique_ptr<Hand> hand_of(const py::object& hand, const Task& task, const py::dict& draws) {
+std::unique_ptr<Hand> hand_of(const py::object& hand, const HandSettings& settings,
+                              const py::dict& draws) {
   if (draws.contains("errors")) {
     const double samples = draws["samples"].cast<double>();
     return make_hand(OpenLoop{number(hand, "tolerance"), number(hand, "leaning"), samples,
                               table(draws["errors"])},
-                     task);
+                     settings);
   }
   const Vec3 heading = point(draws["heading"]);
   const auto looks = draws["motor"].attr("shape").cast<std::vector<std::size_t>>()[1];
@@ -94,7 +95,7 @@ std::unique_ptr<Hand> hand_of(const py::object& hand, const Task& task, const py
                                 table(draws["sight"]),
                                 table(draws["view"]),
                                 looks},
-                   task);
+                   settings);
 }
 
 py::dict run_trial(const py::object& course, const py::object& rule, const py::object& op,
@@ -127,11 +128,11 @@ py::dict run_trial(const py::object& course, const py::object& rule, const py::o
     s.bone = BoneProperties{number(bone, "thickness"), number(bone, "resistance"),
                             number(bone, "behind"), number(bone, "blade"), number(bone, "kerf")};
   }
-  const Task task{
+  const HandSettings settings{
       s.period,       number(course, "speed"),  number(course, "depth"), s.path.length,
       s.force_per_mm, number(op, "felt_force"), number(op, "reaction"),  s.bone.has_value(),
       !rule.is_none()};
-  const std::unique_ptr<Hand> hand = hand_of(op.attr("hand"), task, draws);
+  const std::unique_ptr<Hand> hand = hand_of(op.attr("hand"), settings, draws);
   const peers::RuleArgument fixture(rule);
   const Trace trace = [&] {
     const py::gil_scoped_release release;

@@ -53,7 +53,7 @@ class EntryJudge {
 
 }  // namespace
 
-PointHand::PointHand(const Terrain& terrain, Route route, double longest, const Random& random)
+PointPusher::PointPusher(const Terrain& terrain, Route route, double longest, const Random& random)
     : terrain_(&terrain),
       route_(route),
       longest_(longest),
@@ -67,7 +67,7 @@ PointHand::PointHand(const Terrain& terrain, Route route, double longest, const 
   }
 }
 
-Vec3 PointHand::next(const Vec3& tip) {
+Vec3 PointPusher::next(const Vec3& tip) {
   if (cycle_ % attention_ == 0) look(tip);
   const Vec3 wished = wish(tip, cycle_ % period_ == 0);
   ++cycle_;
@@ -75,7 +75,7 @@ Vec3 PointHand::next(const Vec3& tip) {
   return length > longest_ ? Vec3(wished * (longest_ / length)) : wished;
 }
 
-void PointHand::look(const Vec3& tip) {
+void PointPusher::look(const Vec3& tip) {
   budget_.renew();
   const Hit nearest = find_nearest(near_, tip).value();
   const double distance = nearest.closest.distance;
@@ -96,7 +96,7 @@ void PointHand::look(const Vec3& tip) {
 }
 
 /// Returns a random rim or saddle near the tip; without one, a corner of the nearest triangle.
-VertexId PointHand::choose_vertex(const Vec3& tip, double distance) {
+VertexId PointPusher::choose_vertex(const Vec3& tip, double distance) {
   const Terrain::Kind kind = route_ == Route::rim ? Terrain::Kind::rim : Terrain::Kind::saddle;
   VertexId chosen = 0;
   std::size_t seen = 0;
@@ -112,7 +112,7 @@ VertexId PointHand::choose_vertex(const Vec3& tip, double distance) {
   return chosen;
 }
 
-Vec3 PointHand::wish(const Vec3& tip, bool decides) {
+Vec3 PointPusher::wish(const Vec3& tip, bool decides) {
   if (route_ == Route::push) return longest_ * inwards_;
   if (route_ == Route::slide) {
     if (decides) heading_ = random_.uniform(0.3, 2.0) * random_.direction();
@@ -127,7 +127,8 @@ Vec3 PointHand::wish(const Vec3& tip, bool decides) {
   return wished;
 }
 
-Push push(Judge& judge, Rule* rule, Hand& hand, const Vec3& start, const PushSettings& settings) {
+Push push(Judge& judge, Rule* rule, Pusher& pusher, const Vec3& start,
+          const PushSettings& settings) {
   using Clock = std::chrono::steady_clock;
   const double margin = settings.margin, reach = 2.0 * margin;
   oracle::SafetyOracle& oracle = judge.oracle();
@@ -140,7 +141,7 @@ Push push(Judge& judge, Rule* rule, Hand& hand, const Vec3& start, const PushSet
   Vec3 tip = start;
   for (int cycle = 0, inside = 0; cycle < settings.cycles && inside <= settings.cycles_inside;
        ++cycle) {
-    const Vec3 desired = hand.next(tip);
+    const Vec3 desired = pusher.next(tip);
     const Clock::time_point begun = Clock::now();
     const Vec3 motion = rule ? rule->step(tip, desired) : desired;
     found.seconds += std::chrono::duration<double>(Clock::now() - begun).count();

@@ -11,16 +11,16 @@
 
 namespace keepout::peers {
 
-/// A simulated hand that tries to push a tip through a surface.
-class Hand {
+/// A simulated operator that tries to push a tip through a surface.
+class Pusher {
  public:
-  virtual ~Hand() = default;
+  virtual ~Pusher() = default;
 
   /// Returns the desired motion of a tip. [mm]
   virtual Vec3 next(const Vec3& tip) = 0;
 };
 
-/// The aim of a PointHand.
+/// The aim of a PointPusher.
 enum class Route {
   push,     // straight in
   slide,    // along the surface, leaning on it
@@ -35,15 +35,15 @@ enum class Route {
 inline constexpr std::array<std::string_view, 7> route_names{"push",    "slide", "wedge", "press",
                                                              "through", "rim",   "saddle"};
 
-/// A hand that sees the tip and the surface, and moves at most `longest` [mm] in a cycle. It
+/// An operator that sees the tip and the surface, and moves at most `longest` [mm] in a cycle. It
 /// decides again after 1 to 10 mm of commanded motion, and on the routes slide and wedge looks
 /// again after 0.5 mm. The same random numbers and tips give the same motions.
-class PointHand : public Hand {
+class PointPusher : public Pusher {
  public:
-  /// `terrain` must outlive the hand.
-  PointHand(const Terrain& terrain, Route route, double longest, const Random& random);
-  PointHand(const PointHand&) = delete;  // the neighborhood refers to the budget
-  PointHand& operator=(const PointHand&) = delete;
+  /// `terrain` must outlive the pusher.
+  PointPusher(const Terrain& terrain, Route route, double longest, const Random& random);
+  PointPusher(const PointPusher&) = delete;  // the neighborhood refers to the budget
+  PointPusher& operator=(const PointPusher&) = delete;
 
   Vec3 next(const Vec3& tip) override;
 
@@ -64,10 +64,10 @@ class PointHand : public Hand {
   Vec3 inwards_ = Vec3::Zero(), heading_ = Vec3::Zero(), goal_ = Vec3::Zero();
 };
 
-/// A hand that always commands the same motion.
-class SteadyHand : public Hand {
+/// An operator that always commands the same motion.
+class SteadyPusher : public Pusher {
  public:
-  explicit SteadyHand(const Vec3& motion) : motion_(motion) {}
+  explicit SteadyPusher(const Vec3& motion) : motion_(motion) {}
 
   Vec3 next(const Vec3& /*tip*/) override { return motion_; }
 
@@ -99,7 +99,8 @@ struct Push {
 };
 
 /// Pushes a tip from `start`, and judges each step exactly with code that shares nothing with any
-/// rule. Without a rule the tip follows the hand.
-Push push(Judge& judge, Rule* rule, Hand& hand, const Vec3& start, const PushSettings& settings);
+/// rule. Without a rule the tip follows the pusher.
+Push push(Judge& judge, Rule* rule, Pusher& pusher, const Vec3& start,
+          const PushSettings& settings);
 
 }  // namespace keepout::peers

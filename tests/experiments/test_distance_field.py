@@ -124,7 +124,7 @@ def test_only_the_proof_keeps_the_margin_in_pushes_at_a_gear():
         start = peers.start(terrain, route, 0.7, 2.0, seed)
         if field.distances([start])[0] < 0.2 + field.error_bound:
             continue
-        found = peers.push(judge, rule_of(mesh, 0.5, "sure", radius=1.0), peers.PointHand(terrain, route, 1.0, seed),
+        found = peers.push(judge, rule_of(mesh, 0.5, "sure", radius=1.0), peers.PointPusher(terrain, route, 1.0, seed),
                            start, margin=0.2, cycles=200)
         assert found["clearance"] >= 0.2 - 1e-6
         steps += found["steps"]

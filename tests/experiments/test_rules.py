@@ -148,7 +148,7 @@ def test_conservative_advancement_of_fcl_misses_contacts_that_its_default_solver
     missed = 0
     for seed in range(30):
         start = peers.start(terrain, "push", 0.5, 2.0, seed)
-        motion = peers.PointHand(terrain, "push", 5.0, seed).next(start)
+        motion = peers.PointPusher(terrain, "push", 5.0, seed).next(start)
         assert judge.crossings([start], [start + motion])[0]
         assert default(start, motion)[0] < 1.0
         missed += advancement(start, motion)[0] == 1.0
@@ -163,7 +163,7 @@ def test_a_push_takes_rules_of_python_and_of_cpp_and_none():
         def step(self, tip, desired):
             return native_rule.step(tip, desired)
 
-    hand, start = peers.SteadyHand([0.0, 0.0, -0.5]), [0.0, 0.0, 1.0]
+    hand, start = peers.SteadyPusher([0.0, 0.0, -0.5]), [0.0, 0.0, 1.0]
     found, same, free = (
         peers.push(judge, rule, hand, start, margin=MARGIN, cycles=10) for rule in (native_rule, Python(), None))
     seconds = [push.pop("seconds") for push in (found, same)]
@@ -178,7 +178,7 @@ def test_a_python_rule_that_fails_ends_the_push():
             raise RuntimeError("no motion today")
 
     with pytest.raises(RuntimeError, match="today"):
-        peers.push(peers.Judge(FLOOR, TWO_OF_A_QUAD), Wrong(), peers.SteadyHand([0, 0, -1.0]), [0, 0, 1.0],
+        peers.push(peers.Judge(FLOOR, TWO_OF_A_QUAD), Wrong(), peers.SteadyPusher([0, 0, -1.0]), [0, 0, 1.0],
                    margin=MARGIN, cycles=3)
 
 
@@ -187,7 +187,7 @@ def test_free_motion_that_a_rule_refuses_is_counted_until_the_tip_enters():
         def step(self, tip, desired):
             return 0.5 * desired
 
-    found = peers.push(peers.Judge(FLOOR, TWO_OF_A_QUAD), Halves(), peers.SteadyHand([0.0, 0.0, -0.4]),
+    found = peers.push(peers.Judge(FLOOR, TWO_OF_A_QUAD), Halves(), peers.SteadyPusher([0.0, 0.0, -0.4]),
                        [0.0, 0.0, 1.0], margin=MARGIN, cycles=20, best_steps=2)
     # Desired motions from 1, 0.8 and 0.6 mm keep the margin. The next keeps it for 0.2 of 0.4 mm.
     # The step after that ends just above the plane, and the next one enters.
@@ -206,7 +206,7 @@ def test_hands_reach_the_surface_and_starts_are_free(route):
         start = peers.start(terrain, route, 0.3, 2.0, seed)
         assert judge.distances([start])[0] > 0.3
         found, again = (
-            peers.push(judge, None, peers.PointHand(terrain, route, 0.2, seed), start, margin=MARGIN, cycles=250)
+            peers.push(judge, None, peers.PointPusher(terrain, route, 0.2, seed), start, margin=MARGIN, cycles=250)
             for _ in range(2))
         assert {**found, "seconds": 0} == {**again, "seconds": 0}
         entered += found["entered"]

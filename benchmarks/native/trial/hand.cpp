@@ -18,35 +18,35 @@ int cycles(double seconds, double period) {
 
 class OpenLoopHand final : public Hand {
  public:
-  OpenLoopHand(OpenLoop hand, const Task& task)
+  OpenLoopHand(OpenLoop hand, const HandSettings& settings)
       : hand_(std::move(hand)),
-        task_(task),
-        reaction_(cycles(task.reaction, task.period)),
-        spacing_(task.speed / hand_.samples),
-        lean_(task.fixture ? hand_.leaning : 0.0) {}
+        settings_(settings),
+        reaction_(cycles(settings.reaction, settings.period)),
+        spacing_(settings.speed / hand_.samples),
+        lean_(settings.fixture ? hand_.leaning : 0.0) {}
 
   Coordinates aim(int cycle, int approach) override {
     if (cycle > approach) {
       const double seen =
           cycle > reaction_ ? factors_[static_cast<std::size_t>(cycle - 1 - reaction_)] : 1.0;
-      along_ += task_.speed * task_.period * seen;
+      along_ += settings_.speed * settings_.period * seen;
     }
     const auto [across, below] = hand_.errors.interpolated(along_ / spacing_);
-    below_ = task_.depth + below;
+    below_ = settings_.depth + below;
     return {along_, across, below_ + lean_};
   }
 
   void look(const Seen& seen) override {
     const double aside_squared = seen.ahead * seen.ahead + seen.across * seen.across;
     const double hanging =
-        seen.push > task_.felt_force ? 0.0 : std::max(0.0, below_ - seen.depth - seen.above);
+        seen.push > settings_.felt_force ? 0.0 : std::max(0.0, below_ - seen.depth - seen.above);
     factors_.push_back(
         1.0 / (1.0 + (aside_squared + hanging * hanging) / (hand_.tolerance * hand_.tolerance)));
   }
 
  private:
   OpenLoop hand_;
-  Task task_;
+  HandSettings settings_;
   int reaction_;
   double spacing_, lean_, along_ = 0.0, below_ = 0.0;
   std::vector<double> factors_;  // on the speed, from what the eye saw in each cycle
@@ -54,12 +54,12 @@ class OpenLoopHand final : public Hand {
 
 class IntermittentHand final : public Hand {
  public:
-  IntermittentHand(Intermittent hand, const Task& task)
+  IntermittentHand(Intermittent hand, const HandSettings& settings)
       : hand_(std::move(hand)),
-        task_(task),
-        reaction_(cycles(task.reaction, task.period)),
-        refractory_(cycles(hand_.refractory, task.period)),
-        movement_(cycles(hand_.movement, task.period)),
+        settings_(settings),
+        reaction_(cycles(settings.reaction, settings.period)),
+        refractory_(cycles(hand_.refractory, settings.period)),
+        movement_(cycles(hand_.movement, settings.period)),
         looks_(hand_.motor.rows / hand_.looks, 0) {}
 
   Coordinates aim(int cycle, int approach) override {
@@ -98,7 +98,7 @@ class IntermittentHand final : public Hand {
   void decide(int cycle);
 
   Intermittent hand_;
-  Task task_;
+  HandSettings settings_;
   int reaction_, refractory_, movement_;
   int next_ = -1;
   std::vector<std::size_t> looks_;
@@ -128,11 +128,12 @@ void IntermittentHand::decide(int cycle) {
   const double seen_depth =
       then.depth + hand_.sight_in_depth * (lasting * view[1] + fresh * hand_.sight(number, 1));
   const double across = seen_across + pending[1];
-  const double error = seen_depth + pending[2] - task_.depth;
-  const double room_along = task_.cutting ? tolerance - (end_[0] - aim[0] - then.ahead) : infinity;
-  const double room_below = task_.cutting ? tolerance - (end_[2] - seen_depth) : infinity;
+  const double error = seen_depth + pending[2] - settings_.depth;
+  const double room_along =
+      settings_.cutting ? tolerance - (end_[0] - aim[0] - then.ahead) : infinity;
+  const double room_below = settings_.cutting ? tolerance - (end_[2] - seen_depth) : infinity;
 
-  const bool feels = task_.fixture && then.push > task_.felt_force;
+  const bool feels = settings_.fixture && then.push > settings_.felt_force;
   Vector length{};
   int wait = refractory_;
   if (lifted_) {
@@ -141,14 +142,14 @@ void IntermittentHand::decide(int cycle) {
     lifted_ = false;
     wait = movement_ + reaction_;
   } else if (turn_of_depth_ && !feels) {
-    if (task_.fixture) {
+    if (settings_.fixture) {
       length[2] = std::max(0.0, std::min(tolerance, room_below));
     } else if (std::abs(error) <= tolerance) {
       at_depth_ = true;
       misses_ = 0;
     } else {
       ++misses_;
-      if (task_.cutting && at_depth_ && misses_ >= 2) {
+      if (settings_.cutting && at_depth_ && misses_ >= 2) {
         length[2] = -(end_[2] + hand_.lift);
         lifted_ = true;
         at_depth_ = false;
@@ -160,16 +161,16 @@ void IntermittentHand::decide(int cycle) {
     }
   } else {
     length[1] = std::abs(across) > tolerance ? -across : 0.0;
-    const bool goes_on = feels || (!task_.fixture && at_depth_ && misses_ == 0);
-    if (goes_on && end_[0] < task_.length) {
-      const double pace = task_.speed * hand_.refractory;
+    const bool goes_on = feels || (!settings_.fixture && at_depth_ && misses_ == 0);
+    if (goes_on && end_[0] < settings_.length) {
+      const double pace = settings_.speed * hand_.refractory;
       stalled_ = room_along <= 0.0 ? stalled_ + 1 : 0;
       length[0] = stalled_ >= stalled ? pace : std::max(0.0, std::min(pace, room_along));
     }
     if (feels) {
-      const double push = then.push + task_.force_per_mm * pending[2];
+      const double push = then.push + settings_.force_per_mm * pending[2];
       length[2] =
-          std::min(std::max((hand_.touch - push) / task_.force_per_mm, -tolerance), tolerance);
+          std::min(std::max((hand_.touch - push) / settings_.force_per_mm, -tolerance), tolerance);
     }
   }
   turn_of_depth_ = !turn_of_depth_;
@@ -196,12 +197,12 @@ std::array<double, 2> Table::interpolated(double place) const {
           (1.0 - share) * table(low, 1) + share * table(low + 1, 1)};
 }
 
-std::unique_ptr<Hand> make_hand(OpenLoop hand, const Task& task) {
-  return std::make_unique<OpenLoopHand>(std::move(hand), task);
+std::unique_ptr<Hand> make_hand(OpenLoop hand, const HandSettings& settings) {
+  return std::make_unique<OpenLoopHand>(std::move(hand), settings);
 }
 
-std::unique_ptr<Hand> make_hand(Intermittent hand, const Task& task) {
-  return std::make_unique<IntermittentHand>(std::move(hand), task);
+std::unique_ptr<Hand> make_hand(Intermittent hand, const HandSettings& settings) {
+  return std::make_unique<IntermittentHand>(std::move(hand), settings);
 }
 
 }  // namespace keepout::trial

@@ -16,7 +16,7 @@ struct Seen {
 };
 
 /// The course and the operator, as a hand needs them.
-struct Task {
+struct HandSettings {
   double period, speed, depth, length, force_per_mm, felt_force, reaction;
   bool cutting, fixture;
 };
@@ -58,7 +58,7 @@ struct Intermittent {
   std::size_t looks;
 };
 
-std::unique_ptr<Hand> make_hand(OpenLoop hand, const Task& task);
-std::unique_ptr<Hand> make_hand(Intermittent hand, const Task& task);
+std::unique_ptr<Hand> make_hand(OpenLoop hand, const HandSettings& settings);
+std::unique_ptr<Hand> make_hand(Intermittent hand, const HandSettings& settings);
 
 }  // namespace keepout::trial
