@@ -24,6 +24,7 @@ NAME = "e3_path_tracing"
 TITLE = "E3 Path tracing (section V-A)"
 
 SPEED = 2.0  # [mm/s], ours: Li et al. do not give it
+TIME_LIMIT = 120.0  # [s]; a trial that finishes does so within about 60 s
 
 
 def units(scale: Scale) -> list[Unit]:
@@ -40,7 +41,7 @@ def planned(mode: str, seed: int, number: int = 0, *, ideal: bool = False, corri
             changed: Values | None = None, simulation: Simulation = Simulation()) -> Trial:
     """Returns the trial of a mode. Modes with the same seed and number meet the same operator and registration."""
     path, index = anatomy.printed_skull()
-    course = Course(path=path, depth=0.0, speed=SPEED, time_limit=240.0)
+    course = Course(path=path, depth=0.0, speed=SPEED, time_limit=TIME_LIMIT)
     of = parameters.changed(simulation, changed or {})
     return Trial(mode, (seed, 3, number), course, index, of.operator, SetUp.ideal() if ideal else of.setup, corridor)
 
