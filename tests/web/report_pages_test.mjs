@@ -169,6 +169,12 @@ const ruleName = (name) => ruleNames.get(name.replace(" ", "_")) ?? name;
 const headlineOf = ({ headline }) =>
   headline.replaceAll(/'(\w+)'/g, (quoted, name) => ruleNames.get(name) ?? quoted);
 
+/** Returns what the browser reported. One figure of the experiments is no SVG on purpose, which only Firefox reports. */
+const faultsOf = ({ faults }, { keepout_record }) =>
+  isFirefox && keepout_record === "experiments"
+    ? faults.filter((fault) => !/^Error: XML Parsing Error: unclosed token/.test(fault))
+    : faults;
+
 /** Returns true if a text shows the value, name or number that the record has at a pointer. */
 function isOf(record, { text, from, role, unit: apart = "" }) {
   const keys = keysOf(from);
@@ -442,7 +448,7 @@ for (const { file, name, record } of pages) {
       await assertNumbers(tab, record, "body");
     }
     // Selects another stroke of an instrument, and the worst moment of each of its modes.
-    for (const list of await tab.$$('select[aria-label="stroke"] ~ select')) {
+    for (const list of await tab.$$('select[aria-label="moment"]')) {
       await tab.select('select[aria-label="stroke"]', "1");
       for (const [number, run] of record.meshes[0].strokes[1].runs.entries()) {
         await list.select(String(number));
@@ -483,7 +489,7 @@ for (const { file, name, record } of pages) {
     else await assertPrints(tab, record);
     await assertAccessible(tab, "light");
     if (isLong) await assertAccessible(tab, "dark"); // as on a phone, below
-    assert.deepEqual(tab.faults, []);
+    assert.deepEqual(faultsOf(tab, record), []);
     await tab.close();
   });
 
@@ -492,7 +498,7 @@ for (const { file, name, record } of pages) {
     const widths = await tab.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
     assert.equal(widths[0], widths[1], "the page scrolls sideways");
     await assertAccessible(tab, "dark");
-    assert.deepEqual(tab.faults, []);
+    assert.deepEqual(faultsOf(tab, record), []);
     await tab.close();
   });
 

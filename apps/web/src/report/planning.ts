@@ -66,7 +66,7 @@ function leastClearances(rows: readonly string[], required: string): HTMLElement
     description: "Least clearance of each path that was found, for each checker",
     label: "clearance [mm]",
     rows: dotted,
-    levels: [[Number(valueAt(required)), "to be kept"]],
+    levels: [[Number(valueAt(required)), "required clearance"]],
     name: ({ from }) => [
       ...(several ? [{ from: `${from}/mesh` }, ", "] : []),
       { from: `${from}/checker` },

@@ -158,7 +158,7 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
       range,
       ". ",
       make("b", {}, "Red"),
-      " is the body that the mesh reaches into farthest, also where the surface hides it. The gray ball is the port; the shaft above it is not guarded.",
+      " is the body that the mesh reaches into farthest. A pale part is hidden by the surface. The gray ball is the port; the shaft above it is not guarded.",
     ),
     content,
     hint(runs.length),

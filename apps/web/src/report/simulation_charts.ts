@@ -177,7 +177,7 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
           ]
         : []),
       ...level(0, "surface", kept > 0 ? 10 : -8),
-      ...(kept > 0 ? level(kept, "to be kept") : []),
+      ...(kept > 0 ? level(kept, "required clearance") : []),
       ...lines(points.filter(({ run }) => legend.shows(String(run)))),
       ...crossings(points.filter(({ run }) => legend.shows(String(run)))),
       timeRule(),

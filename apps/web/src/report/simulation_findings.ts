@@ -28,10 +28,11 @@ export function simulationDifferences(record: SimulationRecord): HTMLElement[] {
   const runs = entries("/runs");
   const failed = runs.filter((run) => !valueAt(`${run}/kept_out`));
   const all = failed.filter((run) => has(`${run}/summary/deepest_mm`));
-  const isTold = (run: string) =>
-    !isGuarded(run) && headlineSays("Without a fixture the tool went up to");
+  const isTold = (run: string) => !isGuarded(run) && headlineSays("Without a fixture the tool");
   const deep = all.filter((run) => !isTold(run));
-  const through = failed.filter((run) => !all.includes(run) && has(`${run}/summary/crossings`));
+  const through = failed.filter(
+    (run) => !all.includes(run) && !isTold(run) && has(`${run}/summary/crossings`),
+  );
   const guarded = runs.filter(isGuarded);
   const timed = guarded.filter((run) => has(`${run}/summary/p50_us`));
   const [tool, crossed, noun] = record.has_convex_tool
