@@ -2,7 +2,6 @@
 """The common part of the experiments of section V: a trial of a mode, and its measures."""
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any
@@ -74,8 +73,8 @@ class Trial:
     setup: SetUp = field(default_factory=SetUp)
     corridor: float = CORRIDOR
 
-    def run(self, loop: Callable[..., Trace] = run_trial) -> Trace:
-        """Returns the course of the trial. `loop`: run_trial or run_in_python."""
+    def run(self) -> Trace:
+        """Returns the course of the trial."""
         random = streams(*self.seeds)
         path = self.course.path
         middle = len(path.points) // 2
@@ -86,7 +85,7 @@ class Trial:
         task = Task(self.index.mesh, MARGIN, self.course.radius, Corridor((a, b, c), (x, y, z), self.corridor))
         rule = modes.make_rule(self.mode, task, self.index)
         draws = draw(self.course, self.operator, random)
-        return loop(self.course, rule, self.operator, self.setup, registered, draws)
+        return run_trial(self.course, rule, self.operator, self.setup, registered, draws)
 
     def measures(self, trace: Trace, *, judged: bool = True) -> Row:
         """Returns the measures of a trace, see measures(); with `judged` also those of the judge."""

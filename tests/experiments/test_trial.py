@@ -12,7 +12,8 @@ from experiments.operator_model import Operator
 from experiments.rules.rule import Rule
 from experiments.set_up_errors import SetUp
 from experiments.teleoperation import Simulation, Trial
-from experiments.trial import Course, Trace, run_in_python
+from experiments.trial import Course
+from trial_in_python import run_in_python
 
 try:
     anatomy.mesh_file("skull")
@@ -42,14 +43,19 @@ def seconds_of(trial: Trial, seconds: float) -> Trial:
 
 @pytest.mark.parametrize("mode", modes.MODES)
 @pytest.mark.parametrize("hand", HANDS)
-def test_the_loop_in_c_plus_plus_has_the_bits_of_the_loop_in_python(mode: str, hand: str) -> None:
+def test_the_loop_in_c_plus_plus_has_the_bits_of_the_loop_in_python(
+    mode: str, hand: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Two seconds: the approach, the first contact with fixture and bone, and the first decisions."""
     for experiment in (e3_path_tracing, e4_cutting):
         if mode not in teleoperation.SWEPT and experiment is e3_path_tracing:
             continue  # to save time: a rule in Python is called back in the same way in both
         ideal = mode == "all_faces"  # no latency, no registration error, and no bone in E4
         trial = seconds_of(experiment.planned(mode, 1, ideal=ideal, simulation=HANDS[hand]), 2.0)
-        native, python = trial.run(), trial.run(run_in_python)
+        native = trial.run()
+        with monkeypatch.context() as patch:
+            patch.setattr(teleoperation, "run_trial", run_in_python)
+            python = trial.run()
         for name in ARRAYS:
             assert np.array_equal(getattr(native, name), getattr(python, name)), name
         assert (native.begun, native.finished) == (python.begun, python.finished)
@@ -66,18 +72,14 @@ def test_trials_in_threads_are_those_in_turn() -> None:
         assert all(np.array_equal(getattr(one, name), getattr(other, name)) for name in ARRAYS)
 
 
-def test_an_error_in_a_rule_ends_the_trial() -> None:
+def test_an_error_in_a_rule_ends_the_trial(monkeypatch: pytest.MonkeyPatch) -> None:
     class Broken:
         def step(self, tip, desired):
             raise RuntimeError("no such motion")
 
-    trial = seconds_of(e3_path_tracing.planned("none", 1), 2.0)
-
-    def broken(course, rule, *others) -> Trace:
-        return teleoperation.run_trial(course, Broken(), *others)
-
+    monkeypatch.setattr(modes, "make_rule", lambda *task: Broken())
     with pytest.raises(RuntimeError, match="no such motion"):
-        trial.run(broken)
+        seconds_of(e3_path_tracing.planned("none", 1), 2.0).run()
 
 
 def test_all_modes_meet_the_same_operator_and_registration() -> None:
