@@ -46,7 +46,7 @@ USES = {"plane": "one plane", "cut": "cut at the margin", "sure": "inflated to a
 OURS = "certified"
 
 #: The rules without a grid, by name: the modes of the other experiments, and further vector-field inequalities.
-RULES: dict[str, Callable[[Task, keepout.Index], Any]] = {
+RULES: dict[str, Callable[[Task], Any]] = {
     **{mode: partial(make_rule, mode) for mode in (
         OURS, "paper", "closest_points_2007", "vector_field", "fcl_slide", "bullet_slide") if mode in BUILT_IN},
     "vector_field, gain 0.2": partial(native.closest_points, obstacles="nearest", gain=0.2),
@@ -138,7 +138,7 @@ def run(unit: Unit) -> list[Row]:
         return about | pushed(rule, truth, thin) | thick
 
     memory = {"memory": index.memory, "memory_whole": index.memory, "refused": 0.0, "measured_build_s": built}
-    rows = [row_of(mode, make(task, index), memory) for mode, make in RULES.items()]
+    rows = [row_of(mode, make(task), memory) for mode, make in RULES.items()]
     for cell in asked["cells"]:
         field = native.field_of(mesh, cell, MARGIN)
         begun = time.perf_counter()
@@ -149,7 +149,7 @@ def run(unit: Unit) -> list[Row]:
         for use in USES:
             margin = MARGIN + (field.error_bound if use == "sure" else 0.0)
             refused = {"refused": refused_space(field, truth, places, margin)}
-            rule = native.distance_field(task, index, cell=cell, use=use)
+            rule = native.distance_field(task, cell=cell, use=use)
             rows.append(row_of(f"field_{use}_{cell:g}", rule, {"use": use} | about | refused))
     return rows
 

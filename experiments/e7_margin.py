@@ -28,6 +28,7 @@ from scipy import stats
 from . import anatomy, figures
 from .experiment import Array, Claim, Figure, Findings, Row, Scale, Table, Unit
 from .hypothesis_tests import share
+from .rules.native import terrain_of
 from .set_up_errors import fiducials_around
 
 NAME = "e7_margin"
@@ -89,7 +90,7 @@ def place() -> Place:
     ahead = path.points[middle + 1] - path.points[middle - 1]
     return Place(
         path.points - anatomy.SHELL * path.up, path.up, ahead / np.linalg.norm(ahead), index,
-        Judge(index.mesh.vertices, index.mesh.triangles), fiducials_around(path.points[middle], path.up[middle]))
+        terrain_of(index.mesh).judge(), fiducials_around(path.points[middle], path.up[middle]))
 
 
 def _draw(tool: str, fle: float, draw: int, seed: int) -> list[Row]:

@@ -9,6 +9,7 @@ from experiments import anatomy, e3_path_tracing, e4_cutting, modes, teleoperati
 from experiments.bone import BoneProperties
 from experiments.open_loop import OpenLoop
 from experiments.operator_model import Operator
+from experiments.rules.native import terrain_of
 from experiments.rules.rule import Rule
 from experiments.set_up_errors import SetUp
 from experiments.teleoperation import Simulation, Trial
@@ -19,8 +20,6 @@ try:
     anatomy.mesh_file("skull")
 except (OSError, anatomy.subprocess.CalledProcessError) as missing:
     pytest.skip(f"the CT skull is not prepared: {missing}", allow_module_level=True)
-
-from keepout_peers import Judge  # noqa: E402
 
 #: The arrays of a trace.
 ARRAYS = ("tip", "setpoint", "goal", "force", "power", "contact", "kerf")
@@ -77,7 +76,7 @@ def test_an_error_in_a_rule_ends_the_trial(monkeypatch: pytest.MonkeyPatch) -> N
         def step(self, tip, desired):
             raise RuntimeError("no such motion")
 
-    monkeypatch.setattr(modes, "make_rule", lambda *task: Broken())
+    monkeypatch.setattr(modes, "make_rule", lambda mode, task: Broken())
     with pytest.raises(RuntimeError, match="no such motion"):
         seconds_of(e3_path_tracing.planned("none", 1), 2.0).run()
 
@@ -110,7 +109,7 @@ def test_the_phantom_is_a_shell_of_two_millimetres_on_a_closed_block() -> None:
     assert found.watertight and not found.inside_out and found.self_intersections == 0
     assert path.length == pytest.approx(anatomy.PATH_LENGTH)
     assert np.ptp(path.points[:, 0]) == 0.0
-    distances = Judge(index.mesh.vertices, index.mesh.triangles).distances(path.points)
+    distances = terrain_of(index.mesh).judge().distances(path.points)
     assert distances == pytest.approx(np.full(len(path.points), anatomy.SHELL), abs=0.02)
 
 
@@ -162,7 +161,7 @@ def test_a_tool_that_is_stuck_does_not_come_to_the_end_of_the_path(monkeypatch: 
 
     slides = along()
     make_rule = modes.make_rule
-    monkeypatch.setattr(modes, "make_rule", lambda *task: Stops(make_rule(*task)))
+    monkeypatch.setattr(modes, "make_rule", lambda mode, task: Stops(make_rule(mode, task)))
     assert along() < 0.6 < 1.0 < slides
 
 
