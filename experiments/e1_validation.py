@@ -111,7 +111,7 @@ def _loops(unit: Unit, length: float, mesh: keepout.Mesh, judge: Any) -> Row:
 def _rule(mode: str, length: float, mesh: keepout.Mesh) -> tuple[Task, Any]:
     margin = 0.0 if mode == AS_PUBLISHED else MARGIN
     task = Task(mesh, margin=margin, radius=LARGE_RADIUS if mode == LARGE_SPHERE else length)
-    return task, make_rule("paper" if mode in (AS_PUBLISHED, LARGE_SPHERE) else mode, task)
+    return task, make_rule(_base(mode), task)
 
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
@@ -269,7 +269,7 @@ def _picture(of: dict[str, list[Row]]) -> Figure:
         aside = 1.05 ** (place - len(of) / 2)  # so that intervals do not cover each other
         lengths = [length for length in LENGTHS if _at(rows, length)]
         across = [aside * length for length in lengths]
-        look = {"color": figures.color(_of_look(mode)), "linestyle": _LINES.get(mode, "-"),
+        look = {"color": figures.color(_base(mode)), "linestyle": _LINES.get(mode, "-"),
                 "linewidth": 2.6 if mode == OURS else 1.2, "zorder": 3 if mode == OURS else 2}
         rates = [_rate_of(_at(rows, n)) for n in lengths]
         upper.plot(across, [100 * rate.value for rate in rates], marker="o", label=_label(mode), **look)
@@ -292,7 +292,8 @@ def _picture(of: dict[str, list[Row]]) -> Figure:
     return Figure("e1_by_step_length", "Loops entered and free motion lost, by step length", caption, figures.svg(fig))
 
 
-def _of_look(mode: str) -> str:
+def _base(mode: str) -> str:
+    """Returns the mode of a variant."""
     return "paper" if mode in (AS_PUBLISHED, LARGE_SPHERE) else mode
 
 
