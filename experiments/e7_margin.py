@@ -21,14 +21,13 @@ from functools import lru_cache
 
 import keepout
 import numpy as np
-from keepout_peers import Judge
+from keepout_peers import Judge, Terrain
 from matplotlib.axes import Axes
 from scipy import stats
 
 from . import anatomy, figures
 from .experiment import Array, Claim, Figure, Findings, Row, Scale, Table, Unit
 from .hypothesis_tests import Interval, share
-from .rules.native import terrain_of
 from .set_up_errors import fiducials_around
 
 NAME = "e7_margin"
@@ -90,7 +89,7 @@ def place() -> Place:
     ahead = path.points[middle + 1] - path.points[middle - 1]
     return Place(
         path.points - anatomy.SHELL * path.up, path.up, ahead / np.linalg.norm(ahead), index,
-        terrain_of(index.mesh).judge(), fiducials_around(path.points[middle], path.up[middle]))
+        Terrain(index.mesh.vertices, index.mesh.triangles).judge(), fiducials_around(path.points[middle], path.up[middle]))
 
 
 def _draw(tool: str, fle: float, draw: int, seed: int) -> list[Row]:

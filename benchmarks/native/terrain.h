@@ -27,8 +27,8 @@ class Terrain {
   Judge judge() const { return judge_; }
 
   /// Returns a place on the free side, at most `height` above a random triangle with a vertex of a
-  /// kind, and near that vertex. If there is no such vertex, any triangle counts. Throws Error if it
-  /// finds no place with that clearance, as between sheets that are too close. [mm]
+  /// kind, and near that vertex. If there is no such vertex, any triangle counts. Throws Error if
+  /// it finds no place with that clearance, as between sheets that are too close. [mm]
   Vec3 place(Kind kind, double clearance, double height, Random& random) const;
 
  private:
