@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """E1: does each rule keep a point out of each shape, at any step length? (section IV-A: out of all 11 shapes)
 
-A simulated hand tries to push the tip through the surface, in loops with the same starts and seeds for every mode.
+A simulated operator tries to push the tip through the surface, in loops with the same starts and seeds for every mode.
 Loops differ in the longest motion of a cycle, and have the same total displacement. Seven routes lead into corners,
 past rims and saddles, and through sheets (benchmarks/native/push.h). The judge, which shares no code with keepout,
 judges each step exactly. The best safe step, found by branch and bound, shows how much motion a rule lost. Only
@@ -66,31 +66,31 @@ def units(scale: Scale) -> list[Unit]:
 def run(unit: Unit) -> list[Row]:
     """Returns a row for each step length; no row for an open shape, and one with `refused` if the rule rejects it."""
     shape, mode = unit.settings["shape"], unit.settings["mode"]
-    index, judge = _surface(shape)
+    mesh, judge = _surface(shape)
     if not judge.closed:
         return []
     rows = []
     for length in LENGTHS:
         about: Row = {"shape": shape, "mode": mode, "step_mm": length}
         try:
-            rows.append(about | _loops(unit, length, index, judge))
+            rows.append(about | _loops(unit, length, mesh, judge))
         except ValueError as refusal:
             return [about | {"refused": str(refusal)}]
     return rows
 
 
 @lru_cache(maxsize=1)
-def _surface(shape: str) -> tuple[keepout.Index, Any]:
+def _surface(shape: str) -> tuple[keepout.Mesh, Any]:
     mesh = keepout.Mesh(*keepout_peers.named_mesh(shape))
-    return keepout.Index(mesh), terrain_of(mesh).judge()
+    return mesh, terrain_of(mesh).judge()
 
 
-def _loops(unit: Unit, length: float, index: keepout.Index, judge: Any) -> Row:
+def _loops(unit: Unit, length: float, mesh: keepout.Mesh, judge: Any) -> Row:
     """Returns the sums over all loops of a shape, a mode and a step length."""
     asked = unit.settings
-    terrain = terrain_of(index.mesh)
+    terrain = terrain_of(mesh)
     found = []
-    task, rule = _rule(asked["mode"], length, index)
+    task, rule = _rule(asked["mode"], length, mesh)
     for number in range(asked["loops"]):
         route = keepout_peers.ROUTES[number % len(keepout_peers.ROUTES)]
         key = [asked["seed"], number, round(1000 * length), *asked["shape"].encode()]
@@ -108,10 +108,10 @@ def _loops(unit: Unit, length: float, index: keepout.Index, judge: Any) -> Row:
     }
 
 
-def _rule(mode: str, length: float, index: keepout.Index) -> tuple[Task, Any]:
+def _rule(mode: str, length: float, mesh: keepout.Mesh) -> tuple[Task, Any]:
     margin = 0.0 if mode == AS_PUBLISHED else MARGIN
-    task = Task(index.mesh, margin=margin, radius=LARGE_RADIUS if mode == LARGE_SPHERE else length)
-    return task, make_rule("paper" if mode in (AS_PUBLISHED, LARGE_SPHERE) else mode, task, index)
+    task = Task(mesh, margin=margin, radius=LARGE_RADIUS if mode == LARGE_SPHERE else length)
+    return task, make_rule(_base(mode), task)
 
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
@@ -269,7 +269,7 @@ def _picture(of: dict[str, list[Row]]) -> Figure:
         aside = 1.05 ** (place - len(of) / 2)  # so that intervals do not cover each other
         lengths = [length for length in LENGTHS if _at(rows, length)]
         across = [aside * length for length in lengths]
-        look = {"color": figures.color(_of_look(mode)), "linestyle": _LINES.get(mode, "-"),
+        look = {"color": figures.color(_base(mode)), "linestyle": _LINES.get(mode, "-"),
                 "linewidth": 2.6 if mode == OURS else 1.2, "zorder": 3 if mode == OURS else 2}
         rates = [_rate_of(_at(rows, n)) for n in lengths]
         upper.plot(across, [100 * rate.value for rate in rates], marker="o", label=_label(mode), **look)
@@ -292,7 +292,8 @@ def _picture(of: dict[str, list[Row]]) -> Figure:
     return Figure("e1_by_step_length", "Loops entered and free motion lost, by step length", caption, figures.svg(fig))
 
 
-def _of_look(mode: str) -> str:
+def _base(mode: str) -> str:
+    """Returns the mode of a variant."""
     return "paper" if mode in (AS_PUBLISHED, LARGE_SPHERE) else mode
 
 

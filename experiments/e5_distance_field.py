@@ -46,7 +46,7 @@ USES = {"plane": "one plane", "cut": "cut at the margin", "sure": "inflated to a
 OURS = "certified"
 
 #: The rules without a grid, by name: the modes of the other experiments, and further vector-field inequalities.
-RULES: dict[str, Callable[[Task, keepout.Index], Any]] = {
+RULES: dict[str, Callable[[Task], Any]] = {
     **{mode: partial(make_rule, mode) for mode in (
         OURS, "paper", "closest_points_2007", "vector_field", "fcl_slide", "bullet_slide") if mode in BUILT_IN},
     "vector_field, gain 0.2": partial(native.closest_points, obstacles="nearest", gain=0.2),
@@ -138,7 +138,7 @@ def run(unit: Unit) -> list[Row]:
         return about | pushed(rule, truth, thin) | thick
 
     memory = {"memory": index.memory, "memory_whole": index.memory, "refused": 0.0, "measured_build_s": built}
-    rows = [row_of(mode, make(task, index), memory) for mode, make in RULES.items()]
+    rows = [row_of(mode, make(task), memory) for mode, make in RULES.items()]
     for cell in asked["cells"]:
         field = native.field_of(mesh, cell, MARGIN)
         begun = time.perf_counter()
@@ -149,7 +149,7 @@ def run(unit: Unit) -> list[Row]:
         for use in USES:
             margin = MARGIN + (field.error_bound if use == "sure" else 0.0)
             refused = {"refused": refused_space(field, truth, places, margin)}
-            rule = native.distance_field(task, index, cell=cell, use=use)
+            rule = native.distance_field(task, cell=cell, use=use)
             rows.append(row_of(f"field_{use}_{cell:g}", rule, {"use": use} | about | refused))
     return rows
 
@@ -264,7 +264,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
          "step [µs]", "error 99 % / max [mm]", "p"],
         [[
             row["anatomy"], USES[row["use"]] if "cell" in row else _label(row["mode"]),
-            f"{row['cell']:g}" if "cell" in row else "-", _told(row), f"{100 * row['refused']:.1f} %",
+            f"{row['cell']:g}" if "cell" in row else "-", _entered([row]), f"{100 * row['refused']:.1f} %",
             f"{row['memory'] / 1e6:.1f} / {row['memory_whole'] / 1e6:.0f}", f"{row['measured_build_s']:.2f}",
             f"{row['measured_step_us']:.1f}",
             f"{row['error_p99']:.3f} / {row['error_max']:.2f}" if "cell" in row else "-",
@@ -282,7 +282,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
         ["anatomy", "rule", "entered", "deepest [mm]", f"walls of {THIN:g} to {THICKEST:g} mm: entered",
          "free motion lost", "step [µs]"],
         [[
-            row["anatomy"], _label(row["mode"]), _told(row), f"{row['deepest']:.2f}",
+            row["anatomy"], _label(row["mode"]), _entered([row]), f"{row['deepest']:.2f}",
             f"{len(row['thicker_entered'])} of {row['thicker_loops']}",
             "-" if row["lost"] is None else f"{100 * row['lost']:.2f} %", f"{row['measured_step_us']:.1f}",
         ] for row in [*others, *fields]],
@@ -293,8 +293,8 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     sure, cut = ([row for row in finest if row["use"] == use] for use in ("sure", "cut"))
     headline = (
         f"A field of {min(CELLS):g} mm that is inflated to a proof refuses {_range(sure)} of the free space near the "
-        f"surface and enters {_total(sure)}. Cut at the margin without a proof, it refuses {_range(cut)} and enters "
-        f"{_total(cut)}. Certified refuses none and enters {_total(ours)}.")
+        f"surface and enters {_entered(sure)} loops. Cut at the margin without a proof, it refuses {_range(cut)} and "
+        f"enters {_entered(cut)} loops. Certified refuses none and enters {_entered(ours)} loops.")
     return Findings(headline, _claims(rows), [cost, beside], [_figure(rows)])
 
 
@@ -307,13 +307,8 @@ def _label(mode: str) -> str:
     return ", ".join([figures.label(mode), *variant])
 
 
-def _told(row: Row) -> str:
-    return f"{len(row['entered'])} of {row['loops']}"
-
-
-def _total(rows: list[Row]) -> str:
-    entered, loops = sum(len(row["entered"]) for row in rows), sum(row["loops"] for row in rows)
-    return f"{entered} of {loops} loops"
+def _entered(rows: list[Row]) -> str:
+    return f"{sum(len(row['entered']) for row in rows)} of {sum(row['loops'] for row in rows)}"
 
 
 def _range(rows: list[Row]) -> str:
@@ -339,8 +334,9 @@ def _claims(rows: list[Row]) -> list[Claim]:
         ranks = {label: (sum(len(row["entered"]) for row in own), sum(row["refused"] for row in own))
                  for label, own in ((_label(mode), field), (_label(OURS), ours))}
         claims.append(Claim(
-            f"loops at thin walls that enter, and free space refused: {_label(mode)}: {_total(field)}, {_range(field)}",
-            "-", "-", f"{_total(ours)}, {_range(ours)}",
+            f"loops at thin walls that enter, and free space refused: {_label(mode)}: {_entered(field)} loops, "
+            f"{_range(field)}",
+            "-", "-", f"{_entered(ours)} loops, {_range(ours)}",
             ", ".join(label for label, rank in ranks.items() if rank == min(ranks.values())),
             f"p = {p_values[mode]:.2g} for the loops (McNemar, a wall counts once; Holm over {len(p_values)} fields)"))
     return claims

@@ -8,11 +8,13 @@ by search; one of them is closed and well made. docs/activation.md explains each
 from __future__ import annotations
 
 import keepout
+import keepout_peers
 import numpy as np
 
 from . import figures
 from .experiment import Claim, Findings, Row, Scale, Table, Unit
 from .modes import FIXTURES, make_rule
+from .rules.native import terrain_of
 from .rules.rule import Task
 
 NAME = "e6_counterexamples"
@@ -28,14 +30,12 @@ def units(scale: Scale) -> list[Unit]:
 
 def run(unit: Unit) -> list[Row]:
     """Returns a row for each counterexample."""
-    import keepout_peers
-
     rows: list[Row] = []
     for name, vertices, triangles, tip, desired, radius in keepout_peers.counterexamples():
-        index = keepout.Index(keepout.Mesh(vertices, triangles))
-        judge = keepout_peers.Judge(vertices, triangles)
-        task = Task(index.mesh, margin=MARGIN, radius=radius)
-        rule = make_rule(unit.settings["mode"], task, index)
+        mesh = keepout.Mesh(vertices, triangles)
+        judge = terrain_of(mesh).judge()
+        task = Task(mesh, margin=MARGIN, radius=radius)
+        rule = make_rule(unit.settings["mode"], task)
         assert rule is not None, "a fixture has a rule"
         places = [np.array(tip)]
         for _ in range(CYCLES):

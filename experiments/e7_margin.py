@@ -21,13 +21,13 @@ from functools import lru_cache
 
 import keepout
 import numpy as np
-from keepout_peers import Judge
+from keepout_peers import Judge, Terrain
 from matplotlib.axes import Axes
 from scipy import stats
 
 from . import anatomy, figures
 from .experiment import Array, Claim, Figure, Findings, Row, Scale, Table, Unit
-from .hypothesis_tests import share
+from .hypothesis_tests import Interval, share
 from .set_up_errors import fiducials_around
 
 NAME = "e7_margin"
@@ -89,7 +89,7 @@ def place() -> Place:
     ahead = path.points[middle + 1] - path.points[middle - 1]
     return Place(
         path.points - anatomy.SHELL * path.up, path.up, ahead / np.linalg.norm(ahead), index,
-        Judge(index.mesh.vertices, index.mesh.triangles), fiducials_around(path.points[middle], path.up[middle]))
+        Terrain(index.mesh.vertices, index.mesh.triangles).judge(), fiducials_around(path.points[middle], path.up[middle]))
 
 
 def _draw(tool: str, fle: float, draw: int, seed: int) -> list[Row]:
@@ -250,11 +250,10 @@ def _press_with_instrument(
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
     tools = [tool for tool in (POINT, INSTRUMENT) if any(row["tool"] == tool for row in rows)]
-    kept = [_kept(rows, tool) for tool in tools]
+    kept, combinations = map(sum, zip(*(_kept(rows, tool) for tool in tools)))
     total = len({(row["tool"], row["fle"], row["draw"]) for row in rows})
-    held = sum(ok for ok, _ in kept)
     return Findings(
-        f"In {held} of {sum(count for _, count in kept)} combinations of tool, FLE and confidence, the share of "
+        f"In {kept} of {combinations} combinations of tool, FLE and confidence, the share of "
         f"{total:,} registrations that touch the dura is compatible with the promise.",
         [_claim(rows, tool) for tool in tools], [_table(rows, tool) for tool in tools], [_figure(rows)])
 
@@ -270,7 +269,7 @@ def _cells(rows: list[Row], tool: str) -> list[tuple[float, str, float, list[Row
 
 def _kept(rows: list[Row], tool: str) -> tuple[int, int]:
     """Returns in how many combinations with a confidence the share may be as promised, and of how many."""
-    promised = [(1.0 - confidence, share(sum(row["touches"] for row in of), len(of)))
+    promised = [(1.0 - confidence, _touching(of))
                 for _, covers, confidence, of in _cells(rows, tool) if covers in PROMISED]
     return sum(found.low <= most for most, found in promised), len(promised)
 
@@ -279,8 +278,12 @@ def _percent(value: float) -> str:
     return f"{100 * value:.3g} %"
 
 
+def _touching(of: list[Row]) -> Interval:
+    return share(sum(row["touches"] for row in of), len(of))
+
+
 def _found(of: list[Row]) -> str:
-    found = share(sum(row["touches"] for row in of), len(of))
+    found = _touching(of)
     return f"{_percent(found.value)} [{_percent(found.low)}, {_percent(found.high)}]"
 
 
@@ -350,7 +353,7 @@ def _figure(rows: list[Row]) -> Figure:
 def _bars(ax: Axes, places: Iterable[float], of: list[list[Row]], marker: str, label: str, color: str) -> None:
     """Draws the share of registrations that touch at each place, with its interval."""
     for place_, some in zip(places, of):
-        found = share(sum(row["touches"] for row in some), len(some))
+        found = _touching(some)
         ax.plot([place_, place_], [found.low, found.high], color=color, linewidth=0.8)
         ax.plot(place_, found.value, marker, color=color, label=label)
         label = "_"  # matplotlib shows no such label

@@ -23,20 +23,6 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
-def dot(a: Array, b: Array) -> float:
-    """Returns the scalar product of two vectors (3,), summed in the order that the C++ loop of trials uses."""
-    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
-
-
-def interpolated(samples: Array, place: float) -> tuple[float, float]:
-    """Returns the linear interpolation of samples (n, 2) at a place in units of rows, limited to the ends."""
-    place = min(max(place, 0.0), len(samples) - 1.0)
-    low = min(int(place), len(samples) - 2)
-    share = place - low
-    a, b = samples[low], samples[low + 1]
-    return float((1.0 - share) * a[0] + share * b[0]), float((1.0 - share) * a[1] + share * b[1])
-
-
 #: A row of an experiment's table: names and values, which are text, numbers, booleans, lists or None.
 Row = dict[str, Any]
 

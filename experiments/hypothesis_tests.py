@@ -3,7 +3,7 @@
 
 Trials of two modes are pairs: the trials with the same number share operator, tremor and registration. A sample has
 one number for each trial. Values at every millimeter of one cut are not independent; a test that treats them as
-independent gives p values that are too small. `student` is that test of Li et al. (2020); all others are for pairs.
+independent gives p values that are too small. That test of Li et al. (2020) is published_design.student_p().
 """
 from __future__ import annotations
 
@@ -19,28 +19,6 @@ from .experiment import Array
 CONFIDENCE = 0.95
 #: From this number of pairs on, the interval of an effect is a BCa bootstrap; below, it is exact for normal samples.
 MANY_PAIRS = 15
-
-
-@dataclass(frozen=True)
-class Summary:
-    """The summary of a sample: mean, standard deviation (of n - 1), and size."""
-
-    mean: float
-    sd: float
-    n: int
-
-    @staticmethod
-    def of(sample: ArrayLike) -> Summary:
-        values = np.asarray(sample, dtype=np.float64)
-        return Summary(float(values.mean()), float(values.std(ddof=1)), len(values))
-
-
-@dataclass(frozen=True)
-class MeanTest:
-    """A test of equal means: the statistic, and the two-sided p."""
-
-    t: float
-    p: float
 
 
 @dataclass(frozen=True)
@@ -61,15 +39,6 @@ class Interval:
 
 
 UNKNOWN = Interval(float("nan"), float("nan"), float("nan"))
-
-
-def student(a: Summary, b: Summary) -> MeanTest:
-    """Returns the pooled test: exact for independent normal samples with the same variance."""
-    if a.sd == b.sd == 0.0:  # without spread the means are equal or different for certain
-        same = a.mean == b.mean
-        return MeanTest(0.0 if same else float(np.copysign(np.inf, a.mean - b.mean)), float(same))
-    found = stats.ttest_ind_from_stats(a.mean, a.sd, a.n, b.mean, b.sd, b.n)
-    return MeanTest(float(found.statistic), float(found.pvalue))
 
 
 def signed_rank_p(differences: ArrayLike) -> float:
@@ -100,9 +69,9 @@ def mean_difference(differences: ArrayLike) -> Interval:
     values = np.asarray(differences, dtype=np.float64)
     if len(values) < 2:
         return Interval(float(values.mean()), UNKNOWN.low, UNKNOWN.high) if len(values) else UNKNOWN
-    of = Summary.of(values)
-    wide = float(stats.t.ppf(0.5 + CONFIDENCE / 2, of.n - 1)) * of.sd / np.sqrt(of.n)
-    return Interval(of.mean, of.mean - wide, of.mean + wide)
+    mean, sd, n = float(values.mean()), float(values.std(ddof=1)), len(values)
+    wide = float(stats.t.ppf(0.5 + CONFIDENCE / 2, n - 1)) * sd / np.sqrt(n)
+    return Interval(mean, mean - wide, mean + wide)
 
 
 def effect(differences: ArrayLike, seed: int, resamples: int = 5000) -> Interval:

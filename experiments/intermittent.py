@@ -12,7 +12,7 @@ force of the touch. With a fixture that it does not feel, it presses on until it
 While it cuts, the command is at most the tolerance ahead of the tip that it sees. The stiffness of the tip is 4 N/mm,
 so this limits the force to 2 N. Three surgeons pressed an ultrasonic blade with 1.91 N on average ("Ultrasonic tool to
 cut human bone", Proc. IMechE H, doi 10.1177/09544119251399865, 2025, abstract). A hand whose tip has not followed for
-STALLED decisions pulls on: a fixture may hold the tip. If the depth was right and two looks in a row then show an
+four decisions (ours) pulls on: a fixture may hold the tip. If the depth was right and two looks in a row then show an
 error, the depth is in doubt. The hand lifts the tool out of the kerf, looks, and enters again.
 
 Sources of the values. All were read as abstracts, except where stated.
@@ -51,18 +51,14 @@ lift: height of a tool that leaves the kerf; ours.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .experiment import interpolated
-
 if TYPE_CHECKING:
-    from .operator_model import Operator, Streams
-    from .trial import Course, Draws, Seen
+    from .operator_model import Streams
+    from .trial import Course, Draws
 
-STALLED = 4  # decisions; ours
 LOOKS = 256  # random numbers of this many decisions in each millimeter of the path; then they repeat
 
 
@@ -97,120 +93,3 @@ class Intermittent:
             "view": sight.standard_normal((millimeters + 1, 2)),
             "sight": sight.standard_normal((millimeters, LOOKS, 2)),
         }
-
-    def start(self, operator: Operator, course: Course, draws: Draws, fixture: bool) -> IntermittentHand:
-        """Returns a hand at the start of the path. With a fixture it presses until it feels it."""
-        return IntermittentHand(self, operator, course, draws, fixture)
-
-
-class IntermittentHand:
-    """See trial.Hand. Vectors are along, across and below the path [mm]."""
-
-    def __init__(self, hand: Intermittent, operator: Operator, course: Course, draws: Draws, fixture: bool) -> None:
-        self.along = 0.0
-        self._hand, self._course, self._draws, self._fixture = hand, course, draws, fixture
-        self._felt = operator.felt_force
-        self._reaction = max(1, round(operator.reaction / course.period))
-        self._refractory = max(1, round(hand.refractory / course.period))
-        self._movement = max(1, round(hand.movement / course.period))
-        self._next = -1  # the cycle of the next decision
-        self._looks = [0] * len(draws["motor"])  # decisions in each millimeter
-        self._done = [0.0, 0.0, 0.0]  # the sum of finished submovements
-        self._moves: list[tuple[int, list[float]]] = []  # the others: first cycle and length
-        self._end = [0.0, 0.0, 0.0]  # the sum of all submovements
-        self._aims: list[tuple[float, float, float]] = []  # in each cycle
-        self._seen: list[Seen] = []
-        self._turn_of_depth = True
-        self._at_depth = False  # a look showed the wanted depth, since the tool entered
-        self._misses = 0  # looks at the depth in a row that showed an error
-        self._lifted = False
-        self._stalled = 0  # decisions to go on, one after another, while the command was too far ahead
-
-    def aim(self, cycle: int, approach: int) -> tuple[float, float, float]:
-        """Returns the intended place: along, across and below the path [mm]."""
-        if self._next < 0:
-            self._next = approach + self._refractory
-        if cycle >= self._next:
-            self._decide(cycle)
-        out = list(self._done)
-        left = []
-        for start, length in self._moves:
-            part = (cycle - start) / self._movement
-            if part >= 1.0:
-                for i in range(3):
-                    self._done[i] += length[i]
-                    out[i] += length[i]
-            else:
-                left.append((start, length))
-                share = part * part * part * (10.0 + part * (6.0 * part - 15.0))  # of minimum jerk
-                for i in range(3):
-                    out[i] += length[i] * share
-        self._moves = left
-        self.along = out[0]
-        self._aims.append((out[0], out[1], out[2]))
-        return out[0], out[1], out[2]
-
-    def look(self, seen: Seen) -> None:
-        """Stores what can be seen and felt in this cycle."""
-        self._seen.append(seen)
-
-    def _decide(self, cycle: int) -> None:
-        """Makes one decision from what was seen a reaction ago, and starts its submovement."""
-        hand, tolerance, cutting = self._hand, self._hand.tolerance, self._course.bone is not None
-        then, aim = self._seen[cycle - self._reaction], self._aims[cycle - self._reaction]
-        pending = [self._end[i] - aim[i] for i in range(3)]  # sent, and not yet seen
-        place = min(max(self._end[0], 0.0), len(self._looks) - 1.0)
-        millimeter = int(place)
-        number = self._looks[millimeter] % LOOKS
-        self._looks[millimeter] += 1
-        sight, motor = self._draws["sight"][millimeter, number], self._draws["motor"][millimeter, number]
-        view = interpolated(self._draws["view"], place)
-        lasting, fresh = sqrt(hand.lasting), sqrt(1.0 - hand.lasting)
-        seen_across = then.across + hand.sight_across * (lasting * view[0] + fresh * float(sight[0]))
-        seen_depth = then.depth + hand.sight_in_depth * (lasting * view[1] + fresh * float(sight[1]))
-        across = seen_across + pending[1]
-        error = seen_depth + pending[2] - self._course.depth
-        # The command may go ahead of the tip by this much more.
-        room_along = tolerance - (self._end[0] - aim[0] - then.ahead) if cutting else inf
-        room_below = tolerance - (self._end[2] - seen_depth) if cutting else inf
-
-        feels = self._fixture and then.push > self._felt
-        length = [0.0, 0.0, 0.0]
-        wait = self._refractory
-        if self._lifted:
-            length[1] = -across if abs(across) > tolerance else 0.0
-            length[2] = tolerance - self._end[2]  # down to the surface; the next decisions press on
-            self._lifted = False
-            wait = self._movement + self._reaction
-        elif self._turn_of_depth and not feels:
-            if self._fixture:
-                length[2] = max(0.0, min(tolerance, room_below))
-            elif abs(error) <= tolerance:
-                self._at_depth, self._misses = True, 0
-            else:
-                self._misses += 1
-                if cutting and self._at_depth and self._misses >= 2:
-                    length[2] = -(self._end[2] + hand.lift)
-                    self._lifted, self._at_depth, self._misses = True, False, 0
-                    wait = self._movement + self._reaction
-                else:
-                    length[2] = min(-error, max(0.0, room_below))
-        else:
-            length[1] = -across if abs(across) > tolerance else 0.0
-            goes_on = feels or (not self._fixture and self._at_depth and self._misses == 0)
-            if goes_on and self._end[0] < self._course.path.length:
-                pace = self._course.speed * hand.refractory
-                self._stalled = self._stalled + 1 if room_along <= 0.0 else 0
-                length[0] = pace if self._stalled >= STALLED else max(0.0, min(pace, room_along))
-            if feels:
-                push = then.push + self._course.force_per_mm * pending[2]
-                length[2] = min(max((hand.touch - push) / self._course.force_per_mm, -tolerance), tolerance)
-        self._turn_of_depth = not self._turn_of_depth
-        self._next = cycle + wait
-        size = sqrt(length[0] * length[0] + length[1] * length[1] + length[2] * length[2])
-        if size > 0.0:
-            for i in range(3):
-                error = hand.noise * float(motor[i]) + hand.drift * float(self._draws["heading"][i])
-                length[i] += size * error
-                self._end[i] += length[i]
-            self._moves.append((cycle, length))

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import keepout
 import keepout_peers
 
 from .rules.rule import Rule, Task
@@ -41,9 +40,9 @@ class Source:
         """False if the rule needs a library that was not found when keepout_peers was built."""
         return hasattr(keepout_peers, self.options.get("library", "keepout_rule"))
 
-    def make(self, task: Task, index: keepout.Index) -> Rule:
+    def make(self, task: Task) -> Rule:
         """Returns the rule for one trial."""
-        rule: Rule = getattr(self._imported(), self.name)(task, index, **self.options)
+        rule: Rule = getattr(self._imported(), self.name)(task, **self.options)
         return rule
 
     def _imported(self) -> Any:
@@ -86,7 +85,7 @@ def source(mode: str) -> Source | None:
     return None if mode == NO_FIXTURE else _rules[mode]
 
 
-def make_rule(mode: str, task: Task, index: keepout.Index) -> Rule | None:
+def make_rule(mode: str, task: Task) -> Rule | None:
     """Returns the rule of a mode for one trial; None without a fixture. Raises KeyError for an unknown mode."""
     found = source(mode)
-    return None if found is None else found.make(task, index)
+    return None if found is None else found.make(task)

@@ -21,11 +21,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import signal
 
-from .experiment import Array, interpolated
+from .experiment import Array
 
 if TYPE_CHECKING:
-    from .operator_model import Operator, Streams
-    from .trial import Course, Draws, Seen
+    from .operator_model import Streams
+    from .trial import Course, Draws
 
 SAMPLES = 50.0  # of the errors, in a second at the speed of the course
 
@@ -52,41 +52,6 @@ class OpenLoop:
         errors += hand.standard_normal(2) * [self.bias_across, self.bias_in_depth]
         errors[:, 1] += adjustments(hand, places, 1 / SAMPLES, self.adjusting)
         return {"errors": errors, "samples": np.array(SAMPLES)}
-
-    def start(self, operator: Operator, course: Course, draws: Draws, fixture: bool) -> OpenLoopHand:
-        """Returns a hand at the start of the path. Without a fixture it does not lean on one."""
-        return OpenLoopHand(self, operator, course, draws, fixture)
-
-
-class OpenLoopHand:
-    """See trial.Hand."""
-
-    def __init__(self, hand: OpenLoop, operator: Operator, course: Course, draws: Draws, fixture: bool) -> None:
-        self.along = 0.0
-        self._hand = hand
-        self._course = course
-        self._felt = operator.felt_force
-        self._reaction = max(1, round(operator.reaction / course.period))
-        self._errors = draws["errors"]
-        self._spacing = course.speed / SAMPLES
-        self._lean = hand.leaning if fixture else 0.0
-        self._factors: list[float] = []  # on the speed, from what the eye saw in each cycle
-
-    def aim(self, cycle: int, approach: int) -> tuple[float, float, float]:
-        """Returns the intended place: along, across and below the path [mm]."""
-        if cycle > approach:  # the eye needs the reaction until it has an effect
-            seen = self._factors[cycle - 1 - self._reaction] if cycle > self._reaction else 1.0
-            self.along += self._course.speed * self._course.period * seen
-        across, below = interpolated(self._errors, self.along / self._spacing)
-        self._below = self._course.depth + below
-        return self.along, across, self._below + self._lean
-
-    def look(self, seen: Seen) -> None:
-        """Looks at the tip. A hand that feels a fixture assumes that it has reached the depth."""
-        aside_squared = seen.ahead * seen.ahead + seen.across * seen.across
-        hanging = 0.0 if seen.push > self._felt else max(0.0, self._below - seen.depth - seen.above)
-        tolerance = self._hand.tolerance
-        self._factors.append(1.0 / (1.0 + (aside_squared + hanging * hanging) / (tolerance * tolerance)))
 
 
 def slow_error(random: np.random.Generator, cycles: int, period: float, corner: float) -> Array:

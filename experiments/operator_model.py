@@ -75,24 +75,3 @@ def tremor(random: np.random.Generator, cycles: int, period: float, rms: float) 
     if size > 0.0:
         noise *= rms / size
     return noise
-
-
-class Arm:
-    """The mass, the spring and the damper. Positions and velocities are those of the handle [mm, mm/s]."""
-
-    def __init__(self, operator: Operator, place: Array) -> None:
-        self.place = place.copy()
-        self.speed = np.zeros(3)
-        self._operator = operator
-
-    def move(self, intended: Array, intended_speed: Array, force: Array, period: float) -> Array:
-        """Moves the handle for one cycle of `period` [s] under a `force` [N], and returns its position.
-
-        Semi-implicit Euler: stable, because the damper acts on the velocity at the end of the cycle.
-        """
-        arm = self._operator
-        mass = arm.mass / 1000.0  # in N s^2/mm, because lengths are in mm
-        pull = arm.stiffness * (intended - self.place) + arm.damping * intended_speed + force
-        self.speed = (self.speed + pull * (period / mass)) / (1.0 + arm.damping * period / mass)
-        self.place = self.place + self.speed * period
-        return self.place

@@ -29,15 +29,11 @@ def changed(of: T, values: Values) -> T:
     """Returns a dataclass with other values of some of its numbers. Raises KeyError for a name that it has not."""
     if unknown := values.keys() - numbers(of):
         raise KeyError(f"no number is named {', '.join(sorted(unknown))}")
-    return _changed(of, values)
-
-
-def _changed(of: T, values: Values) -> T:
     changes: dict[str, object] = {}
     for field in fields(of):
         value, name = getattr(of, field.name), f"{type(of).__name__}.{field.name}"
         if is_dataclass(value):
-            changes[field.name] = _changed(value, values)
+            changes[field.name] = changed(value, {n: values[n] for n in values.keys() & numbers(value)})
         elif name in values:
             changes[field.name] = values[name]
     return replace(of, **changes)

@@ -8,7 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .hypothesis_tests import Summary
+
+@dataclass(frozen=True)
+class Summary:
+    """The summary of a sample, as printed: mean, standard deviation, and size."""
+
+    mean: float
+    sd: float
+    n: int
 
 
 @dataclass(frozen=True)

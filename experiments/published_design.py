@@ -17,6 +17,7 @@ from scipy import stats
 from .comparison import Measure
 from .experiment import Array, Row
 from .hypothesis_tests import CONFIDENCE, UNKNOWN, Interval, jackknife_error
+from .published import Summary
 
 #: Designs of a predictive distribution. They share trials, so the number of trials limits what they show.
 DESIGNS = 1000
@@ -61,8 +62,8 @@ def pooled(of_trials: list[Array], numbers: Numbers) -> Pooled:
     return Pooled(n, mean, np.sqrt(variance))
 
 
-def student_p(a: Pooled, b: Pooled) -> Array:
-    """Returns the p of the pooled two-sided Student test of each design, (designs,)."""
+def student_p(a: Pooled | Summary, b: Pooled | Summary) -> Array:
+    """Returns the p of the pooled two-sided Student test of each design, (designs,); () for printed summaries."""
     with np.errstate(invalid="ignore", divide="ignore"):
         p: Array = stats.ttest_ind_from_stats(a.mean, a.sd, a.n, b.mean, b.sd, b.n).pvalue
     return np.where(np.isnan(p), 1.0, p)  # without spread and difference

@@ -37,7 +37,6 @@ from .experiment import Row, Unit
 #: Members of a row with measured times begin with this.
 TIMED = "measured_"
 
-
 #: Significant digits of numbers in tables. Rows that are kept have all.
 DIGITS = 6
 
@@ -50,9 +49,9 @@ HERE = Path(__file__).parent
 def source_digest(experiment: str, mode: str | None = None, *, libraries: bool = True) -> str:
     """Returns a digest of the code behind the rows of an experiment: its modules, and the rule of a mode.
 
-    The code counts, not its comments and docstrings. The C++ of benchmarks/native counts as a whole. A mode that modes.py does not have depends on the rules of the
-    references. With mode None, a unit depends on all rules of this package if the experiment uses any. libraries: True
-    adds keepout as it is built.
+    The code counts, not its comments and docstrings. The C++ of benchmarks/native counts as a whole. A mode that modes.py
+    does not have depends on the rules of the references. With mode None, a unit depends on all rules of this package if
+    the experiment uses any. libraries: True adds keepout as it is built.
     """
     digest = hashlib.sha256(keepout.__version__.encode())
     if libraries:

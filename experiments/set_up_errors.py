@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import keepout
 import numpy as np
 
-from .experiment import Array, dot
+from .experiment import Array
 
 
 @dataclass(frozen=True)
@@ -41,14 +41,6 @@ class RigidMotion:
     def __call__(self, points: Array) -> Array:
         moved: Array = points @ self.rotation.T + self.translation
         return moved
-
-    def turned(self, vector: Array) -> Array:
-        """Returns rotation times a vector (3,), in the order of operations that the C++ loop of trials uses."""
-        return np.array([dot(row, vector) for row in self.rotation])
-
-    def moved(self, point: Array) -> Array:
-        """Returns the image of one point (3,), like turned()."""
-        return self.turned(point) + self.translation
 
     def inverse(self) -> RigidMotion:
         """Returns the motion back."""

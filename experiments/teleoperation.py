@@ -2,9 +2,7 @@
 """The common part of the experiments of section V: a trial of a mode, and its measures."""
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import Any
 
 import keepout
@@ -18,6 +16,7 @@ from .bone import BoneProperties
 from .experiment import Array, Row, Unit
 from .operator_model import Operator, streams
 from .parameters import Values
+from .rules.native import terrain_of
 from .rules.rule import Corridor, Task
 from .set_up_errors import SetUp, fiducials_around, registered_from_true
 from .smoothness import spectral_arc_length, sparc
@@ -74,8 +73,8 @@ class Trial:
     setup: SetUp = field(default_factory=SetUp)
     corridor: float = CORRIDOR
 
-    def run(self, loop: Callable[..., Trace] = run_trial) -> Trace:
-        """Returns the course of the trial. `loop`: run_trial or run_in_python."""
+    def run(self) -> Trace:
+        """Returns the course of the trial."""
         random = streams(*self.seeds)
         path = self.course.path
         middle = len(path.points) // 2
@@ -84,48 +83,39 @@ class Trial:
         a, b, c = path.points[0].tolist()
         x, y, z = path.across.tolist()
         task = Task(self.index.mesh, MARGIN, self.course.radius, Corridor((a, b, c), (x, y, z), self.corridor))
-        rule = modes.make_rule(self.mode, task, self.index)
+        rule = modes.make_rule(self.mode, task)
         draws = draw(self.course, self.operator, random)
-        return loop(self.course, rule, self.operator, self.setup, registered, draws)
+        return run_trial(self.course, rule, self.operator, self.setup, registered, draws)
 
     def measures(self, trace: Trace, *, judged: bool = True) -> Row:
-        """Returns the measures of a trace, see measures(); with `judged` also those of the judge."""
-        return measures(trace, self.course, _judge(self.index) if judged else None)
+        """Returns the measures of a trace, after the approach. A measure without a meaning is null, such as the
+        duration of an unfinished trial.
 
-
-@lru_cache(maxsize=1)
-def _judge(index: keepout.Index) -> Judge:
-    return Judge(index.mesh.vertices, index.mesh.triangles)
-
-
-def measures(trace: Trace, course: Course, judge: Judge | None) -> Row:
-    """Returns the measures of a trial, after the approach. A measure without a meaning is null, such as the duration
-    of an unfinished trial.
-
-    `irregularity` is the arc length beyond 1, for each root of a second: by the law of smoothness.arc_length_bounds()
-    it hardly depends on the duration. `energy_mj` is the work of the fixture's force on the handle; below 0 the fixture
-    took energy. The judge adds what happened to the anatomy: see _judged().
-    """
-    start, rate = trace.begun, 1.0 / course.period
-    speed = np.linalg.norm(np.diff(trace.tip[start:], axis=0), axis=1) * rate
-    held = trace.force[start:] > 0.0
-    row: Row = {
-        "finished": trace.finished,
-        "duration_s": len(trace.tip) * course.period if trace.finished else None,
-        "spectral_arc_length": None,
-        "sparc": None,
-        "irregularity": None,
-        "force_n": float(trace.force[start:].mean()),
-        "greatest_force_n": float(trace.force[start:].max()),
-        "contact_n": float(trace.contact[start:].mean()),
-        "energy_mj": float(trace.power.sum() * course.period),
-        "chatter_um": chatter(trace.setpoint[start:], held, rate) if held.any() else None,
-    }
-    if trace.finished:
-        length, lasted = spectral_arc_length(speed, rate), len(speed) / rate
-        row["spectral_arc_length"], row["sparc"] = length, sparc(speed, rate)
-        row["irregularity"] = (-length - 1.0) / lasted**0.5
-    return row | (_judged(trace, judge) if judge else {})
+        `irregularity` is the arc length beyond 1, for each root of a second: by the law of
+        smoothness.arc_length_bounds() it hardly depends on the duration. `energy_mj` is the work of the fixture's force
+        on the handle; below 0 the fixture took energy. With `judged`, the judge adds what happened to the anatomy: see
+        _judged().
+        """
+        start, rate = trace.begun, 1.0 / self.course.period
+        speed = np.linalg.norm(np.diff(trace.tip[start:], axis=0), axis=1) * rate
+        held = trace.force[start:] > 0.0
+        row: Row = {
+            "finished": trace.finished,
+            "duration_s": len(trace.tip) * self.course.period if trace.finished else None,
+            "spectral_arc_length": None,
+            "sparc": None,
+            "irregularity": None,
+            "force_n": float(trace.force[start:].mean()),
+            "greatest_force_n": float(trace.force[start:].max()),
+            "contact_n": float(trace.contact[start:].mean()),
+            "energy_mj": float(trace.power.sum() * self.course.period),
+            "chatter_um": chatter(trace.setpoint[start:], held, rate) if held.any() else None,
+        }
+        if trace.finished:
+            length, lasted = spectral_arc_length(speed, rate), len(speed) / rate
+            row["spectral_arc_length"], row["sparc"] = length, sparc(speed, rate)
+            row["irregularity"] = (-length - 1.0) / lasted**0.5
+        return row | (_judged(trace, terrain_of(self.index.mesh).judge()) if judged else {})
 
 
 def _judged(trace: Trace, judge: Judge) -> Row:

@@ -8,22 +8,18 @@
 If the fixture stops the tip, a force pulls the handle towards the tip. It is proportional to the
 distance between the two (section V-A of Li et al., 2020).
 
-run_trial() is the loop in C++ (benchmarks/native/trial). run_in_python() is the same loop, to read. A test compares
-them: both have the same operations in the same order, and bitwise identical results. All random numbers are
-drawn beforehand, by draw().
+The loop is C++: benchmarks/native/trial. A loop in Python (tests/experiments/trial_in_python.py) has the same operations
+in the same order. A test compares both: the results are bitwise identical. draw() draws all random numbers beforehand.
 """
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, sqrt
-from typing import NamedTuple, Protocol
 
 import keepout_peers
-import numpy as np
 
-from .bone import Bone, BoneProperties
-from .experiment import Array, dot
-from .operator_model import Arm, Operator, Streams, tremor
+from .bone import BoneProperties
+from .experiment import Array
+from .operator_model import Operator, Streams, tremor
 from .planned_path import PlannedPath
 from .rules.rule import Rule
 from .set_up_errors import RigidMotion, SetUp
@@ -55,30 +51,6 @@ class Course:
     def cycles(self) -> int:
         """The greatest number of cycles."""
         return int(self.time_limit / self.period)
-
-
-class Seen(NamedTuple):
-    """The sight and the touch of a cycle. Lengths are relative to the intended place along the path [mm]."""
-
-    ahead: float  # of the intended place, along the heading of the path
-    across: float
-    depth: float  # below the path
-    above: float  # height of the intended place during the approach
-    push: float  # force of the fixture away from the bone [N]
-
-
-class Hand(Protocol):
-    """Decides where the tip should be. `along` is the intended place along the path [mm]."""
-
-    along: float
-
-    def aim(self, cycle: int, approach: int) -> tuple[float, float, float]:
-        """Returns the intended place: along, across and below the path [mm]. Called once in each cycle."""
-        ...
-
-    def look(self, seen: Seen) -> None:
-        """Looks at the tip at the end of the cycle."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -113,84 +85,3 @@ def run_trial(
     """
     made = keepout_peers.run_trial(course, rule, operator, setup, registered, registered.inverse(), draws)
     return Trace(**made, registered=registered)
-
-
-def run_in_python(
-    course: Course, rule: Rule | None, operator: Operator, setup: SetUp, registered: RigidMotion, draws: Draws
-) -> Trace:
-    """Like run_trial(), in Python."""
-    path, period, most = course.path, course.period, course.cycles
-    scale, shake = operator.motion_scale, draws["tremor"]
-    hand: Hand = operator.hand.start(operator, course, draws, rule is not None)
-    true_frame = registered.inverse()
-    longest = min(course.radius, course.top_speed * period)
-    delay = round(setup.latency / period)
-    force_delay = max(1, delay)  # the force of a cycle acts on the hand in the next one at the earliest
-    follow = 1.0 if setup.lag == 0.0 else 1.0 - exp(-period / setup.lag)
-    bone = Bone(path, course.bone, setup.tip_stiffness) if course.bone else None
-    heading = path.heading / sqrt(dot(path.heading, path.heading))
-
-    start = path.place(0.0, 0.0, -START_HEIGHT)
-    arm = Arm(operator, start / scale)
-    intended = start / scale
-    setpoint = robot = registered.moved(start)
-    goals = np.tile(setpoint, (most, 1))
-    tips, setpoints = np.empty((most, 3)), np.empty((most, 3))
-    pulls, contacts, powers = np.zeros((most, 3)), np.zeros(most), np.zeros(most)
-    approach = int(APPROACH / period)
-    cycle, none, finished = 0, np.zeros(3), False
-
-    for cycle in range(most):
-        # The operator: the intended position.
-        along, across, below = hand.aim(cycle, approach)
-        above = max(0.0, 1.0 - cycle / approach) * START_HEIGHT
-        place, up = path.at(along)
-        meant = (place + across * path.across - (below - above) * up) / scale
-        pull = pulls[cycle - force_delay] if cycle >= force_delay else none
-        handle = arm.move(meant, (meant - intended) / period, pull, period)
-        intended = meant
-
-        # The robot: goal, fixture, setpoint, and the new position of the tip.
-        goals[cycle] = registered.moved(scale * handle + shake[cycle])
-        goal = goals[cycle - delay] if cycle >= delay else goals[0]
-        desired = goal - setpoint
-        length = sqrt(dot(desired, desired))
-        if length > longest:
-            desired = desired * (longest / length)
-        if rule is None:
-            setpoint = setpoint + desired
-        else:
-            setpoint = setpoint + rule.step(setpoint, desired)
-            pulled = course.force_per_mm * (setpoint - goal)
-            size = sqrt(dot(pulled, pulled))
-            if size > course.greatest_force:
-                pulled = pulled * (course.greatest_force / size)
-            pulls[cycle] = true_frame.turned(pulled)
-        powers[cycle] = dot(pull, arm.speed)
-        robot = robot + follow * (setpoint - robot)
-        tip = true_frame.moved(robot)
-        if bone:
-            tip, contacts[cycle] = bone.press(tip, period)
-        tips[cycle], setpoints[cycle] = tip, setpoint
-
-        # The operator sees the tip from above, and feels the fixture.
-        offset = tip - place
-        hand.look(Seen(dot(offset, heading), dot(offset, path.across), -dot(offset, up), above, dot(pull, up)))
-        # At the end the hand waits for a tip that lags behind.
-        if hand.along >= path.length and path.coordinates(tip)[0] >= path.length - NEAR_THE_END:
-            finished = True
-            break
-
-    ran = cycle + 1
-    return Trace(
-        tip=tips[:ran],
-        setpoint=setpoints[:ran],
-        goal=goals[np.maximum(np.arange(ran) - delay, 0)],
-        force=np.sqrt(pulls[:ran, 0] ** 2 + pulls[:ran, 1] ** 2 + pulls[:ran, 2] ** 2),
-        power=powers[:ran],
-        contact=contacts[:ran],
-        kerf=bone.cut if bone else np.zeros((0, 0)),
-        begun=min(approach, ran - 1),
-        finished=finished,
-        registered=registered,
-    )

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <memory>
 #include <string>
 
 #include "bindings.h"
-#include "keepout/error.h"
 #include "push.h"
 #include "python_rule.h"
 
@@ -13,18 +11,6 @@ namespace {
 
 namespace py = pybind11;
 using py::literals::operator""_a;
-
-Route route_of(const std::string& name) {
-  const auto found = std::find(route_names.begin(), route_names.end(), name);
-  if (found == route_names.end()) throw Error("unknown route '" + name + "'");
-  return static_cast<Route>(found - route_names.begin());
-}
-
-Terrain::Kind kind_of(Route route) {
-  return route == Route::rim      ? Terrain::Kind::rim
-         : route == Route::saddle ? Terrain::Kind::saddle
-                                  : Terrain::Kind::plain;
-}
 
 py::dict rows_of(const Push& push) {
   return py::dict("steps"_a = push.steps, "entered"_a = push.entered, "depth"_a = push.depth,
@@ -47,7 +33,8 @@ PointPusher(terrain, route, longest, seed): one of ROUTES; `longest` motion of a
 benchmarks/native/push.h describes the routes.)")
       .def(py::init([](const Terrain& terrain, const std::string& route, double longest,
                        std::uint64_t seed) {
-             return std::make_unique<PointPusher>(terrain, route_of(route), longest, Random(seed));
+             return std::make_unique<PointPusher>(terrain, named<Route>(route_names, route),
+                                                  longest, Random(seed));
            }),
            "terrain"_a, "route"_a, "longest"_a, "seed"_a, py::keep_alive<1, 2>());
   py::class_<SteadyPusher, Pusher>(module, "SteadyPusher",
@@ -60,7 +47,7 @@ benchmarks/native/push.h describes the routes.)")
       [](const Terrain& terrain, const std::string& route, double clearance, double height,
          std::uint64_t seed) {
         Random random(seed);
-        return terrain.place(kind_of(route_of(route)), clearance, height, random);
+        return terrain.place(kind_of(named<Route>(route_names, route)), clearance, height, random);
       },
       "terrain"_a, "route"_a, "clearance"_a, "height"_a, "seed"_a, Unlocked(),
       "Returns a place on the free side for the start of a route, at most `height` mm above the\n"

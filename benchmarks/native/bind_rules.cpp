@@ -19,12 +19,15 @@ using py::literals::operator""_a;
 void bind_tasks(py::module_& module) {
   py::class_<Terrain, std::shared_ptr<Terrain>>(module, "Terrain",
                                                 R"(A mesh with its index, for rules
-and hands of C++.
+and pushers of C++.
 
-Terrain(vertices, triangles): (n, 3) and (m, 3), shared by all rules, hands and trials on a mesh.)")
+Terrain(vertices, triangles): (n, 3) and (m, 3), shared by all rules, pushers and trials on a mesh.)")
       .def(py::init([](const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles) {
-             return std::make_shared<Terrain>(
-                 std::make_shared<const Mesh>(mesh_of(vertices, triangles)));
+             Surface surface;
+             for (const auto& v : vertices.rowwise()) surface.vertices.emplace_back(v);
+             for (const auto& t : triangles.rowwise())
+               surface.triangles.push_back({t[0], t[1], t[2]});
+             return std::make_shared<Terrain>(std::make_shared<const Mesh>(std::move(surface)));
            }),
            "vertices"_a, "triangles"_a, Unlocked())
       .def("judge", &Terrain::judge, Unlocked(), "Returns a judge of the mesh, for one thread.");
@@ -112,15 +115,6 @@ void bind_sweeps(py::module_& module) {
 #ifdef KEEPOUT_HAS_BULLET
   add("convex_sweep", &convex_sweep, "Returns Bullet's sweep of a ball past a mesh.");
 #endif
-}
-
-/// Returns the enumerator with a name.
-template <class Enum, std::size_t n>
-Enum named(const std::array<std::string_view, n>& names, const std::string& name) {
-  for (std::size_t i = 0; i < n; ++i) {
-    if (names[i] == name) return static_cast<Enum>(i);
-  }
-  throw Error("unknown name '" + name + "'");
 }
 
 }  // namespace

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binds the loop of experiments/trial.py in C++.
-#include <pybind11/eigen.h>
 #include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <memory>

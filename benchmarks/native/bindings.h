@@ -5,8 +5,11 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
-#include <utility>
+#include <string>
+#include <string_view>
 
 #include "judge.h"
 
@@ -17,18 +20,18 @@ using CornerRows = Eigen::Matrix<std::uint32_t, Eigen::Dynamic, 3, Eigen::RowMaj
 /// Releases Python's lock during a call.
 using Unlocked = pybind11::call_guard<pybind11::gil_scoped_release>;
 
-/// Returns the mesh of two arrays.
-inline Mesh mesh_of(const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles) {
-  Surface surface;
-  for (const auto& v : vertices.rowwise()) surface.vertices.emplace_back(v);
-  for (const auto& t : triangles.rowwise()) surface.triangles.push_back({t[0], t[1], t[2]});
-  return Mesh(std::move(surface));
+/// Returns the enumerator with a name. Throws Error for an unknown name.
+template <class Enum, std::size_t n>
+Enum named(const std::array<std::string_view, n>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw Error("unknown name '" + name + "'");
+  return static_cast<Enum>(found - names.begin());
 }
 
 /// Adds the rules of C++, and the fields and libraries that they use.
 void bind_rules(pybind11::module_& module);
 
-/// Adds the simulated hands, and the loop that pushes a tip.
+/// Adds the pushers, and the loop that pushes a tip.
 void bind_pushes(pybind11::module_& module);
 
 /// Adds the loop of a trial.

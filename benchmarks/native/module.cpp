@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The module keepout_peers: judge, rules, loops and meshes of the experiments.
-#include <pybind11/eigen.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
-
-#include <limits>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
-#include "judge.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/real_mesh.h"
@@ -23,25 +16,17 @@ namespace {
 
 namespace py = pybind11;
 using py::literals::operator""_a;
+
 void bind_judge(py::module_& module) {
   py::class_<Judge>(module, "Judge", R"(Judges the motions of a tip beside a mesh with exact
-arithmetic. Shares no code with keepout.
+arithmetic. Shares no code with keepout. Terrain.judge() makes one.
 
-Judge(vertices, triangles): (n, 3) and (m, 3). Use one for each thread. It is fastest if each motion
-is near the last. Lengths are in the unit of the mesh.)")
-      .def(py::init([](const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles) {
-             return Judge(std::make_shared<const Mesh>(mesh_of(vertices, triangles)));
-           }),
-           "vertices"_a, "triangles"_a, Unlocked())
+Use one for each thread. It is fastest if each motion is near the last. Lengths are in the unit of
+the mesh.)")
       .def_property_readonly("closed", &Judge::closed, "True if the mesh has an inside.")
       .def("distances", &Judge::distances, "points"_a, Unlocked(),
            "Returns the distances of (n, 3) points from the mesh: (n,), below 0 inside a closed\n"
            "mesh.")
-      .def("least_distances", &Judge::least_distances, "starts"_a, "ends"_a,
-           "reach"_a = std::numeric_limits<double>::infinity(), Unlocked(),
-           "Returns the least distances of n straight motions from the mesh: (n,), 0 if and\n"
-           "only if a motion touches it, infinite if it is more than `reach`. A smaller reach\n"
-           "is faster.")
       .def("crossings", &Judge::crossings, "starts"_a, "ends"_a, Unlocked(),
            "Returns which of n straight motions touch the mesh: (n,) of bool, exact.")
       .def("best_step", &Judge::best_step, "tip"_a, "desired"_a, "margin"_a, Unlocked(),

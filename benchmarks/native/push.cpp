@@ -89,7 +89,7 @@ void PointPusher::look(const Vec3& tip) {
   } else if (route_ == Route::through) {
     const auto vertex = static_cast<VertexId>(random_.below(terrain_->mesh().vertex_count()));
     goal_ = terrain_->mesh().vertex(vertex);
-  } else if (route_ == Route::rim || route_ == Route::saddle) {
+  } else if (kind_of(route_) != Terrain::Kind::plain) {
     goal_ = terrain_->mesh().vertex(choose_vertex(tip, distance));
     goal_ += longest_ * random_.uniform() * random_.direction();
   }
@@ -97,7 +97,7 @@ void PointPusher::look(const Vec3& tip) {
 
 /// Returns a random rim or saddle near the tip; without one, a corner of the nearest triangle.
 VertexId PointPusher::choose_vertex(const Vec3& tip, double distance) {
-  const Terrain::Kind kind = route_ == Route::rim ? Terrain::Kind::rim : Terrain::Kind::saddle;
+  const Terrain::Kind kind = kind_of(route_);
   VertexId chosen = 0;
   std::size_t seen = 0;
   double nearest = std::numeric_limits<double>::infinity();

@@ -35,6 +35,13 @@ enum class Route {
 inline constexpr std::array<std::string_view, 7> route_names{"push",    "slide", "wedge", "press",
                                                              "through", "rim",   "saddle"};
 
+/// Returns the kind of the vertices that a route leads to.
+inline Terrain::Kind kind_of(Route route) {
+  return route == Route::rim      ? Terrain::Kind::rim
+         : route == Route::saddle ? Terrain::Kind::saddle
+                                  : Terrain::Kind::plain;
+}
+
 /// An operator that sees the tip and the surface, and moves at most `longest` [mm] in a cycle. It
 /// decides again after 1 to 10 mm of commanded motion, and on the routes slide and wedge looks
 /// again after 0.5 mm. The same random numbers and tips give the same motions.

@@ -56,16 +56,10 @@ Terrain::Terrain(const std::shared_ptr<const Mesh>& mesh)
   }
 }
 
-const std::vector<TriangleId>& Terrain::triangles_at(Kind kind) const noexcept {
-  const std::vector<TriangleId>& chosen = kind == Kind::rim      ? at_rims_
-                                          : kind == Kind::saddle ? at_saddles_
-                                                                 : all_;
-  return chosen.empty() ? all_ : chosen;
-}
-
 Vec3 Terrain::place(Kind kind, double clearance, double height, Random& random) const {
   constexpr int attempts = 400;
-  const std::vector<TriangleId>& triangles = triangles_at(kind);
+  const std::vector<TriangleId>& chosen = kind == Kind::rim ? at_rims_ : at_saddles_;
+  const std::vector<TriangleId>& triangles = kind == Kind::plain || chosen.empty() ? all_ : chosen;
   Judge judge = judge_;
   double up = height;
   for (int attempt = 0; attempt < attempts; ++attempt, up *= 0.98) {

@@ -22,16 +22,13 @@ class Terrain {
   const std::shared_ptr<const SpatialIndex>& index() const noexcept { return index_; }
   const Mesh& mesh() const noexcept { return index_->mesh(); }
   Kind kind(VertexId vertex) const noexcept { return kinds_[vertex]; }
-  /// Returns the numbers of all triangles with a vertex of a kind; those of the whole mesh if there
-  /// is no such vertex.
-  const std::vector<TriangleId>& triangles_at(Kind kind) const noexcept;
 
   /// Returns a judge of the mesh, for one thread.
   Judge judge() const { return judge_; }
 
   /// Returns a place on the free side, at most `height` above a random triangle with a vertex of a
-  /// kind, and near that vertex. Throws Error if it finds no place with that clearance, as between
-  /// sheets that are too close. [mm]
+  /// kind, and near that vertex. If there is no such vertex, any triangle counts. Throws Error if
+  /// it finds no place with that clearance, as between sheets that are too close. [mm]
   Vec3 place(Kind kind, double clearance, double height, Random& random) const;
 
  private:

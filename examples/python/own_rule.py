@@ -11,9 +11,9 @@ class StopShort:
     Ignores the corridor of E3 and E4.
     """
 
-    def __init__(self, task: Task, index: keepout.Index) -> None:
+    def __init__(self, task: Task) -> None:
         self._margin = task.margin
-        self._index = index
+        self._index = keepout.Index(task.mesh)
 
     def step(self, tip: np.ndarray, desired: np.ndarray) -> np.ndarray:
         free = max(0.0, float(self._index.distances(tip[None], threads=1)[0]) - self._margin)

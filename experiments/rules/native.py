@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The rules of C++. The headers in benchmarks/native/rules describe each of them, with its source.
 
-Rules, hands and judges of C++ share a `Terrain`: the mesh with its index.
+Rules, pushers and judges of C++ share a `Terrain`: the mesh with its index.
 """
 from __future__ import annotations
 
@@ -44,26 +44,26 @@ def _native(task: Task) -> Any:
     return native
 
 
-def keepout_rule(task: Task, index: keepout.Index, *, activation: str) -> Rule:
+def keepout_rule(task: Task, *, activation: str) -> Rule:
     """Returns keepout's own rule with an activation rule: all faces, that of Li et al. (2020), or certified."""
     rule: Rule = keepout_peers.keepout_rule(_native(task), activation)
     return rule
 
 
-def closest_points(task: Task, index: keepout.Index, *, obstacles: str, gain: float = 1.0) -> Rule:
+def closest_points(task: Task, *, obstacles: str, gain: float = 1.0) -> Rule:
     """Returns the rule with a plane for closest points of the mesh: `nearest`, `minima` or `all`."""
     rule: Rule = keepout_peers.closest_point_planes(_native(task), obstacles, gain)
     return rule
 
 
-def distance_field(task: Task, index: keepout.Index, *, cell: float, use: str = "cut") -> Rule:
+def distance_field(task: Task, *, cell: float, use: str = "cut") -> Rule:
     """Returns the rule of a distance field with cells in mm: `plane`, `cut` or `sure`."""
     field = field_of(task.mesh, cell, task.margin)
     rule: Rule = keepout_peers.distance_field_rule(_native(task), field, use)
     return rule
 
 
-def slide(task: Task, index: keepout.Index, *, library: str) -> Rule:
+def slide(task: Task, *, library: str) -> Rule:
     """Returns the rule that moves until contact and slides; `library`: the function that makes the Sweep."""
     model = _model_of(task.mesh, library, max(task.margin, LEAST_RADIUS))
     rule: Rule = keepout_peers.slide(_native(task), model)

@@ -24,7 +24,7 @@ def field_of(mesh, cell, band):
 
 
 def rule_of(mesh, cell, use, **task):
-    return native.distance_field(Task(mesh, **task), keepout.Index(mesh), cell=cell, use=use)
+    return native.distance_field(Task(mesh, **task), cell=cell, use=use)
 
 
 def around_the_ball(count, near=8.0, far=12.0):

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from experiments.bone import BoneProperties
-from experiments.intermittent import Intermittent, IntermittentHand
+from experiments.intermittent import Intermittent
 from experiments.open_loop import OpenLoop, adjustments, slow_error
-from experiments.operator_model import Arm, Operator, streams, tremor
-from experiments.trial import Course, Seen
+from experiments.operator_model import Operator, streams, tremor
+from experiments.trial import Course
 from test_set_up_errors import straight_path
+from trial_in_python import Arm, IntermittentHand, OpenLoopHand, Seen
 
 PERIOD = 0.001
 
@@ -79,9 +80,8 @@ def exact() -> Intermittent:
     return Intermittent(noise=0.0, drift=0.0, sight_across=0.0, sight_in_depth=0.0)
 
 
-def started(hand: Intermittent, of: Course, fixture: bool = False) -> IntermittentHand:
-    operator = Operator(hand=hand)
-    return hand.start(operator, of, hand.draw(of, streams(1)), fixture)
+def started(hand: Intermittent, of: Course, fixture: bool = False, seed: int = 1) -> IntermittentHand:
+    return IntermittentHand(Operator(hand=hand), of, hand.draw(of, streams(seed)), fixture)
 
 
 def aims(hand: IntermittentHand, cycles: int, seen: Seen) -> np.ndarray:
@@ -160,8 +160,7 @@ def test_motor_noise_grows_with_the_movement() -> None:
         landed = []
         for seed in range(40):
             hand = Intermittent(drift=0.0, sight_across=0.0, sight_in_depth=0.0, refractory=10.0)
-            made = hand.start(Operator(hand=hand), course(), hand.draw(course(), streams(seed)), False)
-            landed.append(aims(made, 10_600, Seen(0.0, 0.0, error, 0.0, 0.0))[-1, 2])
+            landed.append(aims(started(hand, course(), seed=seed), 10_600, Seen(0.0, 0.0, error, 0.0, 0.0))[-1, 2])
         ends.append(np.std(landed) / error)
     assert ends[0] == pytest.approx(ends[1], rel=1e-6)
     assert ends[0] == pytest.approx(Intermittent().noise, rel=0.35)
@@ -173,7 +172,7 @@ def test_errors_of_the_open_loop_hand_depend_on_the_place_alone() -> None:
     draws = operator.hand.draw(of, streams(1))
     found = {}
     for offset in (0.0, 1.0):  # the second hand sees an error, and moves at half speed
-        hand = operator.hand.start(operator, of, draws, False)
+        hand = OpenLoopHand(operator, of, draws, False)
         for cycle in range(3000):
             along, across, below = hand.aim(cycle, 0)
             hand.look(Seen(0.0, offset, 10.0, 0.0, 0.0))

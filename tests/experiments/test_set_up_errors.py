@@ -3,9 +3,10 @@
 import keepout
 import numpy as np
 import pytest
-from experiments.bone import Bone, BoneProperties
+from experiments.bone import BoneProperties
 from experiments.planned_path import PlannedPath
 from experiments.set_up_errors import SetUp, fiducials_around, registered_from_true
+from trial_in_python import Bone, coordinates, moved, place_at
 
 UP = np.array([0.0, 0.0, 1.0])
 
@@ -130,13 +131,13 @@ def test_coordinates_and_places_are_inverse() -> None:
     up /= np.linalg.norm(up, axis=1, keepdims=True)
     path = PlannedPath(np.stack([np.zeros_like(y), y, z], axis=1), up, np.array([1.0, 0.0, 0.0]), 0.05)
     for given in ((10.0, 0.3, 0.0), (21.234, -0.5, 0.0)):
-        assert path.coordinates(path.place(*given)) == pytest.approx(given, abs=1e-3)
-    deep = path.place(10.0, 0.2, 1.5)
-    assert path.coordinates(deep)[1:] == pytest.approx((0.2, 1.5), abs=0.02)
-    assert path.coordinates(np.array([0.0, -4.0, 1.0]))[0] == 0.0
+        assert coordinates(path, place_at(path, *given)) == pytest.approx(given, abs=1e-3)
+    deep = place_at(path, 10.0, 0.2, 1.5)
+    assert coordinates(path, deep)[1:] == pytest.approx((0.2, 1.5), abs=0.02)
+    assert coordinates(path, np.array([0.0, -4.0, 1.0]))[0] == 0.0
 
 
 def test_one_point_moves_like_many() -> None:
     registered = registered_from_true(SetUp(), fiducials_around(np.zeros(3), UP), np.random.default_rng(1))
     point = np.array([3.0, -2.0, 5.0])
-    assert registered.moved(point) == pytest.approx(registered(point[None])[0], abs=1e-12)
+    assert moved(registered, point) == pytest.approx(registered(point[None])[0], abs=1e-12)

@@ -47,10 +47,10 @@ def test_pushes_close_to_each_other_are_at_one_wall():
 def test_a_plate_is_passed_if_the_field_does_not_see_it(cell, lost):
     pushes = e5.pushes_at(TRUTH, walls_of(PLATE), np.random.default_rng(2), 10)
     task = Task(PLATE.mesh, e5.MARGIN)
-    found = e5.pushed(native.distance_field(task, PLATE, cell=cell), TRUTH, pushes)
+    found = e5.pushed(native.distance_field(task, cell=cell), TRUTH, pushes)
     assert found["loops"] == 10 and len(found["entered"]) == 10 * lost
     assert found["deepest"] == pytest.approx(0.3 * lost, abs=0.06)
-    kept = e5.pushed(make_rule("certified", task, PLATE), TRUTH, pushes)
+    kept = e5.pushed(make_rule("certified", task), TRUTH, pushes)
     assert kept["entered"] == [] and kept["least_distance"] == pytest.approx(e5.MARGIN, abs=1e-6)
     assert kept["lost"] == pytest.approx(0.0, abs=1e-9)
 

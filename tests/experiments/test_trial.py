@@ -9,17 +9,17 @@ from experiments import anatomy, e3_path_tracing, e4_cutting, modes, teleoperati
 from experiments.bone import BoneProperties
 from experiments.open_loop import OpenLoop
 from experiments.operator_model import Operator
+from experiments.rules.native import terrain_of
 from experiments.rules.rule import Rule
 from experiments.set_up_errors import SetUp
 from experiments.teleoperation import Simulation, Trial
-from experiments.trial import Course, Trace, run_in_python
+from experiments.trial import Course
+from trial_in_python import run_in_python
 
 try:
     anatomy.mesh_file("skull")
 except (OSError, anatomy.subprocess.CalledProcessError) as missing:
     pytest.skip(f"the CT skull is not prepared: {missing}", allow_module_level=True)
-
-from keepout_peers import Judge  # noqa: E402
 
 #: The arrays of a trace.
 ARRAYS = ("tip", "setpoint", "goal", "force", "power", "contact", "kerf")
@@ -42,14 +42,19 @@ def seconds_of(trial: Trial, seconds: float) -> Trial:
 
 @pytest.mark.parametrize("mode", modes.MODES)
 @pytest.mark.parametrize("hand", HANDS)
-def test_the_loop_in_c_plus_plus_has_the_bits_of_the_loop_in_python(mode: str, hand: str) -> None:
+def test_the_loop_in_c_plus_plus_has_the_bits_of_the_loop_in_python(
+    mode: str, hand: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Two seconds: the approach, the first contact with fixture and bone, and the first decisions."""
     for experiment in (e3_path_tracing, e4_cutting):
         if mode not in teleoperation.SWEPT and experiment is e3_path_tracing:
             continue  # to save time: a rule in Python is called back in the same way in both
         ideal = mode == "all_faces"  # no latency, no registration error, and no bone in E4
         trial = seconds_of(experiment.planned(mode, 1, ideal=ideal, simulation=HANDS[hand]), 2.0)
-        native, python = trial.run(), trial.run(run_in_python)
+        native = trial.run()
+        with monkeypatch.context() as patch:
+            patch.setattr(teleoperation, "run_trial", run_in_python)
+            python = trial.run()
         for name in ARRAYS:
             assert np.array_equal(getattr(native, name), getattr(python, name)), name
         assert (native.begun, native.finished) == (python.begun, python.finished)
@@ -66,18 +71,14 @@ def test_trials_in_threads_are_those_in_turn() -> None:
         assert all(np.array_equal(getattr(one, name), getattr(other, name)) for name in ARRAYS)
 
 
-def test_an_error_in_a_rule_ends_the_trial() -> None:
+def test_an_error_in_a_rule_ends_the_trial(monkeypatch: pytest.MonkeyPatch) -> None:
     class Broken:
         def step(self, tip, desired):
             raise RuntimeError("no such motion")
 
-    trial = seconds_of(e3_path_tracing.planned("none", 1), 2.0)
-
-    def broken(course, rule, *others) -> Trace:
-        return teleoperation.run_trial(course, Broken(), *others)
-
+    monkeypatch.setattr(modes, "make_rule", lambda mode, task: Broken())
     with pytest.raises(RuntimeError, match="no such motion"):
-        trial.run(broken)
+        seconds_of(e3_path_tracing.planned("none", 1), 2.0).run()
 
 
 def test_all_modes_meet_the_same_operator_and_registration() -> None:
@@ -108,7 +109,7 @@ def test_the_phantom_is_a_shell_of_two_millimetres_on_a_closed_block() -> None:
     assert found.watertight and not found.inside_out and found.self_intersections == 0
     assert path.length == pytest.approx(anatomy.PATH_LENGTH)
     assert np.ptp(path.points[:, 0]) == 0.0
-    distances = Judge(index.mesh.vertices, index.mesh.triangles).distances(path.points)
+    distances = terrain_of(index.mesh).judge().distances(path.points)
     assert distances == pytest.approx(np.full(len(path.points), anatomy.SHELL), abs=0.02)
 
 
@@ -160,7 +161,7 @@ def test_a_tool_that_is_stuck_does_not_come_to_the_end_of_the_path(monkeypatch: 
 
     slides = along()
     make_rule = modes.make_rule
-    monkeypatch.setattr(modes, "make_rule", lambda *task: Stops(make_rule(*task)))
+    monkeypatch.setattr(modes, "make_rule", lambda mode, task: Stops(make_rule(mode, task)))
     assert along() < 0.6 < 1.0 < slides
 
 

@@ -93,7 +93,7 @@ double Bone::sink(Cell at, double depth, double below, double period) {
       highest = std::min(highest, cut);
     });
     if (bearing == 0) {
-      depth = std::min(below, highest);
+      depth = std::min(below, highest);  // falls to the highest bone under the blade
     } else {
       const double softness = depth < properties_.thickness ? 1.0 : properties_.behind;
       depth = follow(depth, below, bearing * (path_.spacing * cell_width) * softness, period);

@@ -14,12 +14,14 @@ struct BoneProperties {
   double thickness, resistance, behind, blade, kerf;
 };
 
-/// experiments/bone.py in C++: the same operations in the same order.
+/// The kerf and the tip in it: experiments/bone.py describes the model.
 class Bone {
  public:
   Bone(const Path& path, const BoneProperties& properties, double tip_stiffness);
 
-  /// Returns the place of a tip that would be at `robot` in air, and its force on the bone. [mm, N]
+  /// Returns the place of a tip that would be at `robot` in air, and its force on the bone. The tip
+  /// moves along, then across, then in depth. Each spring relaxes as the bone yields: the exact
+  /// solution over the period. [mm, N]
   std::pair<Vec3, double> press(const Vec3& robot, double period);
 
   int rows() const noexcept { return rows_; }
@@ -32,9 +34,13 @@ class Bone {
     int row, column;
   };
 
+  /// Returns the cell at a place, so that the blade stays within the map across the path.
   Cell cell(double along, double across) const;
+  /// Returns how much bone a cell has above a depth; soft tissue counts less. 0 beyond the ends.
   double bone(int row, int column, double depth) const;
+  /// Returns a coordinate of the tip after a period, with bone of this area [mm^2] in the way.
   double follow(double tip, double robot, double area, double period) const;
+  /// Returns the depth of the tip after a period, and cuts what is under the blade.
   double sink(Cell cell, double depth, double below, double period);
 
   const Path& path_;

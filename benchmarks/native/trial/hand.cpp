@@ -77,6 +77,7 @@ class IntermittentHand final : public Hand {
         }
       } else {
         moves_[left++] = move;
+        // The submovement has minimum jerk.
         const double share = part * part * part * (10.0 + part * (6.0 * part - 15.0));
         for (std::size_t i = 0; i < 3; ++i) out[i] += move.length[i] * share;
       }
@@ -95,19 +96,23 @@ class IntermittentHand final : public Hand {
     Vector length;
   };
 
+  /// Makes one decision from what was seen a reaction ago, and starts its submovement.
   void decide(int cycle);
 
   Intermittent hand_;
   HandSettings settings_;
   int reaction_, refractory_, movement_;
-  int next_ = -1;
-  std::vector<std::size_t> looks_;
-  Vector done_{}, end_{};
-  std::vector<Movement> moves_;
-  std::vector<Vector> aims_;
+  int next_ = -1;                   // the cycle of the next decision
+  std::vector<std::size_t> looks_;  // decisions in each millimeter
+  Vector done_{}, end_{};           // the sum of finished submovements, and of all
+  std::vector<Movement> moves_;     // that are not finished
+  std::vector<Vector> aims_;        // in each cycle
   std::vector<Seen> seen_;
-  bool turn_of_depth_ = true, at_depth_ = false, lifted_ = false;
-  int misses_ = 0, stalled_ = 0;
+  bool turn_of_depth_ = true;
+  bool at_depth_ = false;  // a look showed the wanted depth, since the tool entered
+  bool lifted_ = false;
+  int misses_ = 0;   // looks at the depth in a row that showed an error
+  int stalled_ = 0;  // decisions to go on in a row while the command was too far ahead
 };
 
 void IntermittentHand::decide(int cycle) {
@@ -115,7 +120,7 @@ void IntermittentHand::decide(int cycle) {
   const auto seen_in = static_cast<std::size_t>(cycle - reaction_);
   const Seen then = seen_[seen_in];
   const Vector aim = aims_[seen_in];
-  Vector pending;
+  Vector pending;  // sent, and not yet seen
   for (std::size_t i = 0; i < 3; ++i) pending[i] = end_[i] - aim[i];
   const double place = std::min(std::max(end_[0], 0.0), static_cast<double>(looks_.size()) - 1.0);
   const auto millimeter = static_cast<std::size_t>(place);
@@ -129,6 +134,7 @@ void IntermittentHand::decide(int cycle) {
       then.depth + hand_.sight_in_depth * (lasting * view[1] + fresh * hand_.sight(number, 1));
   const double across = seen_across + pending[1];
   const double error = seen_depth + pending[2] - settings_.depth;
+  // The command may go ahead of the tip by this much more.
   const double room_along =
       settings_.cutting ? tolerance - (end_[0] - aim[0] - then.ahead) : infinity;
   const double room_below = settings_.cutting ? tolerance - (end_[2] - seen_depth) : infinity;
@@ -138,7 +144,7 @@ void IntermittentHand::decide(int cycle) {
   int wait = refractory_;
   if (lifted_) {
     length[1] = std::abs(across) > tolerance ? -across : 0.0;
-    length[2] = tolerance - end_[2];
+    length[2] = tolerance - end_[2];  // down to the surface; the next decisions press on
     lifted_ = false;
     wait = movement_ + reaction_;
   } else if (turn_of_depth_ && !feels) {

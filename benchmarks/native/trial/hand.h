@@ -10,9 +10,12 @@
 
 namespace keepout::trial {
 
-/// The sight and the touch of a cycle, relative to the intended place. [mm, N]
+/// The sight and the touch of a cycle. Lengths are relative to the intended place along the path.
 struct Seen {
-  double ahead, across, depth, above, push;
+  double ahead, across;  // of the intended place, along the heading of the path and across [mm]
+  double depth;          // below the path [mm]
+  double above;          // height of the intended place during the approach [mm]
+  double push;           // force of the fixture away from the bone [N]
 };
 
 /// The course and the operator, as a hand needs them.
@@ -43,13 +46,13 @@ struct Table {
   std::array<double, 2> interpolated(double place) const;
 };
 
-/// experiments/open_loop.py in C++: the same operations in the same order.
+/// The hand of experiments/open_loop.py.
 struct OpenLoop {
   double tolerance, leaning, samples;
   Table errors;
 };
 
-/// experiments/intermittent.py in C++: the same operations in the same order.
+/// The hand of experiments/intermittent.py.
 struct Intermittent {
   double refractory, movement, noise, drift, sight_across, sight_in_depth, lasting, tolerance;
   double touch, lift;

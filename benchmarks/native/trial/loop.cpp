@@ -9,7 +9,8 @@
 namespace keepout::trial {
 namespace {
 
-/// The arm of experiments/operator_model.py.
+/// The mass, the spring and the damper of experiments/operator_model.py, at the handle.
+/// Semi-implicit Euler: stable, because the damper acts on the velocity at the end of the cycle.
 class Arm {
  public:
   Arm(const Settings& s, const Vec3& place) : s_(s), place_(place) {}
@@ -102,6 +103,7 @@ Trace run(const Settings& s, Hand& hand, peers::Rule* rule) {
     const Vec3 offset = tip - place;
     hand.look(
         {dot(offset, heading), dot(offset, path.across), -dot(offset, up), above, dot(pull, up)});
+    // At the end the hand waits for a tip that lags behind.
     out.finished =
         aim.along >= path.length && path.coordinates(tip).along >= path.length - s.near_the_end;
   }

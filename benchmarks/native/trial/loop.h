@@ -43,8 +43,8 @@ struct Trace {
   bool finished = false;
 };
 
-/// Simulates one trial: run_in_python() of experiments/trial.py in C++, with the same operations in
-/// the same order. Without a rule there is no fixture.
+/// Simulates one trial: see experiments/trial.py. Without a rule there is no fixture.
+/// tests/experiments/trial_in_python.py has the same operations in the same order.
 Trace run(const Settings& settings, Hand& hand, peers::Rule* rule);
 
 }  // namespace keepout::trial

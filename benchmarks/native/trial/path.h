@@ -10,8 +10,8 @@
 
 namespace keepout::trial {
 
-/// Returns the scalar product. Sums from the first component to the last, as the Python loop does;
-/// Eigen sums in another order.
+/// Returns the scalar product, summed from the first component to the last, as the loop in Python
+/// does. Eigen sums in another order.
 inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// A place relative to a path. [mm]
@@ -19,14 +19,15 @@ struct Coordinates {
   double along, across, below;
 };
 
-/// experiments/planned_path.py in C++: the same operations in the same order.
+/// The path of experiments/planned_path.py.
 struct Path {
   std::vector<Vec3> points, up;
   std::vector<double> order;  // of the points along the heading
   Vec3 across, heading;
   double spacing, length;
 
-  /// Returns the interpolated position at a place along the path, and `up` there.
+  /// Returns the interpolated position at a place along the path, and `up` there. Limited to the
+  /// ends.
   std::pair<Vec3, Vec3> at(double along) const {
     const double last = static_cast<double>(points.size()) - 1.0;
     const double place = std::min(std::max(along / spacing, 0.0), last);
@@ -36,6 +37,7 @@ struct Path {
             (1.0 - share) * up[low] + share * up[low + 1]};
   }
 
+  /// Returns where a place is. Limited to the ends along the path.
   Coordinates coordinates(const Vec3& place) const {
     const double ahead = dot(place, heading);
     const auto found = std::lower_bound(order.begin(), order.end(), ahead) - order.begin();
