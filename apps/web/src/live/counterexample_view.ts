@@ -94,7 +94,8 @@ export class CounterexampleView {
     set(
       "sides-words",
       `${reasons[name] ?? ""} One step: the hand asks for ${asked} mm (dashed), the margin is ` +
-        `${this.shown.margin} mm. The tool is a point, in the middle of the ball.`,
+        `${this.shown.margin} mm. The tool is a point, in the middle of the ball. ` +
+        "The red disc marks where it goes through.",
     );
     const [first] = this.stages;
     if (first !== undefined) this.aim(example, first, (ends[0] as Trial["ends"][number]).place);
@@ -108,6 +109,7 @@ export class CounterexampleView {
     camera.up.copy(normal);
     const side = vector(end).sub(vector(tip)).cross(normal).normalize();
     const length = Math.max(5 * vector(end).distanceTo(target), 0.35 * vector(desired).length());
+    for (const stage of this.stages) stage.fit(target, length);
     camera.position.copy(
       side
         .addScaledVector(normal, 0.4)
@@ -167,7 +169,10 @@ class Stage {
   readonly normal = new three.Vector3(0, 0, 1);
   private readonly tip = new Capsule();
   private readonly lights = new three.Group();
-  private readonly radius: number;
+  private radius = 0;
+  private readonly mark = crossingMark();
+  /** The fraction of the motion that precedes the view. */
+  private start = 0;
 
   constructor(
     example: Counterexample,
@@ -177,7 +182,6 @@ class Stage {
   ) {
     const from = vector(begin);
     const wanted = from.clone().add(vector(example.desired));
-    this.radius = from.distanceTo(wanted) * 0.02;
     const corners = example.triangles.flat();
     const vertices = example.vertices.flat();
     this.crossedAt = crossing({ vertices, corners }, begin, end);
@@ -203,16 +207,15 @@ class Stage {
     const rims = new three.LineBasicMaterial({ color: "#5d5142" });
     this.scene.add(new three.LineSegments(new three.WireframeGeometry(flat), rims));
 
-    const dash = { dashSize: this.radius, gapSize: 0.7 * this.radius };
+    const dashSize = 0.02 * from.distanceTo(wanted);
+    const dash = { dashSize, gapSize: 0.7 * dashSize };
     this.addLine(from, wanted, new three.LineDashedMaterial({ color: colors.hand, ...dash }));
     this.addLine(from, vector(end), new three.LineBasicMaterial({ color: tool }));
     this.tip.paint(tool);
     this.scene.add(...this.tip.parts);
     if (this.crossedAt !== null) {
-      const mark = crossingMark();
-      mark.position.copy(vector(this.crossedAt));
-      mark.scale.setScalar(0.6 * this.radius);
-      this.scene.add(mark);
+      this.mark.position.copy(vector(this.crossedAt));
+      this.scene.add(this.mark);
     }
     const key = new three.DirectionalLight("#ffffff", 2.6);
     key.position.set(-1.6, 1, 0.3);
@@ -220,9 +223,20 @@ class Stage {
     this.scene.add(this.lights);
   }
 
+  /** Fits tool and mark to a view that shows `length` around a target, and begins the motion within it. */
+  fit(target: three.Vector3, length: number): void {
+    this.radius = 0.03 * length;
+    this.mark.scale.setScalar(0.6 * this.radius);
+    const [from, to] = [vector(this.begin), vector(this.end)];
+    for (this.start = 0; this.start < 0.9; this.start += 0.02) {
+      if (from.clone().lerp(to, this.start).distanceTo(target) <= 0.42 * length) return;
+    }
+  }
+
   /** Shows the motion at the fraction `share`. The lights are fixed to the view. */
   arrange(share: number, camera: three.Camera): void {
-    const place = vector(this.begin).lerp(vector(this.end), share);
+    const fraction = this.start + share * (1 - this.start);
+    const place = vector(this.begin).lerp(vector(this.end), fraction);
     this.tip.place(place, place, this.radius);
     this.lights.quaternion.copy(camera.quaternion);
   }

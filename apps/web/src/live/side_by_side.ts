@@ -212,6 +212,8 @@ export class SideBySide {
       return;
     }
     this.trials.close();
+    for (const head of this.heads) head.show("starting", "free", Number.NaN);
+    this.second.clear();
     this.rule.disabled = false;
     set("sides-words", yours);
     this.pause(false);

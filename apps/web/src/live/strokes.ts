@@ -48,9 +48,8 @@ export const wallStrokes: readonly WallStroke[] = [
     length: 56,
     toolRadius: 1,
     begin:
-      "The anatomy is now a sample mesh: a tube, whose wall faces inwards. The hand pushes at it from outside. " +
-      "“One scene” goes back to your anatomy.",
-    why: oneSide,
+      "The anatomy is now a sample mesh: a tube, whose wall faces inwards. The hand pushes at it from outside.",
+    why: `${oneSide} The tube is a sample mesh: “One scene” goes back to your anatomy.`,
   },
 ];
 

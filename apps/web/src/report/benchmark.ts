@@ -5,12 +5,21 @@ import * as Plot from "@observablehq/plot";
 import { grouped, make } from "../page/elements.ts";
 import { benchmarkMethod } from "./benchmark_method.ts";
 import { benchmarkTable, columnsOf } from "./benchmark_table.ts";
-import { Legend, logarithmic, looksOf, plotSection, tickText, tipOfColumns } from "./charts.ts";
+import {
+  Legend,
+  type Look,
+  logarithmic,
+  looksOf,
+  plotSection,
+  tickText,
+  tipOfColumns,
+} from "./charts.ts";
 import { comparisonSections } from "./comparison.ts";
 import { curves } from "./curves.ts";
 import { entries, type Timing, valueAt } from "./record.ts";
 import { lead, panels, section } from "./report_page.ts";
 import { barInRow, inRow, rowChart, spans } from "./row_chart.ts";
+import { ruleColor } from "./runs.ts";
 import { type Question, Selection } from "./selection.ts";
 import {
   inUnit,
@@ -163,6 +172,7 @@ const sphere = ({ radius }: BenchmarkRow): string =>
   radius === null ? "as far as the motion leads" : `${trimmed(radius)} mm`;
 const combination = ({ index, activation, solver }: BenchmarkRow): string =>
   [index, activation, solver].join(", ");
+const pairOf = ({ index, solver }: BenchmarkRow): string => [index, solver].join(", ");
 const median = (timing: Timing | null | undefined): number => timing?.p50 ?? Number.NaN;
 /**
  * True if at most one step in a hundred has no answer: a combination that often fails is not fast.
@@ -360,7 +370,13 @@ class BenchmarkPlots {
     const stars = entries(`${this.from}/published`).map((from): Rate => {
       return { ...(valueAt(from) as Rate), from, series: published };
     });
-    const looks = looksOf(shownRows.map(combination));
+    const looks = new Map<string, Look>();
+    // Each rule has its color, and each index and solver a symbol.
+    const pairLooks = looksOf(shownRows.map(pairOf));
+    for (const row of shownRows) {
+      const symbol = pairLooks.get(pairOf(row))?.symbol ?? "circle";
+      looks.set(combination(row), { color: `var(${ruleColor(row.activation)})`, symbol });
+    }
     looks.set(published, { color: "var(--ink)", symbol: "star" });
     const legend = new Legend(
       looks,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 import { make } from "../page/elements.ts";
 import { Choices } from "./charts.ts";
+import { ruleName } from "./shown.ts";
 
 /** A property that differs between rows; the reader chooses one value. */
 export interface Question<Row> {
@@ -22,7 +23,7 @@ export class Selection<Row extends { readonly from: string }> extends Choices {
     for (const question of questions) {
       const { label, of, from, answers } = question;
       const options = answers.map((row) =>
-        make("option", { value: of(row), "data-from": row.from + from }, of(row)),
+        make("option", { value: of(row), "data-from": row.from + from }, ruleName(of(row))),
       );
       const list = make("select", {}, ...options);
       this.chosen.set(question, list.value);

@@ -6,7 +6,9 @@ import {
   chart,
   Legend,
   type Look,
+  levelLine,
   levelMarks,
+  levelName,
   logarithmic,
   onCard,
   tickText,
@@ -153,8 +155,8 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
       }),
     ];
   };
-  const level = (y: number, text: string, dy = -8) =>
-    levelMarks("y", y, text, { frameAnchor: "right", dy, textAnchor: "end" });
+  const nameOf = (y: number, text: string, dy = -8) =>
+    levelName("y", y, text, { frameAnchor: "right", dy, textAnchor: "end" });
   const draw = (domain: readonly [number, number], kept: number) => (): Plot.PlotOptions => ({
     height: 340,
     marginLeft: 52,
@@ -176,10 +178,11 @@ export function clearanceCharts(record: SimulationRecord, stroke: number) {
             }),
           ]
         : []),
-      ...level(0, "surface", kept > 0 ? 10 : -8),
-      ...(kept > 0 ? level(kept, "required clearance") : []),
+      Plot.ruleY(kept > 0 ? [0, kept] : [0], levelLine),
       ...lines(points.filter(({ run }) => legend.shows(String(run)))),
       ...crossings(points.filter(({ run }) => legend.shows(String(run)))),
+      nameOf(0, "surface", kept > 0 ? 10 : -8),
+      ...(kept > 0 ? [nameOf(kept, "required clearance")] : []),
       timeRule(),
     ],
   });
@@ -255,10 +258,10 @@ export function stepTimes(record: SimulationRecord): HTMLElement[] {
       tickFormat: (share: number) => `${tickText(share)} %`,
     },
     marks: [
+      ...lines(points.filter(({ run }) => legend.shows(String(run)))),
       ...levelMarks("x", cycle, "one control cycle", {
         ...{ frameAnchor: "top", dx: -8, dy: 6, textAnchor: "end" },
       }),
-      ...lines(points.filter(({ run }) => legend.shows(String(run)))),
     ],
   });
   const tip = ({ run, stroke, cycle }: Point) =>

@@ -77,7 +77,7 @@ export function simulationNumbers({ runs }: SimulationRecord): HTMLElement {
     ...(isTimed
       ? ([
           ["median step", shown(`${from}/p50_us`, microseconds)],
-          ["slowest step", shown(`${from}/max_us`, microseconds)],
+          ["99 % of steps", shown(`${from}/p99_us`, microseconds)],
           ["rate", shown(`${from}/rate_khz`, (khz) => `${rounded(khz)}\u00a0kHz`)],
         ] as const)
       : []),
