@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,6 +43,18 @@ struct TimesOfStages {
 
 double microseconds(BenchClock::duration time) {
   return std::chrono::duration<double, std::micro>(time).count();
+}
+
+/// Returns the median of each 200 consecutive steps: four strokes of contact_motions(). Steps of a
+/// stroke are alike, but strokes are independent.
+std::vector<double> medians_of(std::span<const double> steps) {
+  constexpr std::size_t part = 200;
+  std::vector<double> medians;
+  for (; steps.size() >= part; steps = steps.subspan(part)) {
+    std::vector<double> times(steps.begin(), steps.begin() + part);
+    medians.push_back(timing_of(times).p50);
+  }
+  return medians;
 }
 
 /// At least this many steps, so that medians and 99.9 % percentiles compare; but at most `patience`
@@ -249,6 +262,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
   row["collect_us"] = timing_of(times.collect);
   row["exact_us"] = timing_of(times.exact);
   row["query_us"] = timing_of(times.query);
+  row["step_medians_us"] = medians_of(times.step);
   const Timing step = timing_of(times.step);
   row["step_us"] = step;
   if (step.p50 > 0.0) row["rate_khz"] = 1e3 / step.p50;
