@@ -16,8 +16,12 @@
 namespace keepout::app {
 namespace {
 
-/// The number of motions for brute force, which takes tens of milliseconds for each.
-constexpr std::size_t sample_count = 8;
+/// Returns the number of motions for brute force, which needs about 0.1 s for each on a million
+/// triangles.
+std::size_t sample_count_on(const Mesh& mesh) {
+  constexpr std::size_t few = 2, many = 8, much_work = 8'000'000;
+  return std::clamp(much_work / mesh.triangle_count(), few, many);
+}
 
 /// Many readers of JSON do not keep whole numbers of 64 bits.
 std::string hexadecimal(std::uint64_t value) {
@@ -183,6 +187,7 @@ Reference::Reference(std::shared_ptr<const SpatialIndex> right, std::shared_ptr<
   const auto brute_force = std::make_shared<const BruteForce>(mesh);
   MotionConstraint exhaustive = make_motion_constraint(std::move(mesh), brute_force, settings);
   for (const Motion& motion : motions_) balls_.push_back(guard_.region(motion));
+  const std::size_t sample_count = sample_count_on(guard_.mesh());
   for (std::size_t s = 0; s < sample_count; ++s) {
     const std::size_t motion = s * motions_.size() / sample_count;
     const std::span<const Hit> found = hits_of(*brute_force, balls_[motion]);
