@@ -261,6 +261,8 @@ def _by_shape(of: dict[str, list[Row]]) -> Table:
 
 #: The line of each variant of the rule of Li et al. in the figure; others are solid.
 _LINES = {AS_PUBLISHED: ":", LARGE_SPHERE: "--"}
+#: The marker of each rule that is not keepout's, also for print without colors; others have circles.
+_MARKERS = {"closest_points_2007": "v", "vector_field": "^", "distance_field": "s", "fcl_slide": "D", "bullet_slide": "P"}
 
 
 def _picture(of: dict[str, list[Row]]) -> Figure:
@@ -270,19 +272,20 @@ def _picture(of: dict[str, list[Row]]) -> Figure:
         lengths = [length for length in LENGTHS if _at(rows, length)]
         across = [aside * length for length in lengths]
         look = {"color": figures.color(_base(mode)), "linestyle": _LINES.get(mode, "-"),
-                "linewidth": 2.6 if mode == OURS else 1.2, "zorder": 3 if mode == OURS else 2}
+                "marker": _MARKERS.get(mode, "o"), "linewidth": 2.6 if mode == OURS else 1.2,
+                "zorder": 3 if mode == OURS else 2}
         rates = [_rate_of(_at(rows, n)) for n in lengths]
-        upper.plot(across, [100 * rate.value for rate in rates], marker="o", label=_label(mode), **look)
+        upper.plot(across, [100 * rate.value for rate in rates], label=_label(mode), **look)
         upper.vlines(across, [100 * rate.low for rate in rates], [100 * rate.high for rate in rates],
                      color=look["color"], linewidth=1.0, alpha=0.6)
         if mode != NO_FIXTURE:
             for ax, part, whole in ((middle, "free_lost", "free_asked"), (lower, "excess", "excess_of")):
-                ax.plot(across, [100 * _ratio(_at(rows, n), part, whole) for n in lengths], marker="o", **look)
+                ax.plot(across, [100 * _ratio(_at(rows, n), part, whole) for n in lengths], **look)
     upper.set(ylabel="loops entered [%]", title="Safety")
     middle.set(ylabel="free motion lost [%]", title="Freedom in free space")
     lower.set(ylabel="excess of limited steps [%]", title="Freedom at the surface", xlabel="longest step [mm]")
     for ax in (upper, middle, lower):
-        ax.set(xscale="log")
+        ax.set(xscale="log", xlim=(0.7 * LENGTHS[0], 1.4 * LENGTHS[-1]))
         ax.set_xticks(LENGTHS, [f"{length:g}" for length in LENGTHS])
         ax.minorticks_off()
     lower.legend(*upper.get_legend_handles_labels(), loc="upper center", bbox_to_anchor=(0.5, -0.22), ncol=3)

@@ -3,12 +3,12 @@
 
 `keepout bench` times the product: each rule on each index, on a bunny of 150 mm that is resampled to each size. A
 tool presses on the surface and slides along it by 0.05 to 0.2 mm a step; each step is compared with a reference before
-it is timed. Up to MANY_TRIANGLES, each size is timed in RUNS processes with other motions; medians and intervals are
-over these runs. Larger meshes are timed in one process with as many steps. A full run also times all indices once.
+it is timed. A cell has PARTS parts of PART steps. A part has four strokes of 50 steps, at independent places. Steps of
+a stroke depend on each other, so intervals are over the medians of the parts.
 
 The run of Li et al. (2020) is the rule `paper` on `pd_tree_1997`, their tree as published. They do not give the motion
-sphere of their figure: ours are of 5 mm, as in their section V, of 1 mm, and as long as the longest step. `certified`
-searches as far as a motion goes, without a sphere. FACTORS separates index, sphere and rule.
+sphere of their figure: ours are of 5 mm, as in their section V, and as long as the longest step. `certified` searches
+as far as a motion goes, without a sphere. FACTORS separates index, sphere and rule.
 """
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from typing import Any
 import keepout
 import numpy as np
 from matplotlib.axes import Axes
+from scipy import stats
 
 from . import figures, published
 from .experiment import Claim, Figure, Findings, Row, Scale, Table, Unit
@@ -36,22 +37,24 @@ TITLE = "E2 Run time against triangles (section IV-B)"
 SIZES = (51_978, 200_000)
 FULL_SIZES = (
     51_978, 104_000, 200_000, 500_000, 989_376, 2_000_000, 4_000_000, 16_000_000)
-#: Processes of a size, and the steps that each times. The range of 6 medians contains the true one with 96.9 %.
-#: Above MANY_TRIANGLES there is one process with as many steps: each process compares a sample with brute force first,
-#: which takes minutes on 16 million triangles.
-RUNS = 6
-MANY_TRIANGLES = 1_000_000
-QUERIES = 200
+#: The steps of a part, and the parts of a cell. The range of 6 medians contains the true one with 96.9 %.
+PART = 200
+PARTS = 6
+#: Up to this size, each part is timed in a process of its own. A process compares a sample of its steps with brute
+#: force first, which takes minutes on 16 million triangles. So there one process times all parts.
+FEW_TRIANGLES = 200_000
 
-#: For comparison only, up to LARGEST_OF_SLOW triangles: a query tests every triangle, or needs much memory.
+#: For comparison only, one part, up to LARGEST_OF_SLOW triangles: a query tests every triangle, or needs much memory.
 SLOW_INDICES = ("brute_force", "fcl_collide")
 LARGEST_OF_SLOW = 60_000
 #: Indices of other libraries need up to 560 bytes a triangle: only up to LARGEST_OF_OTHERS triangles.
-LARGEST_OF_OTHERS = 2_000_000
+LARGEST_OF_OTHERS = 1_000_000
 
-_STEPS = (f"Medians with a range are of {RUNS * QUERIES:,} steps or more in {RUNS} or {RUNS + 1} processes, with the range "
-          f"of the processes. The others are of one process: {RUNS * QUERIES:,} steps above {MANY_TRIANGLES:,} triangles, and "
-          f"{QUERIES} steps of each other index")
+_STEPS = (f"A cell is the median of at least {PARTS * PART:,} steps, or it states its n. In brackets is the 95 % "
+          f"interval over the medians of parts. A part has {PART} steps: four strokes at independent places. Steps of a stroke "
+          f"depend on each other. Up to {FEW_TRIANGLES:,} triangles, {PARTS} parts of the rules of Li et al. and certified "
+          "on pd_tree_1997 and wide_bvh have a process each. All other parts of a cell are in one process, so their "
+          "interval does not include differences between processes")
 LONGEST_STEP = 0.2  # of `keepout bench` [mm]
 
 #: A rule, an index, and the radius of the motion sphere [mm]; None: as far as the motion goes.
@@ -66,48 +69,50 @@ FACTORS: tuple[tuple[str, Way], ...] = (
     ("rule", OURS),
 )
 
-
-#: What a process times: indices, rules and radii. The first has the ways of FACTORS.
-Call = tuple[list[str], str, str]
-OF_FACTORS: list[Call] = [
-    (["pd_tree_1997"], "paper", "5"), (["wide_bvh"], "paper,certified", f"5,{LONGEST_STEP}")]
+#: The indices of FACTORS; the rules and radii of all cells.
+OF_FACTORS = ["pd_tree_1997", "wide_bvh"]
+RADII = f"5,{LONGEST_STEP}"
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Returns RUNS units for each size, and in a full run one more with all indices."""
-    planned: list[tuple[int, int, list[Call]]] = []
+    """Returns the units of each size, each of one process; in a full run also those of all indices."""
+    planned: list[Unit] = []
+
+    def add(size: int, indices: list[str], steps: int, rules: str = "paper,certified") -> None:
+        number = sum(unit.settings["triangles"] == size for unit in planned)
+        planned.append(Unit(f"triangles_{size}_run{number}", {
+            "triangles": size, "indices": indices, "rules": rules, "queries": steps, "seed": scale.seed, "run": number,
+        }, alone=True))
+
     for size in FULL_SIZES if scale.full else SIZES:
-        planned += [(size, number, OF_FACTORS) for number in range(RUNS if size <= MANY_TRIANGLES else 1)]
+        for _ in range(PARTS if size <= FEW_TRIANGLES else 0):
+            add(size, OF_FACTORS, PART)
         if scale.full and size <= LARGEST_OF_OTHERS:
-            planned.append((size, RUNS, [(_indices(size), "all_faces,paper,certified", "5,1")]))
-    return [
-        Unit(f"triangles_{size}_run{number}", {
-            "triangles": size, "calls": calls, "seed": scale.seed, "run": number,
-            "queries": QUERIES if size <= MANY_TRIANGLES or number == RUNS else RUNS * QUERIES,
-        }, alone=True)
-        for size, number, calls in planned
-    ]
+            names = [part.name for part in keepout.indices()]
+            add(size, [name for name in names if name not in SLOW_INDICES], PARTS * PART, "all_faces,paper,certified")
+            if size <= LARGEST_OF_SLOW:
+                add(size, [name for name in names if name in SLOW_INDICES], PART, "all_faces,paper,certified")
+        elif size > FEW_TRIANGLES:
+            add(size, OF_FACTORS, PARTS * PART)
+    return planned
 
 
 def run(unit: Unit) -> list[Row]:
     """Returns a row for each rule, index and radius. Raises RuntimeError with the message of `keepout bench`."""
     asked = unit.settings
-    rows: list[Row] = []
-    for indices, rules, radii in asked["calls"]:
-        with TemporaryDirectory() as folder:
-            record = Path(folder) / "record.json"
-            command = [
-                os.environ["KEEPOUT_COMMAND"], "bench", "--triangles", str(asked["triangles"]),
-                "--index", ",".join(indices), "--activation", rules, "--radius", radii,
-                "--queries", str(asked["queries"]), "--seed", str(asked["seed"] * (RUNS + 1) + asked["run"]),
-                "--seconds", "3600",  # all queries, however long they take, so that rows are reproducible
-                "--json", str(record), "--out", str(record.with_suffix(".html")),
-            ]
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
-            if done.returncode != 0:
-                raise RuntimeError(f"keepout bench: {done.stderr.strip()}")
-            rows += [{"run": asked["run"]} | row for row in rows_of(json.loads(record.read_text()))]
-    return rows
+    with TemporaryDirectory() as folder:
+        record = Path(folder) / "record.json"
+        command = [
+            os.environ["KEEPOUT_COMMAND"], "bench", "--triangles", str(asked["triangles"]),
+            "--index", ",".join(asked["indices"]), "--activation", asked["rules"], "--radius", RADII,
+            "--queries", str(asked["queries"]), "--seed", str(asked["seed"] * (PARTS + 2) + asked["run"]),
+            "--seconds", "3600",  # all queries, however long they take, so that rows are reproducible
+            "--json", str(record), "--out", str(record.with_suffix(".html")),
+        ]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise RuntimeError(f"keepout bench: {done.stderr.strip()}")
+        return [{"run": asked["run"]} | row for row in rows_of(json.loads(record.read_text()))]
 
 
 def rows_of(record: Row) -> list[Row]:
@@ -122,7 +127,7 @@ def rows_of(record: Row) -> list[Row]:
             "in_reach": row["hits_mean"], "planes": row["planes_mean"],
             "unsolved_share": row["unsolved_share"],
             "memory": round(row["bytes_per_triangle"] * row["triangles"]), "hash": row["hash"],
-            "measured_khz": row["rate_khz"], "measured_p50_us": step.get("p50"),
+            "measured_medians_us": row["step_medians_us"], "measured_p50_us": step.get("p50"),
             "measured_p99_us": step.get("p99"), "measured_max_us": step.get("max"),
             "measured_build_s": row["build_s"], "measured_remark": row["remark"],
             "measured_others_cores": record["benchmark"]["others_cores"],
@@ -145,13 +150,15 @@ def triangles_at(curve: Sequence[tuple[int, float]], khz: float = 1.0) -> float 
     return None
 
 
-#: For each way, the value of each run by the number of triangles, ascending.
-Timed = dict[Way, dict[int, dict[int, float]]]
+#: The rate of each part of a cell [kHz], by the process and the number of the part in it.
+Parts = dict[tuple[int, int], float]
+#: For each way, its cells by the number of triangles, ascending.
+Timed = dict[Way, dict[int, Parts]]
 Curve = list[tuple[int, float]]
 
 
 def findings(rows: list[Row], scale: Scale) -> Findings:
-    khz = timed(rows, "measured_khz")
+    khz = timed(rows)
     sizes = sorted({row["triangles"] for row in rows})
     curves = {way: curve(of) for way, of in khz.items()}
     parts = [(name, factor(khz, before, after, sizes[-1])) for name, before, after in _changes()]
@@ -164,33 +171,42 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
                     [_figure(curves), _factor_figure(khz, sizes)])
 
 
-def timed(rows: list[Row], member: str) -> Timed:
-    """Returns the values of a member for each rule, index and radius: by the triangles, then by the run."""
-    values: Timed = {}
+def timed(rows: list[Row]) -> Timed:
+    """Returns the rates of the parts for each rule, index and radius, by the number of triangles."""
+    rates: Timed = {}
     for row in sorted(rows, key=lambda row: (int(row["triangles"]), int(row["run"]))):
-        if row[member] is not None:
-            way = (row["rule"], row["index"], row["radius"])
-            values.setdefault(way, {}).setdefault(row["triangles"], {})[row["run"]] = row[member]
-    return values
+        parts = {(row["run"], number): 1e3 / us for number, us in enumerate(row["measured_medians_us"])}
+        if parts:
+            rates.setdefault(_way_of(row), {}).setdefault(row["triangles"], {}).update(parts)
+    return rates
 
 
-def over_runs(values: Iterable[float]) -> Interval:
-    """Returns the median of the runs with their range; the range is NaN for one run."""
-    of = np.array(list(values))
-    if len(of) < 2:
-        return Interval(float(of[0]), UNKNOWN.low, UNKNOWN.high) if len(of) else UNKNOWN
-    return Interval(float(np.median(of)), float(of.min()), float(of.max()))
+def median(of: Iterable[float]) -> Interval:
+    """Returns the median with its 95 % interval: the number of values below the true median is binomial.
+
+    The interval is between two of the values. It is NaN for fewer than six independent values.
+    """
+    values = np.sort(list(of))
+    if not len(values):
+        return UNKNOWN
+    rank = int(stats.binom.ppf(0.025, len(values), 0.5))
+    low, high = (values[rank - 1], values[-rank]) if rank else (UNKNOWN.low, UNKNOWN.high)
+    return Interval(float(np.median(values)), float(low), float(high))
 
 
 def factor(khz: Timed, before: Way, after: Way, size: int) -> Interval:
-    """Returns how many times as fast `after` is as `before`, over runs with the same motions."""
+    """Returns how many times as fast `after` is as `before`, over parts with the same motions."""
     fast, slow = (khz.get(way, {}).get(size, {}) for way in (after, before))
-    return over_runs(fast[number] / slow[number] for number in fast if number in slow)
+    return median(fast[part] / slow[part] for part in fast if part in slow)
 
 
-def curve(of: dict[int, dict[int, float]]) -> Curve:
-    """Returns (triangles, median rate of the runs)."""
-    return [(size, over_runs(values.values()).value) for size, values in of.items()]
+def curve(of: dict[int, Parts]) -> Curve:
+    """Returns (triangles, median rate of the parts)."""
+    return [(size, median(parts.values()).value) for size, parts in of.items()]
+
+
+def _way_of(row: Row) -> Way:
+    return row["rule"], row["index"], row["radius"]
 
 
 def _changes() -> list[tuple[str, Way, Way]]:
@@ -204,9 +220,8 @@ def _factor_table(khz: Timed, sizes: list[int]) -> Table:
         ["change", "from", "to", *(f"{size:,}" for size in sizes)],
         [[name, _way(before), _way(after), *(_text(factor(khz, before, after, size)) for size in sizes)]
          for name, before, after in [*_changes(), ("all three", REPRODUCTION, OURS)]],
-        f"How many times as fast a step becomes: median of {RUNS} runs, and their range, which contains the true median "
-        f"with 96.9 %. Above {MANY_TRIANGLES:,} triangles there is one run, without a range. Both sides of a factor have "
-        "the same motions. The rule of Li et al. has no margin here and "
+        "How many times as fast a step becomes: median of the parts, with its 95 % interval. Both sides of a "
+        "factor have the same motions. The rule of Li et al. has no margin here and "
         "certified has one of 0.2 mm, so certified searches farther.",
     )
 
@@ -219,34 +234,29 @@ def _rate_table(rows: list[Row], khz: Timed, curves: dict[Way, Curve], sizes: li
         ["rule", "index", "sphere", *(f"{size:,}" for size in sizes), "below 1 kHz at"],
         [[rule, index, _sphere(radius), *(_rate(khz[rule, index, radius].get(size)) for size in sizes),
           _fall(curves[rule, index, radius])] for rule, index, radius in _sorted(khz)],
-        f"{where}; one thread; other processes kept up to {busy:.1f} cores busy. {_STEPS}. '-' means not built or not timed. The indices "
-        f"{' and '.join(SLOW_INDICES)} are only for comparison, and timed up to {LARGEST_OF_SLOW:,} triangles. Indices "
-        f"of other libraries are timed up to {LARGEST_OF_OTHERS:,}.",
+        f"{where}; one thread; other processes kept up to {busy:.1f} cores busy. {_STEPS}. "
+        f"'-' means not built or not timed. The indices {' and '.join(SLOW_INDICES)} are only for comparison, "
+        f"timed up to {LARGEST_OF_SLOW:,} triangles. Indices of other libraries are timed up to {LARGEST_OF_OTHERS:,}.",
     )
 
 
 def _slow_table(rows: list[Row], sizes: list[int]) -> Table:
     """Returns the slow steps of the drawn ways: a control loop must bear these."""
-    p99, longest = timed(rows, "measured_p99_us"), timed(rows, "measured_max_us")
     ways = [REPRODUCTION, *(way for _, way in FACTORS)]
 
     def cell(way: Way, size: int) -> str:
-        of, most = (values.get(way, {}).get(size, {}).values() for values in (p99, longest))
-        return f"{over_runs(of).value:.3g} / {max(most):.3g}" if of and most else "-"
+        of = [row for row in rows if _way_of(row) == way and row["triangles"] == size and row["measured_p99_us"]]
+        return (f"{np.median([row['measured_p99_us'] for row in of]):.3g} / "
+                f"{max(row['measured_max_us'] for row in of):.3g}") if of else "-"
 
     return Table(
         "Slow steps: 99 % and maximum [µs]",
         ["rule", "index", "sphere", *(f"{size:,}" for size in sizes)],
         [[rule, index, _sphere(radius), *(cell((rule, index, radius), size) for size in sizes)]
          for rule, index, radius in ways],
-        f"The median of the runs' 99 % quantiles, and the longest step of all runs. A maximum includes "
+        "The median of the processes' 99 % quantiles, and the longest step of all processes. A maximum includes "
         "interruptions by the operating system.",
     )
-
-
-def _indices(size: int) -> list[str]:
-    names = [part.name for part in keepout.indices()]
-    return [name for name in names if name not in SLOW_INDICES or size <= LARGEST_OF_SLOW]
 
 
 def _sorted(khz: Timed) -> list[Way]:
@@ -267,12 +277,16 @@ def _khz(rate: float | None) -> str:
     return f"{rate:,.0f}" if rate >= 100.0 else f"{rate:.3g}"
 
 
-def _rate(values: dict[int, float] | None) -> str:
-    return _text(over_runs(values.values())) if values else "-"
+def _rate(parts: Parts | None) -> str:
+    """Returns the rate of a cell, with the number of its steps if they are fewer than 1,000."""
+    if not parts:
+        return "-"
+    steps = len(parts) * PART
+    return _text(median(parts.values())) + (f" (n = {steps})" if steps < 1000 else "")
 
 
 def _text(of: Interval) -> str:
-    """Returns a median with its range, if there is one; `-` for NaN."""
+    """Returns a median with its interval, if there is one; `-` for NaN."""
     if not np.isfinite(of.value):
         return "-"
     return _khz(of.value) + (f" [{_khz(of.low)}, {_khz(of.high)}]" if np.isfinite(of.low) else "")
@@ -309,9 +323,9 @@ def _claims(khz: Timed, curves: dict[Way, Curve]) -> list[Claim]:
     return claims
 
 
-def _fastest(here: dict[Way, dict[int, float]]) -> str:
-    """Returns the fastest way; a tie if the ranges of the two fastest overlap, or if one has no range."""
-    of = {way: over_runs(values.values()) for way, values in here.items()}
+def _fastest(here: dict[Way, Parts]) -> str:
+    """Returns the fastest way; a tie if the intervals of the two fastest overlap, or if one has no interval."""
+    of = {way: median(parts.values()) for way, parts in here.items()}
     first, second = sorted(of, key=lambda way: -of[way].value)[:2]
     told = [f"{_way(way)}, {_rate(here[way])} kHz" for way in (first, second)]
     return told[0] if of[first].low > of[second].high else f"none beats the next: {'; '.join(told)}"
@@ -338,7 +352,7 @@ def _figure(curves: dict[Way, Curve]) -> Figure:
 
 
 def _factor_figure(khz: Timed, sizes: list[int]) -> Figure:
-    """Draws the factors of index, sphere and rule, with their ranges."""
+    """Draws the factors of index, sphere and rule, with their intervals."""
     fig, axes = figures.new(160, 60, columns=len(FACTORS))
     for ax, (name, before, after) in zip(axes, _changes()):
         known = [(size, of) for size in sizes if np.isfinite((of := factor(khz, before, after, size)).value)]
@@ -352,7 +366,8 @@ def _factor_figure(khz: Timed, sizes: list[int]) -> Figure:
     axes[0].set_ylabel("times as fast")
     return Figure(
         "rate_factors", "What makes a step faster: index, sphere, rule",
-        f"Each point is the median factor of {RUNS} runs, with their range. The changes follow each other: {_way(REPRODUCTION)}, "
+        f"Each point is the median factor of the parts, with its 95 % interval. The changes follow each other: "
+        f"{_way(REPRODUCTION)}, "
         f"then {', then '.join(_way(way) for _, way in FACTORS)}.",
         figures.svg(fig))
 

@@ -17,7 +17,7 @@ from .comparison import Measure, compare, main_rows
 from .experiment import Figure, Findings, Row, Scale, Unit
 from .parameters import Values
 from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, SWEEP, SWEPT, Planned, Simulation, Trial
+from .teleoperation import CORRIDOR, SLOW, SWEEP, SWEPT, Planned, Simulation, Trial
 from .trial import Course, Trace
 
 NAME = "e3_path_tracing"
@@ -28,9 +28,10 @@ TIME_LIMIT = 120.0  # [s]; a trial that finishes does so within about 60 s
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Returns five trials for each mode, as in Li et al.; full: 40. Adds a sweep of tremor, and trials without errors of
-    the set-up."""
-    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(40 if scale.full else 5)]
+    """Returns five trials for each mode, as in Li et al., two for SLOW modes; full: 40. Adds a sweep of tremor, and
+    trials without errors of the set-up."""
+    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES
+                             for n in range(40 if scale.full else 2 if mode in SLOW else 5)]
     trials += [(mode, n, {"changed": {"Operator.tremor": t}}) for mode in SWEPT for t in SWEEP
                for n in range(10 if scale.full else 1)]
     trials += [(mode, n, {"ideal": True}) for mode in modes.MODES for n in range(2 if scale.full else 1)]

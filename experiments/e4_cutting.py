@@ -19,7 +19,7 @@ from .comparison import Measure, compare
 from .experiment import Findings, Row, Scale, Unit
 from .parameters import Values
 from .set_up_errors import SetUp
-from .teleoperation import CORRIDOR, SWEEP, SWEPT, Planned, Simulation, Trial
+from .teleoperation import CORRIDOR, SLOW, SWEEP, SWEPT, Planned, Simulation, Trial
 from .trial import Course, Trace
 
 NAME = "e4_cutting"
@@ -32,9 +32,10 @@ VISIBLE = 0.1  # a cut this deep is seen on the outside [mm], ours
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Quick: two trials for each mode, as in Li et al. Full: 40; sweeps of tremor and corridor; trials without errors
-    of the set-up."""
-    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(40 if scale.full else 2)]
+    """Quick: two trials for each mode, as in Li et al., one for SLOW modes. Full: 40; sweeps of tremor and corridor;
+    trials without errors of the set-up."""
+    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES
+                             for n in range(40 if scale.full else 1 if mode in SLOW else 2)]
     trials += [(mode, 0, {"ideal": True}) for mode in SWEPT]
     trials += [("certified", n, {"corridor": c}) for c in CORRIDORS for n in range(10 if scale.full else 1)]
     if scale.full:
