@@ -6,7 +6,6 @@ rank it as the worst. Each test here is exploratory: its p is not adjusted. `pub
 """
 from __future__ import annotations
 
-import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -198,7 +197,7 @@ def _tests_table(by_mode: ByMode, measures: tuple[Measure, ...], seed: int) -> T
 def _boxes(experiment: str, measure: Measure, by_mode: ByMode) -> Figure:
     fig, ax = figures.new(160, 70)
     groups = {mode: measure.values(rows) for mode, rows in by_mode.items()}
-    figures.box_plot(ax, {m: v for m, v in groups.items() if len(v)}, textwrap.fill(measure.heading, 26))
+    figures.box_plot(ax, {m: v for m, v in groups.items() if len(v)}, measure.heading)
     fewer = [f"{figures.label(m)} {len(v)} of {len(by_mode[m])}" for m, v in groups.items() if len(v) < len(by_mode[m])]
     return Figure(
         f"{experiment}_{measure.member}",

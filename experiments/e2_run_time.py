@@ -332,7 +332,7 @@ def _fastest(here: dict[Way, Parts]) -> str:
 
 
 def _figure(curves: dict[Way, Curve]) -> Figure:
-    fig, ax = figures.new(150, 95)
+    fig, ax = figures.new(150, 110)
     drawn = [(REPRODUCTION, "-"), *zip((way for _, way in FACTORS), ("--", ":", "-"))]
     for (rule, index, radius), line in drawn:
         _plot(ax, curves[rule, index, radius], f"{figures.label(rule)}, {index}, {_sphere(radius)}",
@@ -343,7 +343,7 @@ def _figure(curves: dict[Way, Curve]) -> Figure:
     _plot(ax, authors, "the authors' code, on ours", color="black", marker="x", linestyle=":")
     ax.axhline(1.0, color="black", linewidth=0.8)
     ax.set(xscale="log", yscale="log", xlabel="triangles", ylabel="rate of the median step [kHz]")
-    ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncol=2)
     return Figure(
         "rate", "Rate against triangles",
         "The meshes are bunnies of 150 mm, and steps are 0.05 to 0.2 mm long. The lines change index, sphere and rule "

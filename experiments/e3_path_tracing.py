@@ -107,6 +107,7 @@ def _overlay(rows: list[Row]) -> Figure:
         for row in (row for row in rows if row["mode"] == mode and row["along_mm"]):
             ax.plot(row["along_mm"], row["height_mm"], color=figures.color(mode), linewidth=0.6)
         ax.axhline(0.0, color=figures.INK, linewidth=1.0)
+        ax.sharex(axes[0])
         ax.set(ylabel="height [mm]", ylim=(-3.2, 3.2), title=figures.label(mode))
     axes[-1].set_xlabel("along the path [mm]")
     return Figure(

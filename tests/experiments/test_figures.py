@@ -87,9 +87,9 @@ def test_every_value_is_a_point():
     values = np.array([1.0, 1.0, 2.0, 50.0])
     figures.box_plot(ax, {"none": values, "paper": values[:0], "certified": values}, "depth [mm]")
     points = [line for line in ax.lines if line.get_marker() == "o"]
-    assert [list(line.get_ydata()) for line in points] == [list(values), [], list(values)]
+    assert [list(line.get_xdata()) for line in points] == [list(values), [], list(values)]
     for place, line in ((0, points[0]), (2, points[2])):
-        places = line.get_xdata()
+        places = line.get_ydata()
         assert len(set(places)) == 4 and np.abs(places - place).max() <= 0.2
 
 
