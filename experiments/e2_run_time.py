@@ -36,12 +36,12 @@ TITLE = "E2 Run time against triangles (section IV-B)"
 
 SIZES = (51_978, 200_000)
 FULL_SIZES = (
-    51_978, 104_000, 200_000, 500_000, 989_376, 2_000_000, 4_000_000, 16_000_000)
+    51_978, 104_000, 200_000, 500_000, 989_376, 2_000_000, 4_000_000, 8_000_000)
 #: The steps of a part, and the parts of a cell. The range of 6 medians contains the true one with 96.9 %.
 PART = 200
 PARTS = 6
 #: Up to this size, each part is timed in a process of its own. A process compares a sample of its steps with brute
-#: force first, which takes minutes on 16 million triangles. So there one process times all parts.
+#: force first, which takes a minute on 8 million triangles. So there one process times all parts.
 FEW_TRIANGLES = 200_000
 
 #: For comparison only, one part, up to LARGEST_OF_SLOW triangles: a query tests every triangle, or needs much memory.
