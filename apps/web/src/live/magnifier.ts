@@ -99,11 +99,10 @@ export class Magnifier {
       (widestGap * width * pixel) / Math.max(Math.abs(clearance), 1e-9),
       (widestMargin * width * pixel) / Math.max(margin, 1e-9),
     );
-    // A body that is deeper than the section is wide needs no magnifier.
-    this.element.hidden = factor < 1;
     const times = factor < 1.95 ? factor.toFixed(1) : factor.toFixed(0);
     const kept = isGuarded && margin > 0 ? `, margin ${millimetres(margin)}` : "";
-    set(this.times, `${times}×`);
+    // The section of a body that is deeper than the section is wide is smaller than the view.
+    set(this.times, factor < 1 ? "section" : `${times}×`);
     set(this.kept, kept);
     const scale = factor / pixel;
     const middle = point.clone().addScaledVector(normal, 0.5 * clearance);
