@@ -32,10 +32,10 @@ VISIBLE = 0.1  # a cut this deep is seen on the outside [mm], ours
 
 
 def units(scale: Scale) -> list[Unit]:
-    """Quick: two trials for each mode, as in Li et al., one for SLOW modes. Full: 40; sweeps of tremor and corridor;
-    trials without errors of the set-up."""
-    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES
-                             for n in range(40 if scale.full else 1 if mode in SLOW else 2)]
+    """Quick: two trials for each mode, as in Li et al., one for SLOW modes. Full: 40, ten for SLOW modes; sweeps of
+    tremor and corridor; trials without errors of the set-up."""
+    usual, slow = (40, 10) if scale.full else (2, 1)
+    trials: list[Planned] = [(mode, n, {}) for mode in modes.MODES for n in range(slow if mode in SLOW else usual)]
     trials += [(mode, 0, {"ideal": True}) for mode in SWEPT]
     trials += [("certified", n, {"corridor": c}) for c in CORRIDORS for n in range(10 if scale.full else 1)]
     if scale.full:

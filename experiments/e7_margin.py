@@ -156,7 +156,7 @@ def _is_down(here: Place, tip: Array, goal: int, margin: float) -> bool:
     return float((tip - here.points[goal]) @ here.up[goal]) < margin + 1.0
 
 
-class Arm:
+class ResearchKitArm:
     """A research kit's patient-side arm over the path, with the bodies of its instrument.
 
     The kinematic table and the bodies are those of tests/python/surfaces.py and fixtures/robots/psm.urdf. The place of
@@ -231,7 +231,7 @@ def _press_with_instrument(
     """Returns the least clearance of the instrument's bodies at their true place [mm], and the share of the path."""
     here = place()
     middle = len(here.points) // 2
-    arm = Arm(here.points[middle] + PORT_HEIGHT * here.up[middle], here.up[middle], here.ahead)
+    arm = ResearchKitArm(here.points[middle] + PORT_HEIGHT * here.up[middle], here.up[middle], here.ahead)
     whole = margin + BAND + (arm.joint_margin() if covers_joints else 0.0)
     guard = keepout.InstrumentGuard(here.index.mesh, arm.instrument, index=here.index, margin=whole, band=BAND)
     joints = arm.start(PORT_HEIGHT - whole - arm.RADII[-1] - 2.0 * START_HEIGHT)
@@ -298,7 +298,7 @@ def _table(rows: list[Row], tool: str) -> Table:
             _percent(float(np.mean([row["one_way"] for row in of]))), _found(of), str(len(of)),
             f"{min(row['clearance_mm'] for row in of):.2f}", f"{100 * np.mean([row['reached'] for row in of]):.0f} %",
         ])
-    extra = f" The errors of the joints need {Arm.joint_margin():.2f} mm more." if tool == INSTRUMENT else ""
+    extra = f" The errors of the joints need {ResearchKitArm.joint_margin():.2f} mm more." if tool == INSTRUMENT else ""
     return Table(
         f"Registrations with which the {tool} touches the dura",
         ["FLE [mm]", "margin covers", "confidence", "margin of the registration, median [mm]",

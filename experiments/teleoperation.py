@@ -31,7 +31,7 @@ SWEEP = (0.0, 0.049, 0.65)
 #: The modes of the sweeps and of the drawn trajectories.
 SWEPT = ("none", "paper", "certified")
 
-#: A trial of these takes 2 to 50 s of processor time, most of it in FCL and Bullet: a quick run has fewer of them.
+#: A trial of these takes 2 to 50 s of processor time, most of it in FCL and Bullet: E4 and quick runs have fewer of them.
 SLOW = ("all_faces", "fcl_slide", "bullet_slide")
 
 #: A mode, the number of the trial, and the settings of unit() that differ from its defaults.

@@ -11,10 +11,10 @@ except (OSError, anatomy.subprocess.CalledProcessError) as missing:
     pytest.skip(f"the CT skull is not prepared: {missing}", allow_module_level=True)
 
 
-def arm() -> e7_margin.Arm:
+def arm() -> e7_margin.ResearchKitArm:
     here = e7_margin.place()
     middle = len(here.points) // 2
-    return e7_margin.Arm(here.points[middle] + 150.0 * here.up[middle], here.up[middle], here.ahead)
+    return e7_margin.ResearchKitArm(here.points[middle] + 150.0 * here.up[middle], here.up[middle], here.ahead)
 
 
 def test_the_arm_points_straight_down_from_its_port() -> None:
@@ -29,7 +29,7 @@ def test_the_sampled_bodies_end_at_the_tip_of_any_joints() -> None:
     joints = arm().start(140.0) + random.uniform(-0.3, 0.3, (20, 6))
     points, radii = arm().sampled(joints)
     assert points[:, -1] == pytest.approx(arm().tips(joints), abs=1e-9)
-    assert set(radii) == set(e7_margin.Arm.RADII) and points.shape[1] == len(radii)
+    assert set(radii) == set(e7_margin.ResearchKitArm.RADII) and points.shape[1] == len(radii)
 
 
 def test_no_error_of_the_joints_displaces_the_instrument_by_more_than_their_margin() -> None:
@@ -39,7 +39,7 @@ def test_no_error_of_the_joints_displaces_the_instrument_by_more_than_their_marg
     before, _ = arm().sampled(joints)
     after, _ = arm().sampled(joints + signs * e7_margin.JOINT_ERRORS)
     displaced = np.linalg.norm(after - before, axis=2).max()
-    assert 0.3 * e7_margin.Arm.joint_margin() < displaced <= e7_margin.Arm.joint_margin()
+    assert 0.3 * e7_margin.ResearchKitArm.joint_margin() < displaced <= e7_margin.ResearchKitArm.joint_margin()
 
 
 @pytest.mark.parametrize("tool", [e7_margin.POINT, e7_margin.INSTRUMENT])
