@@ -362,7 +362,7 @@ _LINES = {"plane": ":", "cut": "--", "sure": "-"}
 
 
 def _figure(rows: list[Row]) -> Figure:
-    fig, axes = figures.new(170, 95, columns=2)
+    fig, axes = figures.new(170, 110, columns=2)
     markers = ("o", "s", "^")  # at least as many as FULL_ANATOMY
     for anatomy, marker in zip(dict.fromkeys(row["anatomy"] for row in rows), markers):
         own = [row for row in rows if row["anatomy"] == anatomy]
@@ -385,8 +385,9 @@ def _figure(rows: list[Row]) -> Figure:
                 title="Price of a proof")
     axes[1].xaxis.set_major_formatter("{x:g}")
     axes[1].minorticks_off()
-    axes[0].legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), ncol=1)
-    axes[1].legend(loc="upper left", bbox_to_anchor=(0.0, -0.2), ncol=1)
+    handles = axes[0].get_legend_handles_labels()[0]
+    for ax, half in zip(axes, (handles[: len(handles) // 2], handles[len(handles) // 2 :])):
+        ax.legend(handles=half, loc="upper left", bbox_to_anchor=(0.0, -0.25))
     return Figure(
         "e5_price_of_a_proof", "What a guarantee costs",
         f"Points of a line are cells of {', '.join(f'{cell:g}' for cell in CELLS)} mm. Left: an ideal rule is at the "

@@ -331,13 +331,14 @@ def _figure(rows: list[Row]) -> Figure:
         by_length.plot(lengths, [np.mean([row["one_way"] for row in some]) for some in of], color=figures.SOFT)
         _bars(by_length, lengths, of, marker, f"FLE {fle:g} mm", color)
     by_length.set(xlabel="margin of the point [mm]", ylabel="registrations that touch the dura", ylim=(-0.02, 1.0))
+    by_length.plot([], [], color=figures.SOFT, label="predicted")
     by_length.legend()
     for tool, covers, marker in ((POINT, KNOWN, "o"), (INSTRUMENT, JOINTS, "s")):
         of = [[row for row in rows if (row["tool"], row["covers"], row["confidence"]) == (tool, covers, confidence)]
               for confidence in CONFIDENCES]
         promised = (1.0 - np.array(CONFIDENCES)) * (0.93 if tool == POINT else 1.07)
         _bars(by_promise, promised, of, marker, tool, color if tool == POINT else figures.INK)
-    by_promise.plot([0.001, 0.5], [0.001, 0.5], color=figures.SOFT)
+    by_promise.plot([0.001, 0.5], [0.001, 0.5], color=figures.SOFT, label="promised")
     by_promise.set(xscale="log", xlabel="promised: at most")
     by_promise.set_yscale("symlog", linthresh=0.001)
     by_promise.set_ylim(-0.0002, 1.0)

@@ -36,6 +36,11 @@ class Primary:
     test: Against
     holm: float
 
+    @property
+    def is_better(self) -> bool:
+        """True if the mean difference favors the mode over the reference."""
+        return (self.test.difference.value > 0.0) == self.test.measure.higher_is_better
+
 
 @dataclass(frozen=True)
 class Printed:
@@ -237,7 +242,15 @@ def _short(one: Printed) -> str:
 
 
 def _headline(primary: list[Primary]) -> str:
-    sure = [f"{one.test.measure.name} against {figures.label(one.test.reference)} ({p_text(one.holm)})"
-            for one in primary if one.holm < 0.05]
-    return (f"Of eight primary tests of certified, {len(primary)} could be made. Significant after Holm: "
-            f"{'; '.join(sure) or 'none'}.")
+    """Returns by which ends certified differs from each reference, after Holm."""
+    sentences = []
+    for reference in REFERENCES:
+        of = [one for one in primary if one.test.reference == reference]
+        found = {
+            "better by": [one for one in of if one.holm < 0.05 and one.is_better],
+            "worse by": [one for one in of if one.holm < 0.05 and not one.is_better],
+            "no difference shown by": [one for one in of if one.holm >= 0.05],
+        }
+        parts = [f"{words} {', '.join(one.test.measure.name.split(',')[0] for one in some)}" for words, some in found.items() if some]
+        sentences.append(f"Certified against {figures.label(reference)}: {'; '.join(parts) or 'not tested'}.")
+    return f"{' '.join(sentences)} (Eight primary tests, after Holm; {len(primary)} could be made.)"

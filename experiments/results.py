@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Publishes a full run in experiments/results, and says which results have other sources by now.
 
-    python3 -m experiments.results out/experiments_full
+    PYTHONPATH=build/release/python python3 -m experiments.results out/experiments_full
 
-copies tables, figures, the summary and the record without its pictures, which are files beside it. `sources.json` has
-a digest of the code behind each experiment and mode. tests/experiments/test_results.py compares it with the sources.
+copies tables, figures, the summary and the record without its pictures, which are files beside it. Long tables are
+compressed. `sources.json` has a digest of the code behind each experiment and mode. tests/experiments/test_results.py
+compares it with the sources.
 """
 from __future__ import annotations
 
+import gzip
 import json
 import shutil
 import sys
@@ -19,6 +21,7 @@ from .experiment import Unit
 FOLDER = Path(__file__).parent / "results"
 SOURCES = "sources.json"
 LARGEST = 1_000_000  # all tables and the record [bytes]
+LONG = 200_000  # a table of more is compressed [bytes]
 
 #: The digests of each experiment by mode; of units without a mode by "".
 Digests = dict[str, dict[str, str]]
@@ -42,21 +45,22 @@ def outdated(folder: Path = FOLDER) -> list[str]:
 
 def publish(made: Path, folder: Path = FOLDER) -> None:
     """Replaces the results in `folder` by those of a run. Raises ValueError if its tables exceed LARGEST."""
-    tables = [*sorted(made.glob("*.csv")), made / SOURCES]
+    files = {file.name: file.read_bytes() for file in (*made.glob("*.csv"), made / SOURCES)}
+    files = {name if len(data) <= LONG else f"{name}.gz": data if len(data) <= LONG else gzip.compress(data, mtime=0)
+             for name, data in files.items()}
     record = json.loads((made / "experiments.json").read_text())
     for experiment in record["experiments"]:
         experiment["figures"] = []
-    text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
-    size = len(text.encode()) + sum(file.stat().st_size for file in tables)
+    files["experiments.json"] = (json.dumps(record, indent=1, ensure_ascii=False) + "\n").encode()
+    size = sum(map(len, files.values()))
     if size > LARGEST:
         raise ValueError(f"tables and record have {size:,} bytes, more than {LARGEST:,}")
     shutil.rmtree(folder, ignore_errors=True)
     (folder / "figures").mkdir(parents=True)
-    for file in (*tables, made / "README.md"):
-        shutil.copy(file, folder)
-    for file in (made / "figures").glob("*.svg"):
-        shutil.copy(file, folder / "figures")
-    (folder / "experiments.json").write_text(text, encoding="utf-8")
+    for name, data in files.items():
+        (folder / name).write_bytes(data)
+    for file in (made / "README.md", *(made / "figures").glob("*.svg")):
+        shutil.copy(file, folder / file.relative_to(made))
 
 
 if __name__ == "__main__":

@@ -49,7 +49,8 @@ HERE = Path(__file__).parent
 def source_digest(experiment: str, mode: str | None = None, *, libraries: bool = True) -> str:
     """Returns a digest of the code behind the rows of an experiment: its modules, and the rule of a mode.
 
-    The code counts, not its comments and docstrings. The C++ of benchmarks/native counts as a whole. A mode that modes.py
+    The code counts, not its comments and docstrings. In the experiment's own module, only what run() needs counts, so
+    other tables and figures leave the rows. The C++ of benchmarks/native counts as a whole. A mode that modes.py
     does not have depends on the rules of the references. With mode None, a unit depends on all rules of this package if
     the experiment uses any. libraries: True adds keepout as it is built.
     """
@@ -59,12 +60,13 @@ def source_digest(experiment: str, mode: str | None = None, *, libraries: bool =
         for file in sorted([*package.parent.glob("*.so"), *package.glob("*.so"), *package.glob("*.py")]):
             digest.update(_bytes_digest(file))
     found = _modules(f"{HERE.name}.{experiment}")
-    digest.update(_code(found))
+    own_module = HERE / f"{experiment}.py"
+    digest.update(_code(found - {own_module}) + _tree(own_module, "run").encode())
     if HERE / "rules" / "rule.py" in found:
         behind = modes.BUILT_IN if mode is None else (mode,) if mode in modes.MODES else modes.REFERENCES
         for source in filter(None, map(modes.source, behind)):
-            own = source.module.endswith(".py")
-            files = {Path(source.module)} if own else _modules(f"{HERE.name}.rules.{source.module}")
+            is_of_user = source.module.endswith(".py")
+            files = {Path(source.module)} if is_of_user else _modules(f"{HERE.name}.rules.{source.module}")
             digest.update(repr((source.name, source.options)).encode() + _code(files))
     return digest.hexdigest()[:16]
 
@@ -87,7 +89,8 @@ def _code(files: Iterable[Path]) -> bytes:
 
 
 @lru_cache(maxsize=None)
-def _tree(file: Path) -> str:
+def _tree(file: Path, function: str | None = None) -> str:
+    """Returns the code of a file; of Python, with a function, only what the function needs."""
     if file.suffix != ".py":
         return "".join(re.sub(r"//.*", "", file.read_text(encoding="utf-8")).split())
     tree = ast.parse(file.read_bytes())
@@ -97,7 +100,29 @@ def _tree(file: Path) -> str:
             first = body[0]
             if isinstance(first, ast.Expr) and isinstance(getattr(first.value, "value", None), str):
                 node.body = body[1:]
+    if function:
+        tree.body = _behind(tree.body, function)
     return ast.dump(tree)
+
+
+def _behind(body: list[ast.stmt], function: str) -> list[ast.stmt]:
+    """Returns the statements of a module that a function needs, and the function itself."""
+    needed: set[int] = set()
+    waiting = {function}
+    while waiting:
+        found = [node for node in body if id(node) not in needed and _bound(node) & waiting]
+        needed |= {id(node) for node in found}
+        waiting = {name.id for node in found for name in ast.walk(node) if isinstance(name, ast.Name)}
+    return [node for node in body if id(node) in needed or isinstance(node, ast.Expr)]
+
+
+def _bound(node: ast.stmt) -> set[str]:
+    """Returns the names that a statement of a module defines."""
+    if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+        return {node.name}
+    if isinstance(node, (ast.Import, ast.ImportFrom)):
+        return {(name.asname or name.name).split(".")[0] for name in node.names}
+    return {name.id for name in ast.walk(node) if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}
 
 
 @lru_cache(maxsize=None)

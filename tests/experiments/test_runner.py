@@ -90,6 +90,19 @@ def test_rows_depend_on_the_code_of_their_own_experiment_and_not_on_how_they_are
     assert digest("e2_run_time", "certified") == before["e2_run_time"]  # the experiment has no trials
 
 
+def test_of_an_experiment_only_the_code_that_its_run_needs_counts(copy: Path) -> None:
+    module = copy / "e2_run_time.py"
+    text = module.read_text()
+    before = digest("e2_run_time")
+    module.write_text(text.replace("ylim=(", "alpha=0.5, ylim=(") + "\n\ndef another_figure():\n    return LONGEST_STEP\n")
+    assert digest("e2_run_time") == before
+    for needed in ("LONGEST_STEP = ", "def rows_of("):
+        changed = text.replace(needed, f"{needed}1 + " if needed.endswith("= ") else f"{needed}extra, ")
+        assert changed != text
+        module.write_text(changed)
+        assert digest("e2_run_time") != before
+
+
 def test_a_rule_that_changes_keeps_the_rows_of_other_modes(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     rule = copy / "rules" / "mine.py"
     rule.write_text("GAIN = 1.0\n")
