@@ -94,10 +94,13 @@ def rows_by_mode(rows: list[Row]) -> ByMode:
 
 
 def against(measure: Measure, mode: str, reference: str, by_mode: ByMode, seed: int) -> Against | None:
-    """Compares a mode with a reference by a measure; None for fewer than two pairs."""
+    """Compares a mode with a reference by a measure; None for fewer than two pairs, or if one of them has no values.
+
+    No fixture has no chatter, for example, and a mode of which no trial ends has no duration.
+    """
     here, there = ({row["number"]: row[measure.member] for row in by_mode.get(m, [])} for m in (mode, reference))
     pairs = [(here[number], there[number]) for number in here if number in there]
-    if len(pairs) < 2:
+    if len(pairs) < 2 or any(all(value is None for value in side) for side in zip(*pairs)):
         return None
     worst = -np.inf if measure.higher_is_better else np.inf
     ranked = [0.0 if a is b is None else (worst if a is None else a) - (worst if b is None else b) for a, b in pairs]
@@ -189,7 +192,7 @@ def _tests_table(by_mode: ByMode, measures: tuple[Measure, ...], seed: int) -> T
         [[test.measure.heading, figures.label(test.mode), str(test.pairs), str(test.valued), test.difference.text(),
           test.effect.text(), f"{test.p:.2g}"] for test in found],
         "Differences are fixture minus no fixture. p is of the signed-rank test over all pairs, with unfinished "
-        f"trials as the worst, and is not adjusted for the {len(found)} tests: none of them confirms anything. "
+        f"trials as the worst. It is not adjusted for the {len(found)} tests: none of them confirms anything. "
         "The primary tests are in the table of the numbers of Li et al.",
     )
 

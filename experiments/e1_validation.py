@@ -146,7 +146,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     steps = sum(row["steps"] for row in of[OURS])
     headline = (
         f"Certified: in {steps:,} steps on {len(_shapes(of[OURS]))} closed shapes, with steps of {LENGTHS[0]:g} to "
-        f"{LENGTHS[-1]:g} mm, the tip entered in {_rate(of[OURS])} loops, and {_percent(of[OURS])} of the free "
+        f"{LENGTHS[-1]:g} mm. The tip entered in {_rate(of[OURS])} loops, and {_percent(of[OURS])} of the free "
         f"motion was lost. The paper's rule as printed: {_rate(of[AS_PUBLISHED])} loops, "
         f"{_percent(of[AS_PUBLISHED])} lost.")
     return Findings(headline, claims, [_by_length(of), _overview(of), _by_shape(of)], [_picture(of)])

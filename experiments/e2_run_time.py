@@ -163,8 +163,8 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     curves = {way: curve(of) for way, of in khz.items()}
     parts = [(name, factor(khz, before, after, sizes[-1])) for name, before, after in _changes()]
     headline = (
-        f"On {sizes[-1]:,} triangles, from the rule of Li et al. on their tree with a sphere of 5 mm to the certified "
-        f"rule: {'; '.join(f'the {name} makes steps {_text(times)} times as fast' for name, times in parts)}. "
+        f"From the rule of Li et al. on their tree, with a sphere of 5 mm, to certified, on {sizes[-1]:,} triangles. "
+        f"{' '.join(f'The {name} makes a step {_text(times)} times as fast.' for name, times in parts)} "
         f"The certified rule makes steps at {_khz(dict(curves[OURS])[sizes[-1]])} kHz there.")
     return Findings(headline, _claims(khz, curves),
                     [_factor_table(khz, sizes), _rate_table(rows, khz, curves, sizes), _slow_table(rows, sizes)],
@@ -220,7 +220,7 @@ def _factor_table(khz: Timed, sizes: list[int]) -> Table:
         ["change", "from", "to", *(f"{size:,}" for size in sizes)],
         [[name, _way(before), _way(after), *(_text(factor(khz, before, after, size)) for size in sizes)]
          for name, before, after in [*_changes(), ("all three", REPRODUCTION, OURS)]],
-        "How many times as fast a step becomes: median of the parts, with its 95 % interval. Both sides of a "
+        "The cells are ratios of rates: the median of the parts, with its 95 % interval. Both sides of a "
         "factor have the same motions. The rule of Li et al. has no margin here and "
         "certified has one of 0.2 mm, so certified searches farther.",
     )
@@ -365,7 +365,7 @@ def _factor_figure(khz: Timed, sizes: list[int]) -> Figure:
                title=textwrap.fill(name, 20))
     axes[0].set_ylabel("times as fast")
     return Figure(
-        "rate_factors", "What makes a step faster: index, sphere, rule",
+        "rate_factors", "Index, sphere and rule as factors of the rate",
         f"Each point is the median factor of the parts, with its 95 % interval. The changes follow each other: "
         f"{_way(REPRODUCTION)}, "
         f"then {', then '.join(_way(way) for _, way in FACTORS)}.",

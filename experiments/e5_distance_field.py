@@ -259,7 +259,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     ours = [row for row in rows if row["mode"] == OURS]
     p_values = _p_values(rows)
     cost = Table(
-        "What a guarantee costs",
+        "The costs of a guarantee",
         ["anatomy", "field", "cell [mm]", "entered", "free space refused", "memory, box / all [MB]", "built in [s]",
          "step [µs]", "error 99 % / max [mm]", "p"],
         [[
@@ -389,7 +389,7 @@ def _figure(rows: list[Row]) -> Figure:
     for ax, half in zip(axes, (handles[: len(handles) // 2], handles[len(handles) // 2 :])):
         ax.legend(handles=half, loc="upper left", bbox_to_anchor=(0.0, -0.25))
     return Figure(
-        "e5_price_of_a_proof", "What a guarantee costs",
+        "e5_price_of_a_proof", "The costs of a guarantee",
         f"Points of a line are cells of {', '.join(f'{cell:g}' for cell in CELLS)} mm. Left: an ideal rule is at the "
         "origin. Right: fields that are inflated to a proof, and the certified rule, which queries the mesh.",
         figures.svg(fig))

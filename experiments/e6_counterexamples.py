@@ -74,7 +74,7 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
     closed = [e for e in examples if of[e, "paper"]["closed"]]
     on_closed = ", ".join(f"{e}: {cell(of[e, 'paper'])}" for e in closed)
     return Findings(
-        f"The paper's rule on the closed mesh, {on_closed}. Of all, {said('paper')} "
+        f"The paper's rule on the closed mesh, {on_closed}. On all meshes, {said('paper')} "
         f"({', '.join(passed['paper']) or 'none'}). Certified: {said('certified')}.",
         claims=[
             Claim(

@@ -123,14 +123,14 @@ def bars(rows: list[Row], measure: Measure) -> tuple[Interval, list[Bar]]:
 def findings(rows: list[Row], scale: Scale) -> Findings:
     of_ends = [(end, *bars(of, end)) for name, module in EXPERIMENTS.items()
                if (of := [row for row in rows if row["experiment"] == name]) for end in _ends(module)]
-    told = "; ".join(f"{end.name}, {_better(end, found)}"
+    told = ". ".join(f"{end.name[0].upper()}{end.name[1:]}: {_better(end, found)}"
                      + (f" ({_better(end, [bar for bar in found if bar.parameter in FROM_LITERATURE])} with a range from literature)"
                         if end.member == "spectral_arc_length" else "") for end, _, found in of_ends)
     changed = {row["parameter"] for row in rows} - {BASE}
     published = len(changed & set(FROM_LITERATURE))
     return Findings(
-        f"Points at which certified is better than no fixture, with one value changed: {told}. Of {len(changed)} ranges, "
-        f"{published} are from literature and {len(changed) - published} are ours.",
+        "One value is changed at each point. The numbers count the points at which certified is better than no fixture. "
+        f"{told}. {published} ranges are from literature and {len(changed) - published} are ours.",
         tables=[_table(*one) for one in of_ends],
         figures=[_tornado([one for one in of_ends if one[0].published])],
     )

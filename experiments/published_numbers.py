@@ -135,7 +135,7 @@ def _claim(measure: Measure, by_mode: ByMode, primary: list[Primary], printed: l
         where = f"; difference: {place.text(gain.number)} of designs" if place else ""
         return f"{told[0]} → {told[1]}{unit}{where}"
 
-    tests = [f"certified minus {figures.label(one.test.reference)}: {one.test.text()}, {p_text(one.holm)}"
+    tests = [f"Certified minus {figures.label(one.test.reference)}: {one.test.text()}, {p_text(one.holm)}"
              for one in primary if one.test.measure is measure]
     return Claim(
         about=f"{paper.about} ({paper.section}), free hand → fixture",
@@ -144,7 +144,7 @@ def _claim(measure: Measure, by_mode: ByMode, primary: list[Primary], printed: l
         reproduction=pair("paper"),
         certified=pair("certified"),
         best=best(measure, by_mode, seed),
-        sure="; ".join(tests) or "too few pairs",
+        sure=". ".join(tests) or "too few pairs",
         note=measure.why,
     )
 
@@ -230,7 +230,7 @@ def _figure(printed: list[Printed]) -> Figure:
     known = dict(zip(*reversed(ax.get_legend_handles_labels())))
     ax.legend(known.values(), known.keys(), loc="lower center", bbox_to_anchor=(0.0, 1.0), ncol=3)
     return Figure(
-        "published_numbers", "Where the printed numbers fall",
+        "published_numbers", "The printed numbers among simulated designs",
         "Each line spans the central 95 % of the simulated designs, with a dot at their median. The printed number is "
         "at 0. A line that does not reach 0 contradicts the printed number.",
         figures.svg(fig))

@@ -4,6 +4,7 @@ import csv
 import gzip
 import json
 import random
+import re
 from pathlib import Path
 
 import pytest
@@ -72,3 +73,22 @@ def test_the_published_tables_are_small_and_have_rows() -> None:
         plain = results.FOLDER / f"{name}.csv"
         with plain.open() if plain.exists() else gzip.open(f"{plain}.gz", "rt") as table:
             assert len(list(csv.reader(table))) > 1
+
+
+@pytest.mark.skipif(not PUBLISHED.exists(), reason="no run with sources.json is published yet")
+def test_the_readme_tells_the_published_results() -> None:
+    record = json.loads((results.FOLDER / "experiments.json").read_text())
+    found = {experiment["name"]: experiment["headline"] for experiment in record["experiments"]}
+    readme = " ".join((results.FOLDER.parents[1] / "README.md").read_text().split())
+    first = re.fullmatch(r"Certified: in (.*)\. The tip entered in 0 of \d+ \[.*?\] loops, and (.*?) of the free motion was "
+                         r"lost. The paper's rule as printed: 0 of \d+ \[.*?\] loops, (.*?) lost.", found["e1_validation"])
+    assert first, found["e1_validation"]
+    assert f"In {first[1]}, `certified` never let the tip in, and lost {first[2]} of the free motion." in readme
+    assert f"never let it in there either, and lost {first[3]}." in readme
+    assert "4 of 9 passed through" in found["e6_counterexamples"] and "0 of 9 passed" in found["e6_counterexamples"]
+    assert found["published_numbers"].startswith(
+        "Certified against no fixture: better by spectral arc length, cutting path deviation, absolute penetration depth, "
+        "duration. ")
+    sparc = next(row for e in record["experiments"] if e["name"] == "e3_path_tracing" for table in e["tables"]
+                 if "exploratory" in table["title"] for row in table["rows"] if row[:2] == ["SPARC, 10 Hz", "certified"])
+    assert sparc[2] == "40" and float(sparc[4].split("[")[1].split(",")[1].rstrip("]")) < 0

@@ -59,7 +59,7 @@ def test_bars_are_differences_of_pairs_the_longest_first() -> None:
     assert [(bar.parameter, bar.low.value, bar.high.value, bar.pairs) for bar in found] == [
         ("a", 0.5, 2.0, 2), ("b", 1.0, 1.25, 1)]
     findings = e8_sensitivity.findings(rows, Scale())
-    assert "4 of 4" in findings.headline and "0 are from literature and 2 are ours" in findings.headline
+    assert "4 of 4" in findings.headline and "0 ranges are from literature and 2 are ours" in findings.headline
     assert len(findings.tables) == 3
     assert [row[0] for row in findings.tables[0].rows] == ["a", "b"]
 
