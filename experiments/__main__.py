@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import json
 import os
 import shlex
 import shutil
@@ -12,18 +13,24 @@ from pathlib import Path
 
 import keepout
 
-from . import record, runner, summary
 from .arguments import NAMES, read
-from .experiment import Findings, Scale
-
-EXPERIMENTS = tuple(importlib.import_module(f".{name}", __package__) for name in NAMES)
 
 
 def main(arguments: list[str]) -> int:
     told = read(arguments)
-    if told.quiet:
-        os.environ["KEEPOUT_QUIET"] = "1"  # programs that this one starts obey it as well
-    experiments = [e for e in EXPERIMENTS if not told.only or e.NAME in told.only]
+    # Programs and workers that this one starts obey these as well.
+    chosen = {"KEEPOUT_QUIET": told.quiet and "1", "KEEPOUT_MODES": told.modes, "KEEPOUT_RULE": told.rule}
+    os.environ.update({name: value for name, value in chosen.items() if value})
+    # Only now, because modes.py reads them when it is imported.
+    from . import modes, published_numbers, record, results, runner, summary
+    from .experiment import Findings, Scale
+
+    unknown = sorted({name for name in told.modes.split(",") if name} - set(modes.MODES))
+    if unknown:
+        known = ", ".join(modes.BUILT_IN)
+        print(f"keepout: --modes: there is no '{', '.join(unknown)}'; there are {known}", file=sys.stderr)
+        return 2
+    experiments = [importlib.import_module(f".{name}", __package__) for name in told.only or NAMES]
     root = Path(__file__).resolve().parent.parent
     folder: Path = told.out or root / "out" / ("experiments_full" if told.full else "experiments")
     (folder / "figures").mkdir(parents=True, exist_ok=True)
@@ -42,18 +49,21 @@ def main(arguments: list[str]) -> int:
         return 130
 
     findings: dict[str, tuple[str, Findings]] = {}
+    if any(e.NAME in rows for e in published_numbers.FROM):
+        findings[published_numbers.NAME] = (published_numbers.TITLE, published_numbers.findings(rows, scale))
     for experiment in experiments:
-        name = experiment.NAME
-        runner.write_tables(name, rows[name], folder)
-        found = experiment.findings(rows[name], scale)
+        findings[experiment.NAME] = (experiment.TITLE, experiment.findings(rows[experiment.NAME], scale))
+        for name, table in runner.tables(experiment.NAME, rows[experiment.NAME]).items():
+            (folder / f"{name}.csv").write_text(table)
+    for title, found in findings.values():
+        print(f"{title}\n  {found.headline}")
         for figure in found.figures:
             (folder / "figures" / f"{figure.name}.svg").write_text(figure.svg)
-        findings[name] = (experiment.TITLE, found)
-        print(f"{experiment.TITLE}\n  {found.headline}")
     command = shlex.join(["./run", "experiments", *arguments])
     (folder / "README.md").write_text(summary.text(findings, command, keepout.__version__))
+    (folder / results.SOURCES).write_text(json.dumps(results.sources(units), indent=1) + "\n")
     file = folder / "experiments.json"
-    record.write_record(file, scale, findings, complete=len(experiments) == len(EXPERIMENTS), command=command)
+    record.write_record(file, scale, findings, complete=len(experiments) == len(NAMES), command=command)
     reported = _report(file)
     print(f"tables and figures in {folder}; {'report' if reported else 'record'} in {reported or file}")
     return 0
@@ -72,6 +82,6 @@ def _report(file: Path) -> Path | None:
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
-    except (keepout.Error, OSError, runner.UnitError, subprocess.CalledProcessError) as error:
+    except (keepout.Error, OSError, RuntimeError, subprocess.CalledProcessError) as error:
         print(f"keepout: {error}", file=sys.stderr)
         sys.exit(1)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import keepout
 import numpy as np
-from scipy.ndimage import gaussian_filter, gaussian_filter1d
+from scipy.ndimage import gaussian_filter
 
 from .experiment import Array
 from .planned_path import PlannedPath
@@ -77,23 +77,12 @@ def _path(y: Array, z: Array, spacing: float) -> PlannedPath:
     )
 
 
-@lru_cache(maxsize=1)
-def skull_path(spacing: float = 0.05) -> PlannedPath:
-    """Returns the path on the skull. It is smoothed by 1 mm, so that it does not follow voxels."""
-    y = np.arange(PATH_BEGINS - 5.0, PATH_BEGINS + PATH_LENGTH + 10.0, spacing)
-    z = outer_surface(real_index("skull"), np.full_like(y, SAGITTAL_X), y)
-    smooth = gaussian_filter1d(z, 1.0 / spacing)
-    inside = y >= PATH_BEGINS
-    return _path(y[inside], smooth[inside], spacing)
+@lru_cache(maxsize=2)
+def _print(depth: float, cell: float = 0.5) -> tuple[PlannedPath, keepout.Index]:
+    """Returns the path on the outside of a print of the skull, and the index of all that is `depth` [mm] below it.
 
-
-@lru_cache(maxsize=1)
-def phantom(cell: float = 0.5) -> tuple[PlannedPath, keepout.Index]:
-    """Returns the phantom that is cut: the path on its outside, and the index of the forbidden region.
-
-    The outside is that of the CT skull, smoothed by 1 mm as a print is. The shell is 2 mm thick everywhere.
-    Everything below its inside is forbidden: a closed block whose top is the outside moved 2 mm inwards along its
-    normals. So the depth of a cut below the inside is the penetration depth of Li et al.
+    The outside is that of the CT skull, smoothed by 1 mm as a print is. The forbidden region is a closed block, whose
+    top is the outside moved inwards along its normals.
     """
     x = np.arange(SAGITTAL_X - 20.0, SAGITTAL_X + 20.01, cell)
     y = np.arange(PATH_BEGINS - 15.0, PATH_BEGINS + PATH_LENGTH + 15.01, cell)
@@ -102,11 +91,25 @@ def phantom(cell: float = 0.5) -> tuple[PlannedPath, keepout.Index]:
     slope_x, slope_y = np.gradient(z, cell)
     normals = np.stack([-slope_x, -slope_y, np.ones_like(z)], axis=-1)
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    inside = np.stack([grid_x, grid_y, z], axis=-1) - SHELL * normals
+    inside = np.stack([grid_x, grid_y, z], axis=-1) - depth * normals
     middle = len(x) // 2
     fine = np.arange(PATH_BEGINS, PATH_BEGINS + PATH_LENGTH + 10.0, 0.05)
     path = _path(fine, np.interp(fine, y, z[middle]), 0.05)
     return path, keepout.Index(_block_below(inside))
+
+
+def printed_skull() -> tuple[PlannedPath, keepout.Index]:
+    """Returns the skull that is traced: the path on its outside, and the index of the skull."""
+    return _print(0.0)
+
+
+def phantom() -> tuple[PlannedPath, keepout.Index]:
+    """Returns the phantom that is cut: the path on its outside, and the index of the forbidden region.
+
+    The shell is SHELL thick everywhere, and all below it is forbidden. So the depth of a cut below the inside of the
+    shell is the penetration depth of Li et al.
+    """
+    return _print(SHELL)
 
 
 def _block_below(top: Array) -> keepout.Mesh:

@@ -21,6 +21,10 @@ def parser() -> argparse.ArgumentParser:
     of.add_argument("--full", action="store_true", help="all shapes and sizes, more repetitions: about an hour")
     of.add_argument("--seed", type=int, default=1, help="of all random numbers (default: 1)")
     of.add_argument("--only", metavar="E1,E3", default="", help=f"some of {names}")
+    of.add_argument("--modes", metavar="NAMES", default="", help="the modes to compare, such as vector_field,fcl_slide: "
+                    "fewer modes take less time. none, paper and certified are always compared")
+    of.add_argument("--rule", type=_rule, metavar="FILE:CLASS", help="also compare a rule of your own, such as "
+                    "mine.py:MyRule; examples/python/own_rule.py is one")
     of.add_argument("--out", type=_folder, metavar="FOLDER", help="where to write (default: out/experiments "
                     "beside run, with --full out/experiments_full)")
     of.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: one a processor)")
@@ -33,6 +37,15 @@ def _folder(text: str) -> Path:
     if not text:
         raise argparse.ArgumentTypeError("expected the name of a folder, not ''")
     return Path(text)
+
+
+def _rule(text: str) -> str:
+    file, _, name = text.rpartition(":")
+    if not file.endswith(".py") or not name.isidentifier():
+        raise argparse.ArgumentTypeError(f"expected FILE.py:CLASS, not '{text}'")
+    if not Path(file).is_file():
+        raise argparse.ArgumentTypeError(f"there is no file '{file}'")
+    return f"{Path(file).resolve()}:{name}"
 
 
 def read(arguments: list[str]) -> argparse.Namespace:

@@ -8,11 +8,13 @@ by search; one of them is closed and well made. docs/activation.md explains each
 from __future__ import annotations
 
 import keepout
+import keepout_peers
 import numpy as np
 
 from . import figures
 from .experiment import Claim, Findings, Row, Scale, Table, Unit
 from .modes import FIXTURES, make_rule
+from .rules.native import terrain_of
 from .rules.rule import Task
 
 NAME = "e6_counterexamples"
@@ -28,14 +30,12 @@ def units(scale: Scale) -> list[Unit]:
 
 def run(unit: Unit) -> list[Row]:
     """Returns a row for each counterexample."""
-    import keepout_peers
-
     rows: list[Row] = []
     for name, vertices, triangles, tip, desired, radius in keepout_peers.counterexamples():
-        index = keepout.Index(keepout.Mesh(vertices, triangles))
-        judge = keepout_peers.Judge(vertices, triangles)
-        task = Task(index.mesh, margin=MARGIN, radius=radius)
-        rule = make_rule(unit.settings["mode"], task, index)
+        mesh = keepout.Mesh(vertices, triangles)
+        judge = terrain_of(mesh).judge()
+        task = Task(mesh, margin=MARGIN, radius=radius)
+        rule = make_rule(unit.settings["mode"], task)
         assert rule is not None, "a fixture has a rule"
         places = [np.array(tip)]
         for _ in range(CYCLES):
@@ -71,9 +71,11 @@ def findings(rows: list[Row], scale: Scale) -> Findings:
         return "passes later" if row["passes"] else "held"
 
     fewest = min(len(p) for p in passed.values())
+    closed = [e for e in examples if of[e, "paper"]["closed"]]
+    on_closed = ", ".join(f"{e}: {cell(of[e, 'paper'])}" for e in closed)
     return Findings(
-        f"The paper's rule: {said('paper')} ({', '.join(passed['paper']) or 'none'}). Certified: "
-        f"{said('certified')}.",
+        f"The paper's rule on the closed mesh, {on_closed}. On all meshes, {said('paper')} "
+        f"({', '.join(passed['paper']) or 'none'}). Certified: {said('certified')}.",
         claims=[
             Claim(
                 about="completeness: local cases in which the tip passes through (III-B)",

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+
 #: A row of an experiment's table: names and values, which are text, numbers, booleans, lists or None.
 Row = dict[str, Any]
 

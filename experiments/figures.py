@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import io
 import re
-import textwrap
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
@@ -60,12 +59,13 @@ MODES = {
     "certified": Look("certified", *_of_pages["certified"]),
     "closest_points_2007": Look("closest points (2007)", "#3e1ae8", "#7853fc"),
     "vector_field": Look("vector field", "#850760", "#b03ead"),
-    "sdf_0.25": Look("distance field, 0.25 mm", "#615503", "#dad00b"),
-    "sdf_0.5": Look("distance field, 0.5 mm", "#283a03", "#b6d287"),
-    "sdf_1": Look("distance field, 1 mm", "#3c9345", "#3c982a"),
-    "fcl_continuous": Look("FCL, continuous", "#3d020d", "#e66072"),
-    "bullet_sweep": Look("Bullet, sweep", "#5e099b", "#ecdcee"),
+    "distance_field": Look("distance field", "#615503", "#dad00b"),
+    "fcl_slide": Look("FCL, sliding", "#3d020d", "#e66072"),
+    "bullet_slide": Look("Bullet, sliding", "#5e099b", "#ecdcee"),
 }
+
+#: The colors of a rule of your own (`--rule`), whose label is its name.
+OWN = Look("", "#9e59fe", "#fd1d17")
 
 #: The modes that others are compared with: their boxes are fuller, and their names bold.
 STRESSED = ("paper", "certified")
@@ -76,6 +76,7 @@ _LOOKS = {
     "soft": Look("", SOFT, "#9eabbd"),
     "grid": Look("", GRID, "#2c3745"),
     "paper": Look("", PAPER, "#18202b"),
+    "own": OWN,
 } | {"mode-" + mode.replace(".", "-"): look for mode, look in MODES.items()}
 _DRAWN = {INK: "ink"} | {look.light: name for name, look in _LOOKS.items() if name != "ink"}
 
@@ -115,19 +116,19 @@ def new(
 
 def color(mode: str) -> str:
     """Returns the color of a mode, the same in all figures."""
-    return MODES[mode].light
+    return MODES.get(mode, OWN).light
 
 
 def label(mode: str) -> str:
     """Returns the label of a mode."""
-    return MODES[mode].name
+    return MODES[mode].name if mode in MODES else mode
 
 
-def box_plot(ax: Axes, groups: dict[str, NDArray[np.float64]], ylabel: str) -> None:
-    """Draws box plots of values by mode, from left to right, and every value as a point.
+def box_plot(ax: Axes, groups: dict[str, NDArray[np.float64]], label_of_values: str) -> None:
+    """Draws box plots of values by mode, one below the other, and every value as a point.
 
-    A box spans the quartiles, with a line at the median. Whiskers reach the last value within 1.5 times its height.
-    Points are spread sideways only to separate them.
+    A box spans the quartiles, with a line at the median. Whiskers reach the last value within 1.5 times its length.
+    Points are spread across the box only to separate them.
     """
     for place, (mode, values) in enumerate(groups.items()):
         shade = color(mode)
@@ -135,6 +136,7 @@ def box_plot(ax: Axes, groups: dict[str, NDArray[np.float64]], ylabel: str) -> N
         face = to_rgba(shade, 0.4 if mode in STRESSED else 0.1)
         ax.boxplot(
             values,
+            vert=False,
             positions=[place],
             widths=0.56,
             showfliers=False,
@@ -145,20 +147,13 @@ def box_plot(ax: Axes, groups: dict[str, NDArray[np.float64]], ylabel: str) -> N
             medianprops={"color": shade, "linewidth": 2.2},
         )
         spread = (np.arange(len(values)) * 0.6180339887) % 1.0 - 0.5  # the golden section spreads them evenly
-        ax.plot(place + 0.4 * spread, values, "o", color=shade, alpha=0.5, markersize=2.6,
-                markeredgewidth=0)
-    room = MM_OF_INCH * ax.figure.get_figwidth() * ax.get_position().width / len(groups)
-    if room > 20.0:  # mm, enough for a name in lines; otherwise names are slanted
-        names = [textwrap.fill(label(mode), 12, break_long_words=False) for mode in groups]
-        ax.set_xticks(range(len(groups)), names)
-    else:
-        ax.set_xticks(range(len(groups)), [label(mode) for mode in groups], rotation=30, ha="right",
-                      rotation_mode="anchor")
-    for mode, tick in zip(groups, ax.get_xticklabels()):
+        ax.plot(values, place + 0.4 * spread, "o", color=shade, alpha=0.5, markersize=2.6, markeredgewidth=0)
+    ax.set_yticks(range(len(groups)), [label(mode) for mode in groups])
+    for mode, tick in zip(groups, ax.get_yticklabels()):
         tick.set_fontweight("bold" if mode in STRESSED else "normal")
-    ax.set_xlim(-0.6, len(groups) - 0.4)
-    ax.grid(False, axis="x")
-    ax.set_ylabel(ylabel)
+    ax.set_ylim(len(groups) - 0.4, -0.6)
+    ax.grid(False, axis="y")
+    ax.set_xlabel(label_of_values)
 
 
 def svg(fig: Figure) -> str:
@@ -168,9 +163,8 @@ def svg(fig: Figure) -> str:
     """
     file = io.StringIO()
     fig.savefig(file, format="svg")
-    titles = [
-        ax.get_title() or f"{ax.get_ylabel()} by {ax.get_xlabel() or 'mode'}" for ax in fig.axes
-    ]
+    named = [(ax.get_title(), ax.get_ylabel(), ax.get_xlabel()) for ax in fig.axes]
+    titles = [title or (f"{y} by {x}" if y else f"{x} by mode") for title, y, x in named]
     fig.clear()
     text = file.getvalue()
     if "<image" in text:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests if two modes differ, by how much, and how certain that is.
 
-The p values of Li et al. (2020) are of Student's test, which assumes that both modes have the same variance. Welch's
-test does not, and is the one to trust. A sample has one number for each trial. Values at every millimeter of one
-cut are not independent; a test that treats them as independent gives p values that are too small.
+Trials of two modes are pairs: the trials with the same number share operator, tremor and registration. A sample has
+one number for each trial. Values at every millimeter of one cut are not independent; a test that treats them as
+independent gives p values that are too small. That test of Li et al. (2020) is published_design.student_p().
 """
 from __future__ import annotations
 
@@ -12,103 +12,134 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy import optimize, stats
 
 from .experiment import Array
 
-
-@dataclass(frozen=True)
-class Summary:
-    """The summary of a sample: mean, standard deviation (of n - 1), and size."""
-
-    mean: float
-    sd: float
-    n: int
-
-    @staticmethod
-    def of(sample: ArrayLike) -> Summary:
-        values = np.asarray(sample, dtype=np.float64)
-        return Summary(float(values.mean()), float(values.std(ddof=1)), len(values))
+CONFIDENCE = 0.95
+#: From this number of pairs on, the interval of an effect is a BCa bootstrap; below, it is exact for normal samples.
+MANY_PAIRS = 15
 
 
 @dataclass(frozen=True)
-class MeanTest:
-    """A test of equal means: the statistic, and the two-sided p."""
+class Interval:
+    """An estimate with its 95 % interval; NaN if unknown."""
 
-    t: float
-    p: float
-
-
-@dataclass(frozen=True)
-class Effect:
-    """Hedges' g, the difference a - b in standard deviations, and its interval. NaN if unknown."""
-
-    g: float
+    value: float
     low: float
     high: float
 
-
-def student(a: Summary, b: Summary) -> MeanTest:
-    """Returns the pooled test: exact for normal samples with the same variance."""
-    return _test(a, b, equal_var=True)
-
-
-def welch(a: Summary, b: Summary) -> MeanTest:
-    """Returns the test for variances that may differ, with the degrees of freedom of Welch and Satterthwaite."""
-    return _test(a, b, equal_var=False)
+    def text(self, digits: int = 3) -> str:
+        """Returns the estimate and its interval; `-` if the estimate is unknown."""
+        if not np.isfinite(self.value):
+            return "-"
+        if not np.isfinite(self.low):
+            return f"{self.value:.{digits}g}"
+        return f"{self.value:.{digits}g} [{self.low:.{digits}g}, {self.high:.{digits}g}]"
 
 
-def _test(a: Summary, b: Summary, *, equal_var: bool) -> MeanTest:
-    if a.sd == b.sd == 0.0:  # without spread the means are equal or different for certain
-        same = a.mean == b.mean
-        return MeanTest(0.0 if same else float(np.copysign(np.inf, a.mean - b.mean)), float(same))
-    found = stats.ttest_ind_from_stats(a.mean, a.sd, a.n, b.mean, b.sd, b.n, equal_var)
-    return MeanTest(float(found.statistic), float(found.pvalue))
+UNKNOWN = Interval(float("nan"), float("nan"), float("nan"))
 
 
-def hedges_g(a: Summary, b: Summary) -> float:
-    """Returns (a - b) / pooled deviation, times the correction 1 - 3 / (4 dof - 1).
+def signed_rank_p(differences: ArrayLike) -> float:
+    """Returns the two-sided p of Wilcoxon's signed-rank test, exact also with ties.
 
-    The correction is needed because small samples exaggerate the effect. Returns NaN without spread. Source: Hedges,
-    "Distribution theory for Glass's estimator of effect size", 1981.
+    differences: (n,), one for each pair. Infinite differences share the largest rank, so a trial without a value can
+    count as the worst (Lachin 1999, worst-rank scores). Zeros are omitted (Wilcoxon 1945). The p is twice the smaller
+    tail of the sum of the positive ranks over all signs, at most 1. It is 1 if all differences are zero, and NaN if
+    one is NaN.
     """
-    if a.sd == b.sd == 0.0:
+    values = np.asarray(differences, dtype=np.float64)
+    if np.isnan(values).any():
         return float("nan")
-    squares = (a.n - 1) * a.sd**2 + (b.n - 1) * b.sd**2
-    return float(_bounded_g(np.float64(a.mean - b.mean), squares, a.n + b.n - 2))
+    values = values[values != 0.0]
+    twice = np.rint(2.0 * stats.rankdata(np.abs(values))).astype(int)  # ranks of ties are halves
+    ways = np.ones(1)  # ways[s]: the share of signs with positive ranks of sum s / 2
+    for rank in twice:
+        longer = np.zeros(len(ways) + rank)
+        longer[: len(ways)] += 0.5 * ways
+        longer[rank:] += 0.5 * ways
+        ways = longer
+    positive = int(twice[values > 0.0].sum())
+    return float(min(1.0, 2.0 * min(ways[: positive + 1].sum(), ways[positive:].sum())))
 
 
-def _bounded_g(difference: Array, squares: Array, dof: int) -> Array:
-    """Returns g from differences of means and sums of squares. Limited to a million, because some samples have no
-    spread."""
-    spread = np.maximum(np.sqrt(squares / dof), 1e-6 * np.abs(difference))
-    g: Array = difference / np.where(difference == 0.0, 1.0, spread) * (1 - 3 / (4 * dof - 1))
-    return g
+def mean_difference(differences: ArrayLike) -> Interval:
+    """Returns the mean of (n,) differences of pairs with Student's interval; the interval is NaN for n < 2."""
+    values = np.asarray(differences, dtype=np.float64)
+    if len(values) < 2:
+        return Interval(float(values.mean()), UNKNOWN.low, UNKNOWN.high) if len(values) else UNKNOWN
+    mean, sd, n = float(values.mean()), float(values.std(ddof=1)), len(values)
+    wide = float(stats.t.ppf(0.5 + CONFIDENCE / 2, n - 1)) * sd / np.sqrt(n)
+    return Interval(mean, mean - wide, mean + wide)
 
 
-def _hedges_g_along(a: Array, b: Array, axis: int = -1) -> Array:
-    n, m = a.shape[axis], b.shape[axis]
-    squares = (n - 1) * a.var(axis, ddof=1) + (m - 1) * b.var(axis, ddof=1)
-    return _bounded_g(a.mean(axis) - b.mean(axis), squares, n + m - 2)
+def effect(differences: ArrayLike, seed: int, resamples: int = 5000) -> Interval:
+    """Returns the mean of (n,) differences of pairs in their standard deviations: Hedges' g of pairs.
 
-
-def effect(
-    a: ArrayLike, b: ArrayLike, seed: int, confidence: float = 0.95, resamples: int = 10_000
-) -> Effect:
-    """Returns Hedges' g with the interval of the BCa bootstrap, which resamples each mode separately.
-
-    Efron, "Better bootstrap confidence intervals", 1987: corrected for bias, and for a spread that changes with g.
-    The interval is NaN for fewer than three trials of a mode. The same seed gives the same interval.
+    The estimate has Hedges' correction 1 - 3 / (4 (n - 1) - 1) for small samples (Hedges 1981). Below MANY_PAIRS the
+    interval is exact for normal differences. There, t = mean / (sd / sqrt(n)) is non-central t, and its parameter is
+    sqrt(n) times the true effect (Hedges and Olkin 1985). From MANY_PAIRS on it is the BCa bootstrap of pairs
+    (Efron 1987), which needs no normality; the same seed gives the same interval. All is NaN for n < 2 or without
+    spread.
     """
-    a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
-    g = hedges_g(Summary.of(a), Summary.of(b))
-    if min(len(a), len(b)) < 3 or not np.isfinite(g):
-        return Effect(g, float("nan"), float("nan"))
-    interval = stats.bootstrap(
-        (a, b), _hedges_g_along, method="BCa", n_resamples=resamples, confidence_level=confidence,
-        random_state=seed,
-    ).confidence_interval
-    return Effect(g, float(interval.low), float(interval.high))
+    values = np.asarray(differences, dtype=np.float64)
+    n = len(values)
+    if n < 2 or np.ptp(values) <= 1e-12 * np.abs(values).max(initial=0.0):
+        return UNKNOWN
+    size = float(_effects(values))
+    if n >= MANY_PAIRS:
+        found = stats.bootstrap((values,), _effects, method="BCa", n_resamples=resamples,
+                                confidence_level=CONFIDENCE, random_state=seed).confidence_interval
+        return Interval(size, float(found.low), float(found.high))
+    t = float(values.mean() / (values.std(ddof=1) / np.sqrt(n)))
+    low, high = (_noncentrality(t, n - 1, p) / np.sqrt(n) for p in (0.5 + CONFIDENCE / 2, 0.5 - CONFIDENCE / 2))
+    return Interval(size, low, high)
+
+
+def _effects(differences: Array, axis: int = -1) -> Array:
+    """Returns Hedges' g of pairs along an axis. Limited to a million, because some resamples have no spread."""
+    n = differences.shape[axis]
+    mean, spread = differences.mean(axis), differences.std(axis, ddof=1)
+    correction = 1.0 - 3.0 / (4.0 * (n - 1) - 1.0)
+    sizes: Array = correction * mean / np.maximum(spread, 1e-6 * np.abs(mean) + 1e-300)
+    return sizes
+
+
+def _noncentrality(t: float, dof: int, p: float) -> float:
+    """Returns the parameter of the non-central t distribution whose distribution function at t is p."""
+
+    def missing(parameter: float) -> float:
+        with np.errstate(divide="ignore", invalid="ignore"):  # scipy takes the logarithm of 0 far in the tails
+            return float(stats.nct.cdf(t, dof, parameter)) - p
+
+    wide = 5.0 + 4.0 * abs(t)
+    return float(optimize.brentq(missing, -wide, wide, xtol=1e-9))
+
+
+def share(count: int, of: int) -> Interval:
+    """Returns a share with the exact interval of Clopper and Pearson (1934); all is NaN of 0."""
+    if of == 0:
+        return UNKNOWN
+    found = stats.binomtest(count, of).proportion_ci(CONFIDENCE, method="exact")
+    return Interval(count / of, float(found.low), float(found.high))
+
+
+def sign_p(more: int, less: int) -> float:
+    """Returns the exact two-sided p of the sign test of pairs; for pairs of yes and no it is McNemar's test.
+
+    more, less: pairs in which the first, or the second, has more. Returns 1 without such pairs.
+    """
+    return float(stats.binomtest(more, more + less).pvalue) if more + less else 1.0
+
+
+def jackknife_error(without: ArrayLike) -> float:
+    """Returns the standard error of a statistic of n trials from its (n,) values without each of them.
+
+    Source: Efron and Stein 1981.
+    """
+    values = np.asarray(without, dtype=np.float64)
+    return float(np.sqrt((len(values) - 1) * np.mean((values - values.mean()) ** 2)))
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
@@ -120,14 +151,11 @@ def holm(p_values: Sequence[float]) -> list[float]:
     order = np.argsort(p_values, kind="stable")
     adjusted = np.empty(len(order))
     adjusted[order] = np.maximum.accumulate(np.arange(len(order), 0, -1) * np.asarray(p_values)[order])
-    return np.minimum(adjusted, 1.0).tolist()
+    return [float(p) for p in np.minimum(adjusted, 1.0)]
 
 
-def in_words(p_after_holm: float, size: Effect) -> str:
-    """Returns p after Holm, and the effect with its interval, as text for a table."""
-    p = "p < 1e-6" if p_after_holm < 1e-6 else f"p = {p_after_holm:.2g}"
-    if not np.isfinite(size.g):
-        return f"{p}, no spread"
-    if not np.isfinite(size.low):
-        return f"{p}, g = {size.g:.3g}"
-    return f"{p}, g = {size.g:.3g} [{size.low:.3g}, {size.high:.3g}]"
+def p_text(p: float) -> str:
+    """Returns `p = 0.012`, or `p < 1e-6`, or `no p`."""
+    if not np.isfinite(p):
+        return "no p"
+    return "p < 1e-6" if p < 1e-6 else f"p = {p:.2g}"

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .experiment import Array
 
@@ -31,28 +30,25 @@ class PlannedPath:
         """Returns the number of the point nearest to a place along the path [mm], limited to the ends."""
         return min(max(round(along / self.spacing), 0), len(self.points) - 1)
 
-    def at(self, along: float) -> tuple[Array, Array]:
-        """Returns the interpolated position at a place along the path, and `up` there, limited to the ends."""
-        place = min(max(along / self.spacing, 0.0), len(self.points) - 1.0)
-        low = min(int(place), len(self.points) - 2)
-        share = place - low
-        ends = slice(low, low + 2)
-        weights = np.array([1.0 - share, share])
-        return weights @ self.points[ends], weights @ self.up[ends]
+    @cached_property
+    def heading(self) -> Array:
+        """The vector from the first point to the last, (3,)."""
+        heading: Array = self.points[-1] - self.points[0]
+        return heading
 
     @cached_property
-    def _heading(self) -> tuple[Array, Array]:
-        heading = self.points[-1] - self.points[0]
-        return heading, self.points @ heading  # ascends, because the path turns by much less than a right angle
-
-    def abreast(self, places: Array) -> NDArray[np.intp]:
-        """Returns the numbers of the points beside places (m, 3) or (3,), in the direction of the whole path."""
-        heading, order = self._heading
-        return np.minimum(np.searchsorted(order, places @ heading), len(self.points) - 1)
+    def order(self) -> Array:
+        """The scalar product of each point with the heading, (n,). It ascends, because the path turns by much less
+        than a right angle."""
+        order: Array = self.points @ self.heading
+        return order
 
     def depths(self, places: Array) -> tuple[Array, Array, Array]:
-        """Returns for each of (m, 3) places: along the path, across it, and in depth below it, each in mm."""
-        numbers = self.abreast(places)
+        """Returns for each of (m, 3) places: along the path, across it, and in depth below it, each in mm.
+
+        Each place has the point of the path beside it, in the direction of the whole path.
+        """
+        numbers = np.minimum(np.searchsorted(self.order, places @ self.heading), len(self.points) - 1)
         offset = places - self.points[numbers]
         return (
             numbers * self.spacing,

@@ -1,51 +1,133 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the units of experiments on all processors, and keeps the rows of each finished unit.
 
-The rows of a unit are kept in `kept/seed<seed>/<experiment>/<unit>.json`. They are reused while the unit, keepout and
-the sources behind the rows are unchanged, so a stopped run continues where it stopped. The tables contain all rows:
-`<experiment>.csv`, which depends on the seed only, and `<experiment>_times.csv` with measured times.
+The rows of a unit are kept in `kept/seed<seed>/<experiment>/<unit>.json`. They are reused while the unit and the code
+behind its rows are unchanged, so a stopped run continues where it stopped. The code of a mode counts only for the
+units of that mode: a new rule leaves the rows of all others. The tables contain all rows: `<experiment>.csv`, which
+depends on the seed only, and `<experiment>_times.csv` with measured times.
 """
 from __future__ import annotations
 
+import ast
 import csv
 import hashlib
 import importlib
+import io
 import json
 import multiprocessing
 import os
+import re
 import signal
 import sys
 import time
 import warnings
+from collections import Counter
+from collections.abc import Iterable
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from functools import lru_cache
 from modulefinder import ModuleFinder
 from pathlib import Path
 from types import ModuleType
 
 import keepout
 
+from . import modes
 from .experiment import Row, Unit
 
 #: Members of a row with measured times begin with this.
 TIMED = "measured_"
 
+#: Significant digits of numbers in tables. Rows that are kept have all.
+DIGITS = 6
 
-#: Modules that only show rows; rows do not depend on them.
-_SHOWING = ("__main__", "comparison", "figures", "published", "record", "runner", "summary")
+#: Modules on which no row depends: they only show rows, or choose which ones are made.
+_SHOWING = ("__main__", "arguments", "comparison", "figures", "modes", "published", "published_design",
+            "published_numbers", "record", "runner", "summary")
+HERE = Path(__file__).parent
 
 
-def source_digest(experiment: str) -> str:
-    """Returns a digest of everything that the rows of an experiment depend on, except the unit."""
-    here = Path(__file__).parent
-    finder = ModuleFinder([str(here.parent)], excludes=[f"{here.name}.{module}" for module in _SHOWING])
-    finder.import_hook(f"{here.name}.{experiment}")
-    package = Path(keepout.__file__).parent
-    libraries = [*package.parent.glob("*.so"), *package.glob("*.so"), *package.glob("*.py")]
-    imported = [Path(module.__file__) for module in finder.modules.values() if module.__file__]
+def source_digest(experiment: str, mode: str | None = None, *, libraries: bool = True) -> str:
+    """Returns a digest of the code behind the rows of an experiment: its modules, and the rule of a mode.
+
+    The code counts, not its comments and docstrings. In the experiment's own module, only what run() needs counts, so
+    other tables and figures leave the rows. The C++ of benchmarks/native counts as a whole. A mode that modes.py
+    does not have depends on the rules of the references. With mode None, a unit depends on all rules of this package if
+    the experiment uses any. libraries: True adds keepout as it is built.
+    """
     digest = hashlib.sha256(keepout.__version__.encode())
-    for source in sorted([*libraries, *imported]):
-        digest.update(source.read_bytes())
+    if libraries:
+        package = Path(keepout.__file__).parent
+        for file in sorted([*package.parent.glob("*.so"), *package.glob("*.so"), *package.glob("*.py")]):
+            digest.update(_bytes_digest(file))
+    found = _modules(f"{HERE.name}.{experiment}")
+    own_module = HERE / f"{experiment}.py"
+    digest.update(_code(found - {own_module}) + _tree(own_module, "run").encode())
+    if HERE / "rules" / "rule.py" in found:
+        behind = modes.BUILT_IN if mode is None else (mode,) if mode in modes.MODES else modes.REFERENCES
+        for source in filter(None, map(modes.source, behind)):
+            is_of_user = source.module.endswith(".py")
+            files = {Path(source.module)} if is_of_user else _modules(f"{HERE.name}.rules.{source.module}")
+            digest.update(repr((source.name, source.options)).encode() + _code(files))
     return digest.hexdigest()[:16]
+
+
+@lru_cache(maxsize=None)
+def _modules(name: str) -> frozenset[Path]:
+    """Returns the files of a module of this package and of those that it imports, without those of _SHOWING.
+
+    The files of keepout_peers are its C++ sources.
+    """
+    finder = ModuleFinder([str(HERE.parent)], excludes=[f"{HERE.name}.{module}" for module in _SHOWING])
+    finder.import_hook(name)
+    native = (HERE.parent / "benchmarks" / "native").rglob("*.[ch]*") if "keepout_peers" in finder.any_missing() else ()
+    return frozenset(native) | frozenset(Path(module.__file__) for module in finder.modules.values() if module.__file__)  # type: ignore[attr-defined]
+
+
+def _code(files: Iterable[Path]) -> bytes:
+    """Returns the code of files in Python and C++ as text without comments, docstrings and layout."""
+    return "".join(_tree(file) for file in sorted(files)).encode()
+
+
+@lru_cache(maxsize=None)
+def _tree(file: Path, function: str | None = None) -> str:
+    """Returns the code of a file; of Python, with a function, only what the function needs."""
+    if file.suffix != ".py":
+        return "".join(re.sub(r"//.*", "", file.read_text(encoding="utf-8")).split())
+    tree = ast.parse(file.read_bytes())
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list) and body and isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)):
+            first = body[0]
+            if isinstance(first, ast.Expr) and isinstance(getattr(first.value, "value", None), str):
+                node.body = body[1:]
+    if function:
+        tree.body = _behind(tree.body, function)
+    return ast.dump(tree)
+
+
+def _behind(body: list[ast.stmt], function: str) -> list[ast.stmt]:
+    """Returns the statements of a module that a function needs, and the function itself."""
+    needed: set[int] = set()
+    waiting = {function}
+    while waiting:
+        found = [node for node in body if id(node) not in needed and _bound(node) & waiting]
+        needed |= {id(node) for node in found}
+        waiting = {name.id for node in found for name in ast.walk(node) if isinstance(name, ast.Name)}
+    return [node for node in body if id(node) in needed or isinstance(node, ast.Expr)]
+
+
+def _bound(node: ast.stmt) -> set[str]:
+    """Returns the names that a statement of a module defines."""
+    if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+        return {node.name}
+    if isinstance(node, (ast.Import, ast.ImportFrom)):
+        return {(name.asname or name.name).split(".")[0] for name in node.names}
+    return {name.id for name in ast.walk(node) if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}
+
+
+@lru_cache(maxsize=None)
+def _bytes_digest(file: Path) -> bytes:
+    return hashlib.sha256(file.read_bytes()).digest()
 
 
 def _be_a_worker() -> None:
@@ -53,9 +135,11 @@ def _be_a_worker() -> None:
     warnings.filterwarnings("ignore", "Mesh: ")  # counterexamples are open, and cavities face inward
 
 
-def _run(module: str, unit: Unit) -> list[Row]:
+def _run(module: str, unit: Unit) -> tuple[list[Row], float]:
+    """Returns the rows of a unit, and the seconds that they took."""
+    begun = time.monotonic()
     rows: list[Row] = importlib.import_module(module).run(unit)
-    return rows
+    return rows, time.monotonic() - begun
 
 
 class UnitError(RuntimeError):
@@ -72,15 +156,18 @@ class Kept:
 
     def __init__(self, folder: Path, experiment: str) -> None:
         self._folder = folder / experiment
-        self._digest = source_digest(experiment)
+        self._experiment = experiment
 
     def _file(self, unit: Unit) -> Path:
         return self._folder / f"{unit.name}.json"
 
+    def _digest(self, unit: Unit) -> str:
+        return source_digest(self._experiment, unit.settings.get("mode"))
+
     def rows(self, unit: Unit) -> list[Row] | None:
         try:
             text = json.loads(self._file(unit).read_text())
-            same = text["digest"] == self._digest and text["settings"] == json.loads(json.dumps(unit.settings))
+            same = text["digest"] == self._digest(unit) and text["settings"] == json.loads(json.dumps(unit.settings))
             rows: list[Row] | None = text["rows"] if same else None
         except (OSError, ValueError, KeyError, TypeError):  # missing or incomplete
             return None
@@ -89,12 +176,16 @@ class Kept:
     def keep(self, unit: Unit, rows: list[Row]) -> list[Row]:
         """Writes the rows, and returns them as a later run reads them, so that both runs have the same rows."""
         self._folder.mkdir(parents=True, exist_ok=True)
-        text = json.dumps({"digest": self._digest, "settings": unit.settings, "rows": rows}, indent=1)
+        text = json.dumps({"digest": self._digest(unit), "settings": unit.settings, "rows": rows}, indent=1)
         part = self._file(unit).with_suffix(".part")
         part.write_text(text + "\n")
         part.replace(self._file(unit))
         plain: list[Row] = json.loads(text)["rows"]
         return plain
+
+
+#: Units of a kind take about the same time: an experiment, and a mode or "".
+Kind = tuple[str, str]
 
 
 class Progress:
@@ -107,28 +198,49 @@ class Progress:
 
     def __init__(self, units: int) -> None:
         self._units = units
-        self._done = self._ran = 0
-        self._begun = self._shown = time.monotonic()
-        self._alone = True
+        self._done = 0
+        self._shown = time.monotonic()
+        self._jobs = 1
+        self._left: list[Kind] = []
+        self._seconds: dict[Kind, list[float]] = {}
         self._name = "nothing is finished yet"
 
-    def begin(self, *, alone: bool) -> None:
-        """Starts a batch of units that are `alone` or not; the time left is shown only for those that are not."""
-        self._alone, self._ran, self._begun = alone, 0, time.monotonic()
+    def begin(self, left: list[Kind], jobs: int) -> None:
+        """Starts a batch of units, by their kinds, in `jobs` processes."""
+        self._left, self._jobs = list(left), jobs
 
-    def count(self, name: str, *, kept: bool) -> None:
+    def ran(self, kind: Kind, seconds: float) -> None:
+        """Notes the time of a unit of this batch."""
+        self._left.remove(kind)
+        self._seconds.setdefault(kind, []).append(seconds)
+
+    def count(self, name: str) -> None:
+        """Counts a finished unit, or one that was kept."""
         self._done += 1
-        self._ran += not kept
         self._name = name
         self.show(now=sys.stderr.isatty() or self._done == self._units)
+
+    def time_left(self) -> float:
+        """Returns the expected time of the batch [s]; 0 before a unit of it has finished.
+
+        A unit takes as long as the finished ones of its kind, or else of its experiment, or else of all.
+        """
+
+        def expected(kind: Kind) -> float:
+            of = self._seconds
+            known = of.get(kind) or [s for k in of if k[0] == kind[0] for s in of[k]] or sum(of.values(), [])
+            return sum(known) / len(known)
+
+        if not self._seconds:
+            return 0.0
+        return sum(count * expected(kind) for kind, count in Counter(self._left).items()) / self._jobs
 
     def show(self, *, now: bool = False) -> None:
         """Prints the line if it is due, or immediately with `now`."""
         if os.environ.get("KEEPOUT_QUIET") or not (now or time.monotonic() - self._shown >= self.INTERVAL):
             return
         self._shown = time.monotonic()
-        told = self._ran and not self._alone
-        left = (self._shown - self._begun) / self._ran * (self._units - self._done) if told else 0.0
+        left = self.time_left()
         rest = f", {left / 60:.0f} min left" if left >= 60 else f", {left:.0f} s left" if left else ""
         line = f"{self._done} of {self._units} units{rest}: {self._name}"
         on_terminal = sys.stderr.isatty()
@@ -148,23 +260,27 @@ def run_units(
     results: dict[tuple[str, str], list[Row]] = {}
     left: list[tuple[ModuleType, Unit]] = []
 
-    def done(experiment: ModuleType, unit: Unit, rows: list[Row], *, kept: bool) -> None:
+    def done(experiment: ModuleType, unit: Unit, rows: list[Row]) -> None:
         results[experiment.NAME, unit.name] = rows
-        progress.count(f"{experiment.NAME} {unit.name}", kept=kept)
+        progress.count(f"{experiment.NAME} {unit.name}")
+
+    def kind(experiment: ModuleType, unit: Unit) -> Kind:
+        return experiment.NAME, unit.settings.get("mode", "")
 
     for experiment in experiments:
         for unit in units[experiment.NAME]:
             if (rows := kept[experiment.NAME].rows(unit)) is None:
                 left.append((experiment, unit))
             else:
-                done(experiment, unit, rows, kept=True)
+                done(experiment, unit, rows)
 
     for alone in (True, False):
         batch = [(e, u) for e, u in left if u.alone is alone]
         if not batch:
             continue
-        progress.begin(alone=alone)
-        with ProcessPoolExecutor(1 if alone else jobs, initializer=_be_a_worker) as pool:
+        processes = 1 if alone else jobs
+        progress.begin([kind(e, u) for e, u in batch], processes)
+        with ProcessPoolExecutor(processes, initializer=_be_a_worker) as pool:
             try:
                 running = {pool.submit(_run, e.__name__, u): (e, u) for e, u in batch}
                 while running:
@@ -174,7 +290,9 @@ def run_units(
                         experiment, unit = running.pop(future)
                         if fault := future.exception():
                             raise UnitError(f"{experiment.NAME} {unit.name}: {fault!r:.500}")
-                        done(experiment, unit, kept[experiment.NAME].keep(unit, future.result()), kept=False)
+                        rows, seconds = future.result()
+                        progress.ran(kind(experiment, unit), seconds)
+                        done(experiment, unit, kept[experiment.NAME].keep(unit, rows))
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 for worker in multiprocessing.active_children():
@@ -183,20 +301,22 @@ def run_units(
     return {e.NAME: [r for u in units[e.NAME] for r in results[e.NAME, u.name]] for e in experiments}
 
 
-def write_tables(experiment: str, rows: list[Row], folder: Path) -> None:
-    """Writes the tables of an experiment."""
+def tables(experiment: str, rows: list[Row]) -> dict[str, str]:
+    """Returns the tables of an experiment as CSV, by name. Numbers have DIGITS significant digits."""
     members = list(dict.fromkeys(name for row in rows for name in row))
     timed = [name for name in members if name.startswith(TIMED)]
     steady = [name for name in members if not name.startswith(TIMED)]
     texts = [name for name in steady if any(isinstance(row.get(name), str) for row in rows)]
-    tables = {experiment: steady}
-    if timed:
-        tables[f"{experiment}_times"] = texts + timed
-    for name, columns in tables.items():
-        with (folder / f"{name}.csv").open("w", newline="") as out:
-            writer = csv.writer(out, lineterminator="\n")
-            writer.writerow(columns)
-            writer.writerows([_cell(row.get(column)) for column in columns] for row in rows)
+    named = {experiment: steady} | ({f"{experiment}_times": texts + timed} if timed else {})
+    return {name: _table(columns, rows) for name, columns in named.items()}
+
+
+def _table(columns: list[str], rows: list[Row]) -> str:
+    out = io.StringIO(newline="")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows([_cell(row.get(column)) for column in columns] for row in rows)
+    return out.getvalue()
 
 
 def _cell(value: object) -> str:
@@ -204,4 +324,6 @@ def _cell(value: object) -> str:
         return "yes" if value else "no"
     if isinstance(value, list):
         return " ".join(map(_cell, value))
+    if isinstance(value, float):
+        return f"{value:.{DIGITS}g}"
     return "" if value is None else str(value)

@@ -43,6 +43,7 @@ class RigidMotion:
         return moved
 
     def inverse(self) -> RigidMotion:
+        """Returns the motion back."""
         return RigidMotion(self.rotation.T, -self.rotation.T @ self.translation)
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from .experiment import Findings
 
-_POOLED = (
-    "The table calls Li et al. (2020) *the paper*. A pooled p is the result of the paper's test, which treats "
-    "dependent samples as independent. Evidence marked *trials* compares whole trials, and its p is corrected "
-    "after Holm."
+_NOTE = (
+    "The table calls Li et al. (2020) *the paper*. n is a number of trials. A pooled p is the result of the paper's "
+    "test, which treats dependent samples as independent. The p of our evidence is of signed ranks of pairs of trials, "
+    "after Holm over the eight primary tests."
 )
 
 
@@ -23,7 +23,7 @@ def text(findings: dict[str, tuple[str, Findings]], command: str, version: str) 
                 for c in claims
             ],
         )
-        lines += [_POOLED, ""]
+        lines += [_NOTE, ""]
     for title, found in findings.values():
         lines += [f"## {title}", "", found.headline, ""]
         for table in found.tables:

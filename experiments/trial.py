@@ -7,16 +7,19 @@
 
 If the fixture stops the tip, a force pulls the handle towards the tip. It is proportional to the
 distance between the two (section V-A of Li et al., 2020).
+
+The loop is C++: benchmarks/native/trial. A loop in Python (tests/experiments/trial_in_python.py) has the same operations
+in the same order. A test compares both: the results are bitwise identical. draw() draws all random numbers beforehand.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-import numpy as np
+import keepout_peers
 
-from .bone import Bone, BoneProperties
-from .operator_model import Arm, Operator, adjustments, slow_error, tremor
+from .bone import BoneProperties
 from .experiment import Array
+from .operator_model import Operator, Streams, tremor
 from .planned_path import PlannedPath
 from .rules.rule import Rule
 from .set_up_errors import RigidMotion, SetUp
@@ -24,6 +27,9 @@ from .set_up_errors import RigidMotion, SetUp
 APPROACH = 1.0  # the hand moves down onto the path within this time [s]
 NEAR_THE_END = 1.0  # a tip this close to the path's end has finished [mm]
 START_HEIGHT = 3.0  # height at the start [mm]
+
+#: Random numbers of a trial, by name.
+Draws = dict[str, Array]
 
 
 @dataclass(frozen=True)
@@ -41,10 +47,15 @@ class Course:
     period: float = 0.001  # of the control cycle [s]
     time_limit: float = 400.0  # [s]
 
+    @property
+    def cycles(self) -> int:
+        """The greatest number of cycles."""
+        return int(self.time_limit / self.period)
+
 
 @dataclass(frozen=True)
 class Trace:
-    """The course of a trial, cycle by cycle, (n, 3) in mm or (n,), and the kerf at each point of the path."""
+    """The course of a trial, cycle by cycle, (n, 3) in mm or (n,), and the kerf at its end."""
 
     tip: Array  # the true position of the tip
     setpoint: Array  # as the fixture allowed it, in the registered frame
@@ -52,108 +63,25 @@ class Trace:
     force: Array  # (n,) of the fixture on the handle [N]
     power: Array  # (n,) of that force on the handle [mW]
     contact: Array  # (n,) of the tip on the bone [N]
-    kerf: Array  # (points of the path,) [mm]
+    kerf: Array  # (points of the path, cells across), the cut depth; empty without bone [mm]
     begun: int  # the first cycle after the approach
     finished: bool  # the tip reached the path's end within the time limit
     registered: RigidMotion  # from the true frame to the registered anatomy
 
 
+def draw(course: Course, operator: Operator, random: Streams) -> Draws:
+    """Returns all random numbers of a trial: those of the hand, and `tremor`, (cycles, 3) at the tip [mm]."""
+    size = operator.tremor * operator.motion_scale
+    shake = tremor(random("tremor"), course.cycles, course.period, size)
+    return operator.hand.draw(course, random) | {"tremor": shake}
+
+
 def run_trial(
-    course: Course,
-    rule: Rule | None,
-    operator: Operator,
-    setup: SetUp,
-    registered: RigidMotion,
-    random: np.random.Generator,
+    course: Course, rule: Rule | None, operator: Operator, setup: SetUp, registered: RigidMotion, draws: Draws
 ) -> Trace:
-    """Simulates one trial. Without a rule there is no fixture, and the hand does not lean on one."""
-    path, period = course.path, course.period
-    if rule is None:
-        operator = replace(operator, leaning=0.0)
-    most = int(course.time_limit / period)
-    amounts = np.array([operator.slow_across, operator.slow_in_depth])
-    slow = slow_error(random, most, period, operator.slow_corner)[:, :2] * amounts
-    slow = slow + random.standard_normal(2) * [operator.bias_across, operator.bias_in_depth]
-    slow[:, 1] += adjustments(random, most, period, operator.adjusting)
-    shake = tremor(random, most, period, operator.tremor)
-    true_frame = registered.inverse()
-    longest = min(course.radius, course.top_speed * period)
-    delay = round(setup.latency / period)
-    reaction = max(1, round(operator.reaction / period))
-    follow = 1.0 if setup.lag == 0.0 else 1.0 - np.exp(-period / setup.lag)
-    bone = Bone(path, course.bone, setup.tip_stiffness) if course.bone else None
+    """Simulates one trial. Without a rule there is no fixture.
 
-    start = path.points[0] + START_HEIGHT * path.up[0]
-    scale = operator.motion_scale
-    arm = Arm(operator, start / scale)
-    intended = start / scale
-    setpoint = robot = registered(start)
-    goals = np.tile(setpoint, (most, 1))
-    tips, setpoints = np.empty((most, 3)), np.empty((most, 3))
-    pulls, contacts, powers = np.zeros((most, 3)), np.zeros(most), np.zeros(most)
-    seen = np.zeros(most)  # factor on the speed, from the deviation that the eye sees
-    along, approach = 0.0, int(APPROACH / period)
-    cycle, none, finished = 0, np.zeros(3), False
-
-    for cycle in range(most):
-        # The operator: the intended position, and the speed along the path.
-        place, up = path.at(along)
-        above = max(0.0, 1.0 - cycle / approach) * START_HEIGHT
-        below = course.depth + operator.leaning + slow[cycle, 1] - above
-        meant = (place + slow[cycle, 0] * path.across - below * up) / scale
-        pull = pulls[cycle - delay] if cycle >= delay else none
-        handle = arm.move(meant, (meant - intended) / period, pull, period)
-        intended = meant
-        if cycle >= approach:
-            along += course.speed * period * (seen[cycle - reaction] if cycle >= reaction else 1.0)
-
-        # The robot: goal, fixture, setpoint, and the new position of the tip.
-        goals[cycle] = registered(scale * handle + shake[cycle])
-        goal = goals[cycle - delay] if cycle >= delay else goals[0]
-        desired = goal - setpoint
-        length = np.sqrt(desired @ desired)
-        if length > longest:
-            desired = desired * (longest / length)
-        if rule is None:
-            setpoint = setpoint + desired
-        else:
-            setpoint = setpoint + rule.step(setpoint, desired)
-            pulled = course.force_per_mm * (setpoint - goal)
-            size = np.sqrt(pulled @ pulled)
-            if size > course.greatest_force:
-                pulled = pulled * (course.greatest_force / size)
-            pulls[cycle] = true_frame.rotation @ pulled
-        powers[cycle] = pull @ arm.speed
-        robot = robot + follow * (setpoint - robot)
-        tip = true_frame(robot)
-        if bone:
-            tip, contacts[cycle] = bone.press(tip, period)
-        tips[cycle], setpoints[cycle] = tip, setpoint
-
-        # The eye: the distance from the place on the path, seen from above, and the height above the intended depth.
-        # A hand that feels a fixture assumes that it has reached the depth.
-        offset = tip - place
-        height = offset @ up
-        aside_squared = offset @ offset - height * height
-        feels = pull @ pull > operator.felt_force**2
-        hanging = 0.0 if feels else max(0.0, height + below - operator.leaning)
-        seen[cycle] = 1.0 / (1.0 + (aside_squared + hanging * hanging) / operator.tolerance**2)
-        # At the end the hand waits for a tip that lags behind.
-        if along >= path.length:
-            finished = bool(path.depths(tip[None])[0][0] >= path.length - NEAR_THE_END)
-            if finished:
-                break
-
-    ran = cycle + 1
-    return Trace(
-        tip=tips[:ran],
-        setpoint=setpoints[:ran],
-        goal=goals[np.maximum(np.arange(ran) - delay, 0)],
-        force=np.linalg.norm(pulls[:ran], axis=1),
-        power=powers[:ran],
-        contact=contacts[:ran],
-        kerf=bone.cut if bone else np.zeros(len(path.points)),
-        begun=min(approach, ran - 1),
-        finished=finished,
-        registered=registered,
-    )
+    Runs without Python's lock, except in rules that are written in Python: trials may run in parallel threads.
+    """
+    made = keepout_peers.run_trial(course, rule, operator, setup, registered, registered.inverse(), draws)
+    return Trace(**made, registered=registered)

@@ -99,8 +99,8 @@ BenchmarkRow new_row() {
     "build_s": 0.0, "build_cores": 0.0, "bytes_per_triangle": 0.0,
     "candidates_mean": 0.0, "hits_mean": 0.0, "reaching_share": 0.0,
     "planes_mean": 0.0, "unsolved_share": 0.0, "worse_share": 0.0,
-    "collect_us": null, "exact_us": null, "query_us": null, "step_us": null, "step_query_us": null,
-    "activate_us": null, "solve_us": null, "rate_khz": null,
+    "collect_us": null, "exact_us": null, "query_us": null, "step_us": null, "step_medians_us": [],
+    "step_query_us": null, "activate_us": null, "solve_us": null, "rate_khz": null,
     "hash": "0000000000000000", "hashes_of_first": {}, "verified": false, "wrong": false, "remark": ""})");
 }
 

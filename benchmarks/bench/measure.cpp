@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <bit>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,8 +16,12 @@
 namespace keepout::app {
 namespace {
 
-/// The number of motions for brute force, which takes tens of milliseconds for each.
-constexpr std::size_t sample_count = 8;
+/// Returns the number of motions for brute force, which needs about 0.1 s for each on a million
+/// triangles.
+std::size_t sample_count_on(const Mesh& mesh) {
+  constexpr std::size_t few = 2, many = 8, much_work = 8'000'000;
+  return std::clamp(much_work / mesh.triangle_count(), few, many);
+}
 
 /// Many readers of JSON do not keep whole numbers of 64 bits.
 std::string hexadecimal(std::uint64_t value) {
@@ -42,6 +47,18 @@ struct TimesOfStages {
 
 double microseconds(BenchClock::duration time) {
   return std::chrono::duration<double, std::micro>(time).count();
+}
+
+/// Returns the median of each 200 consecutive steps: four strokes of contact_motions(). Steps of a
+/// stroke are alike, but strokes are independent.
+std::vector<double> medians_of(std::span<const double> steps) {
+  constexpr std::size_t part = 200;
+  std::vector<double> medians;
+  for (; steps.size() >= part; steps = steps.subspan(part)) {
+    std::vector<double> times(steps.begin(), steps.begin() + part);
+    medians.push_back(timing_of(times).p50);
+  }
+  return medians;
 }
 
 /// At least this many steps, so that medians and 99.9 % percentiles compare; but at most `patience`
@@ -170,6 +187,7 @@ Reference::Reference(std::shared_ptr<const SpatialIndex> right, std::shared_ptr<
   const auto brute_force = std::make_shared<const BruteForce>(mesh);
   MotionConstraint exhaustive = make_motion_constraint(std::move(mesh), brute_force, settings);
   for (const Motion& motion : motions_) balls_.push_back(guard_.region(motion));
+  const std::size_t sample_count = sample_count_on(guard_.mesh());
   for (std::size_t s = 0; s < sample_count; ++s) {
     const std::size_t motion = s * motions_.size() / sample_count;
     const std::span<const Hit> found = hits_of(*brute_force, balls_[motion]);
@@ -249,6 +267,7 @@ void measure(MotionConstraint& constraint, double accuracy, std::span<const Moti
   row["collect_us"] = timing_of(times.collect);
   row["exact_us"] = timing_of(times.exact);
   row["query_us"] = timing_of(times.query);
+  row["step_medians_us"] = medians_of(times.step);
   const Timing step = timing_of(times.step);
   row["step_us"] = step;
   if (step.p50 > 0.0) row["rate_khz"] = 1e3 / step.p50;

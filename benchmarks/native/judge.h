@@ -2,8 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <limits>
 #include <memory>
 #include <tuple>
 #include <vector>
@@ -29,6 +27,9 @@ class Judge {
   /// Returns true if the mesh has an inside.
   bool closed() const { return closed_; }
 
+  /// Returns the oracle, which judges one motion.
+  oracle::SafetyOracle& oracle() noexcept { return oracle_; }
+
   /// Returns the distance of each point from the mesh, below 0 inside a closed mesh. [length]
   Eigen::VectorXd distances(const RowsRef& points) {
     require_finite(points.allFinite());
@@ -42,29 +43,6 @@ class Judge {
       if (closed_ && may_differ) is_inside = *oracle_.inside(point);
       const double distance = oracle_.distance(point);
       out[i] = is_inside ? -distance : distance;
-    }
-    return out;
-  }
-
-  /// Returns the least distance of each straight motion from the mesh: 0 if and only if it touches,
-  /// infinite if it is more than `reach`. A smaller reach is faster. [length]
-  Eigen::VectorXd least_distances(const RowsRef& starts, const RowsRef& ends, double reach) {
-    Eigen::VectorXd out(require_pairs(starts, ends));
-    require_finite(starts.allFinite() && ends.allFinite());
-    const oracle::TriangleTree& tree = *oracle_.tree();
-    std::vector<TriangleId> near;
-    for (Eigen::Index i = 0; i < starts.rows(); ++i) {
-      const oracle::Segment motion{starts.row(i), ends.row(i)};
-      near.clear();
-      const double at_start = oracle_.distance(motion.from);  // an upper bound for the motion
-      tree.collect_within(std::min(reach, at_start), motion, near);
-      double least = at_start;
-      for (const TriangleId t : near) {
-        const Triangle triangle = tree.mesh().triangle(t);
-        if (oracle::bracket_distance(motion, triangle).low >= least) continue;
-        least = std::min(least, oracle::narrow_distance(motion, triangle).estimate);
-      }
-      out[i] = least <= reach ? least : std::numeric_limits<double>::infinity();
     }
     return out;
   }

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module keepout_peers: judge, libraries for comparison, and meshes of the experiments.
-#include <pybind11/eigen.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
-
-#include <cstdint>
-#include <limits>
-#include <memory>
+// The module keepout_peers: judge, rules, loops and meshes of the experiments.
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "judge.h"
+#include "bindings.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/real_mesh.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/mesh/load_mesh.h"
-#include "sweep.h"
 
 namespace keepout::peers {
 namespace {
@@ -25,61 +17,22 @@ namespace {
 namespace py = pybind11;
 using py::literals::operator""_a;
 
-using CornerRows = Eigen::Matrix<std::uint32_t, Eigen::Dynamic, 3, Eigen::RowMajor>;
-using Unlocked = py::call_guard<py::gil_scoped_release>;
-
-Mesh mesh_of(const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles) {
-  Surface surface;
-  for (const auto& v : vertices.rowwise()) surface.vertices.emplace_back(v);
-  for (const auto& t : triangles.rowwise()) surface.triangles.push_back({t[0], t[1], t[2]});
-  return Mesh(std::move(surface));
-}
-
 void bind_judge(py::module_& module) {
   py::class_<Judge>(module, "Judge", R"(Judges the motions of a tip beside a mesh with exact
-arithmetic. Shares no code with keepout.
+arithmetic. Shares no code with keepout. Terrain.judge() makes one.
 
-Judge(vertices, triangles): (n, 3) and (m, 3). Use one for each thread. It is fastest if each motion
-is near the last. Lengths are in the unit of the mesh.)")
-      .def(py::init([](const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles) {
-             return Judge(std::make_shared<const Mesh>(mesh_of(vertices, triangles)));
-           }),
-           "vertices"_a, "triangles"_a, Unlocked())
+Use one for each thread. It is fastest if each motion is near the last. Lengths are in the unit of
+the mesh.)")
       .def_property_readonly("closed", &Judge::closed, "True if the mesh has an inside.")
       .def("distances", &Judge::distances, "points"_a, Unlocked(),
            "Returns the distances of (n, 3) points from the mesh: (n,), below 0 inside a closed\n"
            "mesh.")
-      .def("least_distances", &Judge::least_distances, "starts"_a, "ends"_a,
-           "reach"_a = std::numeric_limits<double>::infinity(), Unlocked(),
-           "Returns the least distances of n straight motions from the mesh: (n,), 0 if and\n"
-           "only if a motion touches it, infinite if it is more than `reach`. A smaller reach\n"
-           "is faster.")
       .def("crossings", &Judge::crossings, "starts"_a, "ends"_a, Unlocked(),
            "Returns which of n straight motions touch the mesh: (n,) of bool, exact.")
       .def("best_step", &Judge::best_step, "tip"_a, "desired"_a, "margin"_a, Unlocked(),
            "Returns the motion nearest to the desired one that keeps the margin along its whole\n"
            "path; its cost, |motion - desired|; and a lower bound of the cost of any such\n"
            "motion. Uses branch and bound.");
-}
-
-void bind_sweeps(py::module_& module) {
-  py::class_<Sweep>(module, "Sweep", "Another library's answer for a ball that moves past a mesh.")
-      .def("time_of_impact", &Sweep::time_of_impact, "tip"_a, "motion"_a,
-           "Returns the fraction of the motion, 0 to 1, for which the library reports the ball\n"
-           "as free.");
-  const auto add = [&](const char* name, auto make, const char* doc) {
-    module.def(
-        name,
-        [make](const RowsRef& vertices, const Eigen::Ref<const CornerRows>& triangles,
-               double radius) {
-          if (!(radius > 0.0)) throw Error("the ball needs a radius > 0");
-          return make(mesh_of(vertices, triangles), radius);
-        },
-        "vertices"_a, "triangles"_a, "radius"_a, Unlocked(), doc);
-  };
-  add("continuous_collision", &continuous_collision,
-      "Returns FCL's continuous collision of a ball with a mesh, at places along the motion.");
-  add("convex_sweep", &convex_sweep, "Returns Bullet's sweep of a ball past a mesh.");
 }
 
 std::vector<std::pair<std::string, std::string>> named_meshes() {
@@ -126,10 +79,12 @@ py::list all_counterexamples() {
 
 PYBIND11_MODULE(keepout_peers, module) {
   using namespace keepout::peers;
-  module.doc() = "The libraries that the experiments compare keepout with, and the judge.";
+  module.doc() = "The rules, the judge and the loops of the experiments.";
   py::register_local_exception<keepout::Error>(module, "Error", PyExc_ValueError);
   bind_judge(module);
-  bind_sweeps(module);
+  bind_rules(module);
+  bind_pushes(module);
+  bind_trials(module);
   module.def("named_meshes", &named_meshes,
              "Returns name and kind of each mesh that keepout names: solid, sheet, broken or\n"
              "real.");

@@ -6,13 +6,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import keepout
-import numpy as np
 
 from ..experiment import Array
-
-
-#: With each rule, a tip closer than the margin retreats by at most this in a cycle [mm].
-RECOVERY = 0.05
 
 
 @dataclass(frozen=True)
@@ -39,7 +34,10 @@ class Task:
 
 
 class Rule(Protocol):
-    """One for each trial: a rule may remember earlier cycles. Add your own here and in modes.py."""
+    """One for each trial: a rule may remember earlier cycles. The rules of C++ are in native.py.
+
+    E1 and E5 use one rule for all loops on a shape with a step length.
+    """
 
     def step(self, tip: Array, desired: Array) -> Array:
         """Returns the allowed motion, (3,) in mm, for a tip at `tip` and a desired motion `desired`."""

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from experiments.bone import BoneProperties
 from experiments.experiment import Claim, Findings, Scale
+from experiments.intermittent import Intermittent
+from experiments.open_loop import OpenLoop
 from experiments.operator_model import Operator
 from experiments.record import write_record
 from experiments.set_up_errors import SetUp
@@ -48,6 +50,27 @@ def test_two_runs_with_a_seed_write_the_same_bytes(made: Path, tmp_path: Path) -
         assert told == before
 
 
+def test_a_rule_of_your_own_is_a_mode_beside_the_references(tmp_path: Path) -> None:
+    done = run(tmp_path, "--modes", "vector_field", "--rule", "examples/python/own_rule.py:StopShort")
+    assert done.returncode == 0, done.stderr
+    with (tmp_path / "e6_counterexamples.csv").open() as table:
+        rows = list(csv.DictReader(table))
+    modes = dict.fromkeys(row["mode"] for row in rows)
+    assert list(modes) == ["paper", "certified", "vector_field", "StopShort"]
+    assert not any(row["passes"] == "yes" for row in rows if row["mode"] == "StopShort")
+    assert "StopShort" in (tmp_path / "README.md").read_text()
+
+
+def test_a_mode_that_is_unknown_is_named(tmp_path: Path) -> None:
+    done = run(tmp_path, "--modes", "certified,magic")
+    assert done.returncode == 2 and "there is no 'magic'" in done.stderr and "vector_field" in done.stderr
+
+
+def test_a_rule_that_its_file_does_not_have_is_named(tmp_path: Path) -> None:
+    done = run(tmp_path, "--rule", "examples/python/own_rule.py:Missing")
+    assert done.returncode == 1 and "Missing" in done.stderr and "Traceback" not in done.stderr
+
+
 def test_summary_record_and_page_say_the_same(made: Path) -> None:
     record = json.loads((made / "experiments.json").read_text())
     headline = record["experiments"][0]["headline"]
@@ -73,7 +96,7 @@ def test_the_command_makes_a_page_of_a_record(tmp_path: Path) -> None:
     file = tmp_path / "experiments.json"
     write_record(file, Scale(), found, True, "./run experiments")
     record = json.loads(file.read_text(encoding="utf-8"))
-    assert record["headline"].startswith("1 number of the paper,")
+    assert record["headline"] == "Smoother."
     assert record["machine"]["processor"] and record["machine"]["libraries"]
     again = [os.environ["KEEPOUT_COMMAND"], "report", str(file)]
     subprocess.run(again, check=True, env={**os.environ, "KEEPOUT_WEB": str(tmp_path)})
@@ -100,10 +123,11 @@ def test_the_page_has_the_values_that_are_simulated() -> None:
     page = (ROOT / "docs" / "experiments.md").read_text()
     known = {
         f"{type(of).__name__}.{name}": value
-        for of in (Operator(), SetUp(), BoneProperties())
+        for of in (Operator(), Intermittent(), OpenLoop(), SetUp(), BoneProperties())
         for name, value in asdict(of).items()
     }
-    rows = re.findall(r"^\| (`(?:Operator|SetUp|BoneProperties)\.\w+`(?:, `\w+\.\w+`)*) \| ([^|]+) \|", page, re.MULTILINE)
+    name = f"`(?:{'|'.join({of.split('.')[0] for of in known})})\\.\\w+`"
+    rows = re.findall(rf"^\| ({name}(?:, {name})*) \| ([^|]+) \|", page, re.MULTILINE)
     told = set()
     for names, values in rows:
         numbers = [float(number) for number in re.findall(r"\d+\.?\d*", values)]
@@ -111,4 +135,4 @@ def test_the_page_has_the_values_that_are_simulated() -> None:
         assert numbers == [known[name] for name in of_row], names
         told.update(of_row)
     untold = set(known) - told
-    assert untold == {"Operator.motion_scale", "BoneProperties.behind"}
+    assert untold == {"Operator.hand", "BoneProperties.behind"}

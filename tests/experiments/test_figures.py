@@ -52,7 +52,7 @@ def test_every_colour_adapts():
     assert styles == 1
     assert not re.search(r"#[0-9a-f]{3,8}\b|rgb|black|white", picture)
     used = set(re.findall(r"var\((--[\w-]+)\)", text))
-    assert {"--ink", "--paper", "--mode-certified", "--mode-sdf_0-25"} <= used
+    assert {"--ink", "--paper", "--mode-certified", "--mode-distance_field"} <= used
     light, dark = re.findall(r"svg\{(.*?)\}", text)
     assert all(f"{name}:#" in light and f"{name}:#" in dark for name in used)
     assert "fill:var(--ink)" in light  # for elements that matplotlib draws in black without a fill attribute
@@ -87,15 +87,15 @@ def test_every_value_is_a_point():
     values = np.array([1.0, 1.0, 2.0, 50.0])
     figures.box_plot(ax, {"none": values, "paper": values[:0], "certified": values}, "depth [mm]")
     points = [line for line in ax.lines if line.get_marker() == "o"]
-    assert [list(line.get_ydata()) for line in points] == [list(values), [], list(values)]
+    assert [list(line.get_xdata()) for line in points] == [list(values), [], list(values)]
     for place, line in ((0, points[0]), (2, points[2])):
-        places = line.get_xdata()
+        places = line.get_ydata()
         assert len(set(places)) == 4 and np.abs(places - place).max() <= 0.2
 
 
 @pytest.mark.parametrize("paper, shade", [("#ffffff", "light"), ("#18202b", "dark")])
 def test_modes_are_told_apart_by_all_eyes(paper, shade):
-    colors = {mode: getattr(look, shade) for mode, look in figures.MODES.items()}
+    colors = {mode: getattr(look, shade) for mode, look in {**figures.MODES, "MyRule": figures.OWN}.items()}
     names = [figures.label(mode) for mode in colors]
     assert len(set(names)) == len(names) and all(names)
     for mode, color in colors.items():
