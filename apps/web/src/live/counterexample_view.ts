@@ -10,7 +10,7 @@ import { Panes } from "./panes.ts";
 import type { FromWorker } from "./protocol.ts";
 import { crossingMark } from "./second_tool.ts";
 import type { SideHead } from "./side_head.ts";
-import { crossing } from "./wall.ts";
+import { crossing, type Triangles } from "./wall.ts";
 
 type Shown = Extract<FromWorker, { kind: "counterexamples" }>;
 type Trial = Shown["examples"][number];
@@ -31,9 +31,13 @@ const reasons: Readonly<Record<string, string>> = {
 /** The colors of a counterexample's triangles on the free side and on the forbidden side. */
 const faces = { free: colors.bone, forbidden: "#8f4a4e" } as const;
 
-/** Duration of the motion, and of the rest after it. [ms] */
-const way = 2400;
-const rest = 1600;
+/** The radius of the ball, as a fraction of the length that the view shows. */
+const ball = 0.03;
+
+/** Duration of the motion, of the approach of the view to its end, and of the rest after both. [ms] */
+const way = 2000;
+const approach = 1200;
+const rest = 2800;
 
 /**
  * Plays counterexamples in the two panes of a container: in the first one under the rule of Li et al. (2020), in the
@@ -94,29 +98,39 @@ export class CounterexampleView {
     set(
       "sides-words",
       `${reasons[name] ?? ""} One step: the hand asks for ${asked} mm (dashed), the margin is ` +
-        `${this.shown.margin} mm. The tool is a point, in the middle of the ball. ` +
-        "The red disc marks where it goes through.",
+        `${this.shown.margin} mm. Then the view comes close to the end. The tool is a point, in the middle of the ball, ` +
+        "which is pale where the surface hides it. The red disc marks where it goes through.",
     );
     const [first] = this.stages;
-    if (first !== undefined) this.aim(example, first, (ends[0] as Trial["ends"][number]).place);
+    if (first !== undefined) this.aim(example, first, ends);
     this.clock = { at: performance.now(), played: 0 };
   }
 
-  /** Looks at the place where the motion crosses a triangle, from its side, with the free side above. */
-  private aim({ tip, desired }: Counterexample, { crossedAt, normal }: Stage, end: Vec3): void {
+  /** Looks at the place where the motion crosses a triangle, from a side, with the free side above. */
+  private aim(
+    { tip, desired }: Counterexample,
+    { crossedAt, normal }: Stage,
+    ends: Trial["ends"],
+  ): void {
     const target = vector(crossedAt ?? tip);
+    const { place: end } = ends[0] as Trial["ends"][number];
     const { camera } = this;
     camera.up.copy(normal);
     const side = vector(end).sub(vector(tip)).cross(normal).normalize();
     const length = Math.max(5 * vector(end).distanceTo(target), 0.35 * vector(desired).length());
-    for (const stage of this.stages) stage.fit(target, length);
-    camera.position.copy(
+    this.stages.forEach((stage, i) => {
+      stage.fit(target, length, (ends[i] as Trial["ends"][number]).clearance);
+    });
+    const from = (sign: number) =>
       side
+        .clone()
+        .multiplyScalar(sign)
         .addScaledVector(normal, 0.4)
-        .normalize()
-        .multiplyScalar(2 * length),
-    );
-    camera.position.add(target);
+        .setLength(2 * length)
+        .add(target);
+    // From the side at which no triangle hides the tool of the certified rule.
+    const isSeen = (sign: number) => this.stages[1]?.isHiddenFrom(from(sign)) === false;
+    camera.position.copy(from([1, -1].find(isSeen) ?? 1));
     const renderer = this.prepare();
     this.controls?.dispose(); // they keep the first direction that is up
     this.controls = new OrbitControls(camera, renderer.domElement);
@@ -141,7 +155,12 @@ export class CounterexampleView {
     if (!this.isPaused) this.clock.played += now - this.clock.at;
     this.clock.at = now;
     const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    const share = isStill ? 1 : Math.min((this.clock.played % (way + rest)) / way, 1);
+    const played = isStill ? way + approach : this.clock.played % (way + approach + rest);
+    const shareOf = (begin: number, duration: number) =>
+      three.MathUtils.smoothstep(played, begin, begin + duration);
+    const [share, nearness] = [shareOf(0, way), shareOf(way, approach)];
+    const target = this.controls?.target ?? new three.Vector3();
+    const view = this.camera.clone();
     const { clientWidth, clientHeight } = this.container;
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(clientWidth, clientHeight);
@@ -149,12 +168,16 @@ export class CounterexampleView {
       const area = [x, clientHeight - y - height, width, height] as const;
       renderer.setViewport(...area);
       renderer.setScissor(...area);
-      this.camera.aspect = width / height;
-      this.camera.updateProjectionMatrix();
       const stage = this.stages[i];
       if (stage === undefined) return;
-      stage.arrange(share * share * (3 - 2 * share), this.camera);
-      renderer.render(stage.scene, this.camera);
+      const scale = stage.closest ** nearness;
+      view.aspect = width / height;
+      view.near = scale * this.camera.near;
+      view.updateProjectionMatrix();
+      stage.arrange(share, scale, view);
+      view.position.copy(this.camera.position).sub(target).multiplyScalar(scale);
+      view.position.add(target.clone().lerp(stage.last, nearness));
+      renderer.render(stage.scene, view);
     });
     requestAnimationFrame(() => this.play());
   }
@@ -167,8 +190,11 @@ class Stage {
   readonly crossedAt: Vec3 | null;
   /** The normal of that triangle, into the free side. */
   readonly normal = new three.Vector3(0, 0, 1);
+  private readonly surface: Triangles;
   private readonly tip = new Capsule();
   private readonly lights = new three.Group();
+  /** The length that the view shows at last, as a fraction of that at first. */
+  closest = 1;
   private radius = 0;
   private readonly mark = crossingMark();
   /** The fraction of the motion that precedes the view. */
@@ -184,7 +210,8 @@ class Stage {
     const wanted = from.clone().add(vector(example.desired));
     const corners = example.triangles.flat();
     const vertices = example.vertices.flat();
-    this.crossedAt = crossing({ vertices, corners }, begin, end);
+    this.surface = { vertices, corners };
+    this.crossedAt = crossing(this.surface, begin, end);
     const crossed = example.triangles.find((one) =>
       crossing({ vertices, corners: one }, begin, end),
     );
@@ -223,21 +250,35 @@ class Stage {
     this.scene.add(this.lights);
   }
 
-  /** Fits tool and mark to a view that shows `length` around a target, and begins the motion within it. */
-  fit(target: three.Vector3, length: number): void {
-    this.radius = 0.03 * length;
-    this.mark.scale.setScalar(0.6 * this.radius);
+  /** The end of the motion. */
+  get last(): three.Vector3 {
+    return vector(this.end);
+  }
+
+  /** True if a triangle hides the end of the motion from a place. */
+  isHiddenFrom(place: three.Vector3): boolean {
+    return crossing(this.surface, place.toArray(), this.end) !== null;
+  }
+
+  /**
+   * Fits the tool to a view that shows `length` around a target, and begins the motion within it. At last the view
+   * shows a ball that is smaller than the clearance of its middle.
+   */
+  fit(target: three.Vector3, length: number, clearance: number): void {
+    this.radius = ball * length;
+    this.closest = Math.min(1, (0.5 * Math.abs(clearance)) / this.radius);
     const [from, to] = [vector(this.begin), vector(this.end)];
     for (this.start = 0; this.start < 0.9; this.start += 0.02) {
       if (from.clone().lerp(to, this.start).distanceTo(target) <= 0.42 * length) return;
     }
   }
 
-  /** Shows the motion at the fraction `share`. The lights are fixed to the view. */
-  arrange(share: number, camera: three.Camera): void {
+  /** Shows the motion at the fraction `share`, in a view scaled by `scale`. The lights are fixed to the view. */
+  arrange(share: number, scale: number, camera: three.Camera): void {
     const fraction = this.start + share * (1 - this.start);
     const place = vector(this.begin).lerp(vector(this.end), fraction);
-    this.tip.place(place, place, this.radius);
+    this.tip.place(place, place, scale * this.radius);
+    this.mark.scale.setScalar(0.6 * scale * this.radius);
     this.lights.quaternion.copy(camera.quaternion);
   }
 

@@ -109,7 +109,8 @@ function placeLabel(
       const base = within(first + 21 * lines, 0.08 * height, 0.9 * height);
       const [left, right] = isLeft ? [at - wide, at] : [at, at + wide];
       const box = { left, right, top: base - 15, bottom: base + 4 };
-      const covered = (boxes: readonly Box[]) => boxes.filter((other) => overlap(other, box)).length;
+      const covered = (boxes: readonly Box[]) =>
+        boxes.filter((other) => overlap(other, box)).length;
       const isOut = left < 0 || right > width;
       const cost = (covered(labels) + (isOut ? 1 : 0)) * (paths.length + 1) + covered(paths);
       return { isLeft, at, base, box, cost };
