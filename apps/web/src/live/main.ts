@@ -313,7 +313,7 @@ function showLesson(phase: Parameters<ConstructorParameters<typeof Demonstration
     approach: "The hand (red) moves, and the tool follows it.",
     press: `The hand goes into ${word}. The tool stops ${settings.margin} mm before it.`,
     slide: "The tool slides along the surface.",
-    back: "The hand comes out again.",
+    back: "Now the hand moves back.",
   };
   const yours = isTip ? `drag the red ring into ${word}.` : "drag the jaws.";
   set(lesson, phase === null ? `Your turn: ${yours}` : words[phase]);
