@@ -23,7 +23,7 @@ const reasons: Readonly<Record<string, string>> = {
     "The surface is red from behind: drag to turn the view.",
   CE5_closed_octahedron:
     "The nearest point of the triangle ahead lies on a ridge. Li et al.’s rule leaves the triangle to its " +
-    "neighbor there. The neighbor’s plane does not cover it: the tool ends inside.",
+    "neighbor there. The neighbor’s plane does not cover it: the tool ends inside, which is red.",
   CE6c_larger_saddle:
     "The commanded motion is free, and the certified rule returns it unchanged. Li et al.’s rule adds the " +
     "plane of a triangle that is not in the way. The motion along that plane meets another triangle. The surface is red from behind.",
@@ -171,12 +171,18 @@ export class CounterexampleView {
       const stage = this.stages[i];
       if (stage === undefined) return;
       const scale = stage.closest ** nearness;
+      // At last the view is along the surface. It begins at the tool, and shows a section of a closed solid.
+      const away = this.camera.position.clone().sub(target);
+      away.addScaledVector(view.up, -0.85 * nearness * away.dot(view.up)).multiplyScalar(scale);
+      const middle = target.clone().lerp(stage.last, nearness);
+      view.position.copy(middle).add(away);
+      view.lookAt(middle);
+      const cut = away.length() - 1.5 * scale * stage.radius;
+      const near = scale * this.camera.near;
+      view.near = stage.isClosed ? three.MathUtils.lerp(near, cut, nearness) : near;
       view.aspect = width / height;
-      view.near = scale * this.camera.near;
       view.updateProjectionMatrix();
       stage.arrange(share, scale, view);
-      view.position.copy(this.camera.position).sub(target).multiplyScalar(scale);
-      view.position.add(target.clone().lerp(stage.last, nearness));
       renderer.render(stage.scene, view);
     });
     requestAnimationFrame(() => this.play());
@@ -190,12 +196,14 @@ class Stage {
   readonly crossedAt: Vec3 | null;
   /** The normal of that triangle, into the free side. */
   readonly normal = new three.Vector3(0, 0, 1);
+  /** True if each edge has a triangle on both sides. */
+  readonly isClosed: boolean;
   private readonly surface: Triangles;
   private readonly tip = new Capsule();
   private readonly lights = new three.Group();
   /** The length that the view shows at last, as a fraction of that at first. */
   closest = 1;
-  private radius = 0;
+  radius = 0;
   private readonly mark = crossingMark();
   /** The fraction of the motion that precedes the view. */
   private start = 0;
@@ -211,6 +219,13 @@ class Stage {
     const corners = example.triangles.flat();
     const vertices = example.vertices.flat();
     this.surface = { vertices, corners };
+    const edges = example.triangles.flatMap(([a, b, c]) => [
+      [a, b],
+      [b, c],
+      [c, a],
+    ]);
+    const directed = new Set(edges.map(([from, to]) => `${from} ${to}`));
+    this.isClosed = edges.every(([from, to]) => directed.has(`${to} ${from}`));
     this.crossedAt = crossing(this.surface, begin, end);
     const crossed = example.triangles.find((one) =>
       crossing({ vertices, corners: one }, begin, end),
@@ -244,9 +259,9 @@ class Stage {
       this.mark.position.copy(vector(this.crossedAt));
       this.scene.add(this.mark);
     }
-    const key = new three.DirectionalLight("#ffffff", 2.6);
+    const key = new three.DirectionalLight("#ffffff", 1.9);
     key.position.set(-1.6, 1, 0.3);
-    this.lights.add(key, new three.HemisphereLight("#ffffff", "#6b6259", 0.7));
+    this.lights.add(key, new three.HemisphereLight("#ffffff", "#b5a99a", 1.6));
     this.scene.add(this.lights);
   }
 
