@@ -192,7 +192,7 @@ def _tests_table(by_mode: ByMode, measures: tuple[Measure, ...], seed: int) -> T
         [[test.measure.heading, figures.label(test.mode), str(test.pairs), str(test.valued), test.difference.text(),
           test.effect.text(), f"{test.p:.2g}"] for test in found],
         "Differences are fixture minus no fixture. p is of the signed-rank test over all pairs, with unfinished "
-        f"trials as the worst. It is not adjusted for the {len(found)} tests: none of them confirms anything. "
+        f"trials as the worst. It is not adjusted for the {len(found)} tests, so they confirm no difference. "
         "The primary tests are in the table of the numbers of Li et al.",
     )
 

@@ -251,6 +251,7 @@ def _headline(primary: list[Primary]) -> str:
             "worse by": [one for one in of if one.holm < 0.05 and not one.is_better],
             "no difference shown by": [one for one in of if one.holm >= 0.05],
         }
-        parts = [f"{words} {', '.join(one.test.measure.name.split(',')[0] for one in some)}" for words, some in found.items() if some]
+        parts = [f"{words} {', '.join(one.test.measure.name.split(',')[0] for one in some)}"
+                 for words, some in found.items() if some]
         sentences.append(f"Certified against {figures.label(reference)}: {'; '.join(parts) or 'not tested'}.")
     return f"{' '.join(sentences)} (Eight primary tests, after Holm; {len(primary)} could be made.)"

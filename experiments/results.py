@@ -43,11 +43,15 @@ def outdated(folder: Path = FOLDER) -> list[str]:
             if digest != of[mode]]
 
 
+def _stored(file: Path) -> tuple[str, bytes]:
+    """Returns the name and the bytes under which a file is published."""
+    data = file.read_bytes()
+    return (file.name, data) if len(data) <= LONG else (f"{file.name}.gz", gzip.compress(data, mtime=0))
+
+
 def publish(made: Path, folder: Path = FOLDER) -> None:
     """Replaces the results in `folder` by those of a run. Raises ValueError if its tables exceed LARGEST."""
-    files = {file.name: file.read_bytes() for file in (*made.glob("*.csv"), made / SOURCES)}
-    files = {name if len(data) <= LONG else f"{name}.gz": data if len(data) <= LONG else gzip.compress(data, mtime=0)
-             for name, data in files.items()}
+    files = dict(_stored(file) for file in (*made.glob("*.csv"), made / SOURCES))
     record = json.loads((made / "experiments.json").read_text())
     for experiment in record["experiments"]:
         experiment["figures"] = []

@@ -106,23 +106,25 @@ def _tree(file: Path, function: str | None = None) -> str:
 
 
 def _behind(body: list[ast.stmt], function: str) -> list[ast.stmt]:
-    """Returns the statements of a module that a function needs, and the function itself."""
+    """Returns the statements of a module that a function needs, the function itself, and those that define no name."""
     needed: set[int] = set()
     waiting = {function}
     while waiting:
-        found = [node for node in body if id(node) not in needed and _bound(node) & waiting]
+        found = [node for node in body if id(node) not in needed and (not _bound(node) or _bound(node) & waiting)]
         needed |= {id(node) for node in found}
         waiting = {name.id for node in found for name in ast.walk(node) if isinstance(name, ast.Name)}
-    return [node for node in body if id(node) in needed or isinstance(node, ast.Expr)]
+    return [node for node in body if id(node) in needed]
 
 
 def _bound(node: ast.stmt) -> set[str]:
-    """Returns the names that a statement of a module defines."""
+    """Returns the names that a statement of a module defines; none if it does more, such as a loop."""
     if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
         return {node.name}
     if isinstance(node, (ast.Import, ast.ImportFrom)):
         return {(name.asname or name.name).split(".")[0] for name in node.names}
-    return {name.id for name in ast.walk(node) if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}
+    if isinstance(node, (ast.Assign, ast.AnnAssign)):
+        return {name.id for name in ast.walk(node) if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store)}
+    return set()
 
 
 @lru_cache(maxsize=None)

@@ -86,9 +86,15 @@ def test_the_readme_tells_the_published_results() -> None:
     assert f"In {first[1]}, `certified` never let the tip in, and lost {first[2]} of the free motion." in readme
     assert f"never let it in there either, and lost {first[3]}." in readme
     assert "4 of 9 passed through" in found["e6_counterexamples"] and "0 of 9 passed" in found["e6_counterexamples"]
+    assert record["headline"] == found["e1_validation"]
     assert found["published_numbers"].startswith(
         "Certified against no fixture: better by spectral arc length, cutting path deviation, absolute penetration depth, "
-        "duration. ")
+        "duration. Certified against the paper's rule: better by spectral arc length, absolute penetration depth; "
+        "worse by duration; ")
+    printed = next(table["rows"] for e in record["experiments"] for table in e["tables"]
+                   if table["title"].startswith("Every printed number"))
+    contradicted = [row for row in printed if re.search("(above|below) all", " ".join(row[3:5]))]
+    assert len(contradicted) > len(printed) / 2
     sparc = next(row for e in record["experiments"] if e["name"] == "e3_path_tracing" for table in e["tables"]
                  if "exploratory" in table["title"] for row in table["rows"] if row[:2] == ["SPARC, 10 Hz", "certified"])
     assert sparc[2] == "40" and float(sparc[4].split("[")[1].split(",")[1].rstrip("]")) < 0

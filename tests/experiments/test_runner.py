@@ -101,6 +101,8 @@ def test_of_an_experiment_only_the_code_that_its_run_needs_counts(copy: Path) ->
         assert changed != text
         module.write_text(changed)
         assert digest("e2_run_time") != before
+    module.write_text(text + "\n\nfor radius in ():\n    RADII[radius] = LONGEST_STEP\n")  # may change what run() uses
+    assert digest("e2_run_time") != before
 
 
 def test_a_rule_that_changes_keeps_the_rows_of_other_modes(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:

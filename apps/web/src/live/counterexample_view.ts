@@ -159,8 +159,6 @@ export class CounterexampleView {
     const shareOf = (begin: number, duration: number) =>
       three.MathUtils.smoothstep(played, begin, begin + duration);
     const [share, nearness] = [shareOf(0, way), shareOf(way, approach)];
-    const target = this.controls?.target ?? new three.Vector3();
-    const view = this.camera.clone();
     const { clientWidth, clientHeight } = this.container;
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(clientWidth, clientHeight);
@@ -170,22 +168,33 @@ export class CounterexampleView {
       renderer.setScissor(...area);
       const stage = this.stages[i];
       if (stage === undefined) return;
-      const scale = stage.closest ** nearness;
-      // At last the view is along the surface. It begins at the tool, and shows a section of a closed solid.
-      const away = this.camera.position.clone().sub(target);
-      away.addScaledVector(view.up, -0.85 * nearness * away.dot(view.up)).multiplyScalar(scale);
-      const middle = target.clone().lerp(stage.last, nearness);
-      view.position.copy(middle).add(away);
-      view.lookAt(middle);
-      const cut = away.length() - 1.5 * scale * stage.radius;
-      const near = scale * this.camera.near;
-      view.near = stage.isClosed ? three.MathUtils.lerp(near, cut, nearness) : near;
-      view.aspect = width / height;
-      view.updateProjectionMatrix();
-      stage.arrange(share, scale, view);
+      const view = this.viewOf(stage, nearness, width / height);
+      stage.arrange(share, stage.closest ** nearness, view);
       renderer.render(stage.scene, view);
     });
     requestAnimationFrame(() => this.play());
+  }
+
+  /**
+   * Returns the camera of a stage. `nearness`: from 0, where the camera of the controls is, to 1, where the view is
+   * close to the end of the motion and along the surface, and shows a section of a closed solid.
+   */
+  private viewOf(stage: Stage, nearness: number, aspect: number): three.PerspectiveCamera {
+    const target = this.controls?.target ?? new three.Vector3();
+    const scale = stage.closest ** nearness;
+    const view = this.camera.clone();
+    const away = this.camera.position.clone().sub(target);
+    away.addScaledVector(view.up, -0.85 * nearness * away.dot(view.up)).multiplyScalar(scale);
+    const middle = target.clone().lerp(stage.last, nearness);
+    view.position.copy(middle).add(away);
+    view.lookAt(middle);
+    view.near *= scale;
+    // The section begins just before the tool.
+    const cut = away.length() - 1.5 * scale * stage.radius;
+    if (stage.isClosed) view.near = three.MathUtils.lerp(view.near, cut, nearness);
+    view.aspect = aspect;
+    view.updateProjectionMatrix();
+    return view;
   }
 }
 
@@ -203,6 +212,7 @@ class Stage {
   private readonly lights = new three.Group();
   /** The length that the view shows at last, as a fraction of that at first. */
   closest = 1;
+  /** The radius of the ball at first. [mm] */
   radius = 0;
   private readonly mark = crossingMark();
   /** The fraction of the motion that precedes the view. */

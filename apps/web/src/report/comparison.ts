@@ -58,7 +58,7 @@ const narrowPhaseColumns: readonly Column[] = [
   ...times,
 ];
 
-/** Returns a sentence for each column of numbers that must be zero: "Missed: none. Invented: pd_tree. " */
+/** Returns one sentence for each column of harm, which names the parts with harm, such as "Invented: pd_tree. " */
 const faults = (rows: readonly string[], columns: readonly Column[]): (Node | string)[] =>
   columns
     .filter(({ look }) => look === "harm")

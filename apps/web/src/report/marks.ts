@@ -67,18 +67,13 @@ export function placeMarks(
     if (mark.label) labeled.push({ mark, x, y });
   }
   const picture = { left: 0, right: width, top: 0, bottom: height };
-  const paths: Box[] = lengths.flatMap(({ ends }) =>
-    Array.from({ length: ends.length / 3 }, (_, i) => {
-      const { x, y } = new three.Vector3().fromArray(ends, 3 * i).project(camera);
-      const [left, top] = [((x + 1) * width) / 2, ((1 - y) * height) / 2];
-      return { left, right: left, top, bottom: top };
-    }),
-  );
   const labels: Box[] = [];
   const rings = labeled.filter(
     ({ mark, x, y }) =>
       has(mark, "ring") && overlap(picture, { left: x, right: x, top: y, bottom: y }),
   );
+  const isAlone = (spot: Spot) => !rings.includes(spot) && !has(spot.mark, "numbered");
+  const paths = labeled.some(isAlone) ? placesOf(lengths, camera, width, height) : [];
   for (const spot of labeled) {
     if (rings.includes(spot)) continue;
     if (has(spot.mark, "numbered")) textOf(spot.mark).setAttribute("display", "none");
@@ -86,6 +81,21 @@ export function placeMarks(
   }
   labelRings(groupsOf(rings), width, height);
 }
+
+/** Returns the ends of the segments of paths in a picture. */
+const placesOf = (
+  lengths: readonly Lengths[],
+  camera: three.Camera,
+  width: number,
+  height: number,
+): Box[] =>
+  lengths.flatMap(({ ends }) =>
+    Array.from({ length: ends.length / 3 }, (_, i) => {
+      const seen = new three.Vector3().fromArray(ends, 3 * i).project(camera);
+      const [x, y] = [((seen.x + 1) * width) / 2, ((1 - seen.y) * height) / 2];
+      return { left: x, right: x, top: y, bottom: y };
+    }),
+  );
 
 /**
  * Puts the label of a mark beside it, where it covers no other label and the fewest places of paths.

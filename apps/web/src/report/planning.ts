@@ -126,10 +126,10 @@ async function meshSection(plan: PlanRecord, number: number): Promise<HTMLElemen
     const tooNear = runs.flatMap(({ too_near }) => too_near ?? []);
     const bad = tooNear.flatMap((length) => ends(length.map(anatomy.placed)));
     const color = ruleColor(checker);
-    const hidden = { color, ends: new Float32Array(good), isAlarming: false, isSeenThrough: true };
+    const hidden = mesh.inside ? [] : coloured(good, [], color, widths.many, true);
     const lengths = [
       ...coloured(good, bad, color, widths.whole, mesh.inside),
-      { ...hidden, width: widths.many, opacity: 0.3 },
+      ...hidden.map((length) => ({ ...length, opacity: 0.3 })),
     ];
     view.add(
       `All paths found under the checker ${checker}.`,
