@@ -176,8 +176,8 @@ export class CounterexampleView {
   }
 
   /**
-   * Returns the camera of a stage. `nearness`: from 0, where the camera of the controls is, to 1, where the view is
-   * close to the end of the motion and along the surface, and shows a section of a closed solid.
+   * Returns the camera of a stage. `nearness`: 0 for the camera of the controls, 1 for the last view. The last view is
+   * close to the end of the motion, and along the surface. It shows a section of a closed solid.
    */
   private viewOf(stage: Stage, nearness: number, aspect: number): three.PerspectiveCamera {
     const target = this.controls?.target ?? new three.Vector3();
