@@ -19,6 +19,11 @@ export interface Contact {
   readonly isGuarded: boolean;
   /** True if the surface limits the motion. */
   readonly isHeld: boolean;
+  /**
+   * Of a surface that may be open: the clearance that has the largest length in the picture, at any magnification.
+   * [mm]
+   */
+  readonly widest?: number;
 }
 
 /** The largest magnification of the view. */
@@ -49,7 +54,8 @@ export class Magnifier {
   /** The text and colors of the present picture. */
   private drawn = "";
 
-  constructor() {
+  /** `tool`: the variable of the page's style with the color of the tool. */
+  constructor(private readonly tool = "--tool") {
     const legend = make("span", { class: "bands" });
     for (const color of clearanceColors) {
       const band = make("i");
@@ -67,7 +73,7 @@ export class Magnifier {
   }
 
   /** Takes the colors of the page, and those of a tissue. `range`: of the legend. [mm] */
-  show(tissue: Tissue, range: number): void {
+  show(tissue: Pick<Tissue, "section" | "edge">, range: number): void {
     const css = (color: readonly [number, number, number]) =>
       `#${new three.Color().setRGB(...color).getHexString()}`;
     this.solid = css(tissue.section);
@@ -80,7 +86,7 @@ export class Magnifier {
   }
 
   paint(): void {
-    const names = ["--ink", "--tool", "--plane", "--alarm", "--solid"];
+    const names = ["--ink", this.tool, "--plane", "--alarm", "--solid"];
     this.drawn = "";
     this.colors = Object.fromEntries(names.map((name) => [name, colorOf(name)]));
   }
@@ -89,21 +95,21 @@ export class Magnifier {
   draw(contact: Contact, near: NearTriangles, camera: three.Camera, pixel: number): void {
     this.element.hidden = false;
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    const { point, normal, clearance, margin, isHeld, isGuarded } = contact;
+    const { point, normal, clearance, margin, isHeld, isGuarded, widest } = contact;
     const view = [camera.matrixWorld.elements, point.toArray(), normal.toArray(), pixel];
     const now = [view, clearance, margin, isHeld, isGuarded, width, height].join();
     if (width === 0 || height === 0 || now === this.drawn) return;
     this.drawn = now;
     const factor = Math.min(
-      most,
-      (widestGap * width * pixel) / Math.max(Math.abs(clearance), 1e-9),
+      widest ? Infinity : most,
+      (widestGap * width * pixel) / Math.max(widest ?? Math.abs(clearance), 1e-9),
       (widestMargin * width * pixel) / Math.max(margin, 1e-9),
     );
     const times = factor < 1.95 ? factor.toFixed(1) : factor.toFixed(0);
-    const kept = isGuarded && margin > 0 ? `, margin ${millimetres(margin)}` : "";
+    const margins = isGuarded && margin > 0 ? `, margin ${millimetres(margin)}` : "";
     // The section of a body that is deeper than the section is wide is smaller than the view.
     set(this.times, factor < 1 ? "section" : `${times}×`);
-    set(this.kept, kept);
+    set(this.kept, widest ? ", end of the motion" : margins);
     const scale = factor / pixel;
     const middle = point.clone().addScaledVector(normal, 0.5 * clearance);
     const [right, up] = axesOf(contact, camera);
@@ -119,7 +125,10 @@ export class Magnifier {
     pen.scale(density, density);
     const reach = (0.7 * (width + height)) / scale;
     const pieces = cut(near, middle, [right, up], reach, flat);
+    pen.save();
+    if (widest) pen.clip(behind(pieces, width + height));
     this.drawSolid(pen, pieces, width, height);
+    pen.restore();
     this.drawTool(pen, contact, flat, scale);
     this.drawGap(pen, contact, flat, [width, height]);
   }
@@ -180,7 +189,7 @@ export class Magnifier {
     flat: (place: three.Vector3) => [number, number],
     scale: number,
   ): void {
-    const { "--tool": color = "" } = this.colors;
+    const { [this.tool]: color = "" } = this.colors;
     const outline = (radius: number) => {
       const [[ax, ay], [bx, by]] = [flat(body.from), flat(body.to)];
       const along = Math.atan2(by - ay, bx - ax);
@@ -209,7 +218,7 @@ export class Magnifier {
   /** Draws the tangent plane, and the clearance between tool and surface. */
   private drawGap(
     pen: CanvasRenderingContext2D,
-    { point, normal, clearance, isHeld }: Contact,
+    { point, normal, clearance, isHeld, widest }: Contact,
     flat: (place: three.Vector3) => [number, number],
     [width, height]: readonly [number, number],
   ): void {
@@ -230,7 +239,7 @@ export class Magnifier {
     pen.strokeStyle = isHeld ? plane : ink;
     pen.globalAlpha = isHeld ? 1 : 0.4;
     pen.lineWidth = isHeld ? 2 : 1;
-    pen.stroke();
+    if (!widest) pen.stroke();
     pen.globalAlpha = 1;
 
     pen.beginPath();
@@ -248,7 +257,7 @@ export class Magnifier {
     pen.stroke();
 
     // Beside the gap, along the plane.
-    const text = millimetres(clearance);
+    const text = millimetres(clearance, widest ? 3 : 2);
     pen.font = this.font;
     const long = pen.measureText(text).width + 10;
     const side = 14 + 0.5 * (Math.abs(ny) * long + Math.abs(nx) * 18);
@@ -322,6 +331,22 @@ function cut(
     pieces.push([...a, ...b, normal.dot(right), -normal.dot(up)]);
   });
   return pieces;
+}
+
+/** Returns the part of the picture that is behind a piece, with the pieces themselves. */
+function behind(pieces: readonly Piece[], far: number): Path2D {
+  const path = new Path2D();
+  for (const [ax, ay, bx, by, nx, ny] of pieces) {
+    const [u, v] = unit(nx, ny);
+    // All in the same sense of rotation, so that two of them do not cancel each other.
+    const isTurned = (bx - ax) * v > (by - ay) * u;
+    const [px, py, qx, qy] = isTurned ? [bx, by, ax, ay] : [ax, ay, bx, by];
+    path.moveTo(px + u, py + v);
+    path.lineTo(qx + u, qy + v);
+    path.lineTo(qx - far * u, qy - far * v);
+    path.lineTo(px - far * u, py - far * v);
+  }
+  return path;
 }
 
 /** True if the piece that is nearest to a point of the picture faces away from it. */
