@@ -25,12 +25,12 @@ const reasons: Readonly<Record<string, string>> = {
     "The hand’s motion is free, but a plane of Li et al.’s rule turns the tool into the surface.",
 };
 /** The colors of a triangle on its two sides, and of its edges; the forbidden side is that of the section. */
-const look = { free: colors.bone, section: [0.7, 0.28, 0.26], edge: [0.2, 0.09, 0.05] } as const;
+const look = { free: colors.bone, section: [0.55, 0.19, 0.17], edge: [0.2, 0.09, 0.05] } as const;
 
 /** The variables of the page's style with the colors of both tools. */
 const tools = ["--rule-paper", "--rule-certified"] as const;
 /** The height of the view, as a fraction of the motion that the hand asks for; the radius of a ball, of that height. */
-const [shown, ball] = [1.5, 0.018];
+const [shown, ball] = [1.7, 0.018];
 
 /** Duration of the motion, and of the rest after it. [ms] */
 const way = 2000;
@@ -93,8 +93,8 @@ export class CounterexampleView {
     const asked = Math.hypot(...example.desired).toFixed(2);
     set(
       "sides-words",
-      `${reasons[name] ?? ""} The hand asks for ${asked} mm (dashed), with a margin of ${this.shown.margin} mm. ` +
-        "In the section, the forbidden side is red and hatched.",
+      `${reasons[name] ?? ""} The hand asks for ${asked} mm (dashed), and Certified keeps the margin of ${this.shown.margin} mm. ` +
+        "Red in the section is the forbidden side.",
     );
     this.aim(example);
     this.clock = { at: performance.now(), played: 0 };
@@ -155,8 +155,8 @@ export class CounterexampleView {
       renderer.setScissor(...area);
       const [stage, magnifier] = [this.stages[i], this.magnifiers[i]];
       if (stage === undefined || magnifier === undefined) return;
-      this.camera.aspect = width / height;
-      this.camera.updateProjectionMatrix();
+      // Beside the section, and below the head.
+      this.camera.setViewOffset(width, height, -0.12 * width, -0.05 * height, width, height);
       stage.arrange(share, this.heads[i]);
       renderer.render(stage.scene, this.camera);
       magnifier.element.hidden = share < 1;
@@ -198,7 +198,7 @@ class Stage {
     this.contact = {
       point,
       normal: end.clone().sub(point).multiplyScalar(sign).normalize(),
-      body: { from: end, to: end, radius: 0.06 * gap },
+      body: { from: end, to: end, radius: 0.08 * gap },
       clearance: sign * Math.abs(clearance),
       margin: 0,
       isGuarded: false,

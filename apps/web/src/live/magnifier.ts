@@ -19,10 +19,7 @@ export interface Contact {
   readonly isGuarded: boolean;
   /** True if the surface limits the motion. */
   readonly isHeld: boolean;
-  /**
-   * Of a surface that may be open: the clearance that has the largest length in the picture, at any magnification.
-   * [mm]
-   */
+  /** For a point beside a surface that may be open: the clearance that fills the picture, at any magnification. [mm] */
   readonly widest?: number;
 }
 
@@ -115,7 +112,11 @@ export class Magnifier {
     const [right, up] = axesOf(contact, camera);
     const flat = (place: three.Vector3): [number, number] => {
       const way = place.clone().sub(middle);
-      return [0.5 * width + scale * way.dot(right), 0.5 * height - scale * way.dot(up)];
+      // Beside it, a clearance with more decimals has place.
+      return [
+        (widest ? 0.35 : 0.5) * width + scale * way.dot(right),
+        0.5 * height - scale * way.dot(up),
+      ];
     };
 
     const density = Math.min(devicePixelRatio, 2);
@@ -185,11 +186,11 @@ export class Magnifier {
   /** Draws the tool, and around it the shell of its margin. */
   private drawTool(
     pen: CanvasRenderingContext2D,
-    { body, margin, isGuarded }: Contact,
+    { body, margin, isGuarded, widest }: Contact,
     flat: (place: three.Vector3) => [number, number],
     scale: number,
   ): void {
-    const { [this.tool]: color = "" } = this.colors;
+    const { [this.tool]: color = "", "--solid": ground = "" } = this.colors;
     const outline = (radius: number) => {
       const [[ax, ay], [bx, by]] = [flat(body.from), flat(body.to)];
       const along = Math.atan2(by - ay, bx - ax);
@@ -213,6 +214,9 @@ export class Magnifier {
     outline(body.radius);
     pen.fill();
     pen.globalAlpha = 1;
+    if (!widest) return;
+    pen.strokeStyle = ground;
+    pen.stroke();
   }
 
   /** Draws the tangent plane, and the clearance between tool and surface. */
@@ -243,16 +247,18 @@ export class Magnifier {
     pen.globalAlpha = 1;
 
     pen.beginPath();
-    for (const [a, b] of [
+    const ends = [
       [x, y],
       [u, v],
-    ] as const) {
+    ] as const;
+    // A point needs no mark besides its dot.
+    for (const [a, b] of widest ? ends.slice(0, 1) : ends) {
       pen.moveTo(a - 5 * ny, b + 5 * nx);
       pen.lineTo(a + 5 * ny, b - 5 * nx);
     }
     pen.moveTo(x, y);
     pen.lineTo(u, v);
-    pen.strokeStyle = clearance < 0 ? alarm : ink;
+    pen.strokeStyle = clearance < 0 && !widest ? alarm : ink;
     pen.lineWidth = 1.6;
     pen.stroke();
 
@@ -333,7 +339,7 @@ function cut(
   return pieces;
 }
 
-/** Returns the part of the picture that is behind a piece, with the pieces themselves. */
+/** Returns the pieces and what is behind them: a surface has no side beyond its rim. */
 function behind(pieces: readonly Piece[], far: number): Path2D {
   const path = new Path2D();
   for (const [ax, ay, bx, by, nx, ny] of pieces) {
