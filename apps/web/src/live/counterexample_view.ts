@@ -29,7 +29,7 @@ const look = { free: colors.bone, section: [0.55, 0.19, 0.17], edge: [0.2, 0.09,
 
 /** The variables of the page's style with the colors of both tools. */
 const tools = ["--rule-paper", "--rule-certified"] as const;
-/** The height of the view, as a fraction of the motion that the hand asks for; the radius of a ball, of that height. */
+/** The height of the view by the length of the motion that the hand asks for; the radius of a ball by that height. */
 const [shown, ball] = [1.7, 0.018];
 
 /** Duration of the motion, and of the rest after it. [ms] */
@@ -93,8 +93,8 @@ export class CounterexampleView {
     const asked = Math.hypot(...example.desired).toFixed(2);
     set(
       "sides-words",
-      `${reasons[name] ?? ""} The hand asks for ${asked} mm (dashed), and Certified keeps the margin of ${this.shown.margin} mm. ` +
-        "Red in the section is the forbidden side.",
+      `${reasons[name] ?? ""} The hand asks for ${asked} mm (dashed), and Certified keeps ` +
+        `the margin of ${this.shown.margin} mm. Red in the section is the forbidden side.`,
     );
     this.aim(example);
     this.clock = { at: performance.now(), played: 0 };
