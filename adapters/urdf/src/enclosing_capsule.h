@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "keepout/geometry/shapes.h"
+
+namespace keepout {
+
+/// All points within `radius` of the segment between two points; a ball if they are equal. [length]
+struct Capsule {
+  Vec3 from, to;
+  double radius;
+};
+
+/// A bound of the rounding errors of a length, relative to the lengths from which it follows. Some
+/// dozen operations have errors of 2^-53 each, so it is a thousand times larger than needed.
+inline constexpr double outwards = 0x1p-40;
+
+/// Returns a small capsule that contains all points, with its radius rounded up. A capsule is
+/// convex, so it also contains the convex hull of the points, and each solid whose corners they
+/// are. Of capsules along the principal axes and the coordinate axes it takes the least volume.
+/// Precondition: one point or more. [length]
+Capsule enclosing_capsule(std::span<const Vec3> points);
+
+}  // namespace keepout
