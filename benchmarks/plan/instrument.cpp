@@ -164,7 +164,8 @@ std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& sta
 class InstrumentPlanning final : public Planning {
  public:
   InstrumentPlanning(const PlanOptions& options, Scene scene)
-      : options_(&options), on_{std::move(scene), options.margin, chosen_robot(options.robot, options.bodies)} {}
+      : options_(&options),
+        on_{std::move(scene), options.margin, chosen_robot(options.robot, options.bodies)} {}
 
   const Scene& scene() const override { return on_.scene; }
 

@@ -21,8 +21,8 @@ void screw(LinkFrame& frame, int axis, Real angle, Real way) {
   frame.axes.col(v) = std::cos(angle) * frame.axes.col(v) - std::sin(angle) * before;
 }
 
-/// Rotates a frame about an axis, which is given in this frame, and moves it along that axis. Source:
-/// Rodrigues' formula.
+/// Rotates a frame about an axis, which is given in this frame, and moves it along that axis.
+/// Source: Rodrigues' formula.
 void screw(LinkFrame& frame, const Vec3& axis, Real angle, Real way) {
   const Eigen::Matrix<Real, 3, 1> unit = axis.cast<Real>();
   frame.origin += way * (frame.axes * unit);

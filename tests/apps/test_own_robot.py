@@ -107,9 +107,9 @@ identity = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 def test_serve_guards_the_robot(folder):
     opened = {"do": "instrument", "urdf": "robots/six_joint_arm.urdf", "margin": 0.5}
     named = {**opened, "bodies": "robots/six_joint_arm.json",
-             "frame": [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 1030], [0, 0, 0, 1]]}
+             "frame": [[1, 0, 0, 0], [0, -1, 0, 90], [0, 0, -1, 962], [0, 0, 0, 1]]}  # hangs above the cube
     down = {"do": "joint_step", "linear": [0, 0, -0.2]}
-    q = [0.0] * 6
+    q = [0, -0.7, 1.4, 0, -0.87, 0]  # the tip is 20 mm above the cube
     process = subprocess.Popen([keepout, "serve", "cube"], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                text=True)
 

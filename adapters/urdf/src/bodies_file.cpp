@@ -65,9 +65,9 @@ void require_fields(const Json& value, const std::string& where,
   for (const auto& [key, member] : value.items()) {
     if (std::ranges::find(known, key) != known.end()) continue;
     const auto meant = nearest_name(key, std::span(known.begin(), known.size()));
-    refuse(where, "has an unknown field " + shown(Json(key)) + "; " +
-                      (meant ? "did you mean \"" + std::string(*meant) + "\"?"
-                             : "there are: " + all));
+    refuse(where,
+           "has an unknown field " + shown(Json(key)) + "; " +
+               (meant ? "did you mean \"" + std::string(*meant) + "\"?" : "there are: " + all));
   }
 }
 
@@ -89,10 +89,10 @@ std::string text_of(const Json& value, const std::string& where) {
 }
 
 Vec3 vector_of(const Json& value, const std::string& where) {
-  const bool is_vector = value.is_array() && value.size() == 3 &&
-                         std::ranges::all_of(value, [](const Json& item) {
-                           return item.is_number() && std::isfinite(item.get<double>());
-                         });
+  const bool is_vector =
+      value.is_array() && value.size() == 3 && std::ranges::all_of(value, [](const Json& item) {
+        return item.is_number() && std::isfinite(item.get<double>());
+      });
   if (!is_vector) refuse(where, "must be an array of three finite numbers, not " + shown(value));
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
@@ -111,10 +111,10 @@ Pose pose_of(const Json& value, const std::string& where) {
   if (value.contains("xyz_mm")) pose.position = vector_of(value["xyz_mm"], member(where, "xyz_mm"));
   if (value.contains("rpy_rad")) {
     const Vec3 rpy = vector_of(value["rpy_rad"], member(where, "rpy_rad"));
-    pose.rotation = (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) *
-                     Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
-                     Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
-                        .toRotationMatrix();
+    pose.rotation =
+        (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
+         Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
+            .toRotationMatrix();
   }
   return pose;
 }
@@ -130,14 +130,15 @@ BodiesFile::Entry entry_of(const Json& value, const std::string& where) {
            c == '-' || c == '.';
   });
   if (!is_plain) {
-    refuse(member(where, "name"), "may have letters, digits, '_', '-' and '.', not " +
-                                      shown(value["name"]));
+    refuse(member(where, "name"),
+           "may have letters, digits, '_', '-' and '.', not " + shown(value["name"]));
   }
   const Json& radius = needed(value, where, "radius_mm", "a radius in mm");
   const bool is_radius =
       radius.is_number() && std::isfinite(radius.get<double>()) && radius.get<double>() >= 0.0;
   if (!is_radius) {
-    refuse(member(where, "radius_mm"), "must be a number of at least 0, in mm, not " + shown(radius));
+    refuse(member(where, "radius_mm"),
+           "must be a number of at least 0, in mm, not " + shown(radius));
   }
   entry.radius = radius.get<double>();
   const std::string of_points = member(where, "points");
@@ -172,8 +173,8 @@ BodiesFile parse_bodies(std::string_view text) {
     const std::string where = "bodies[" + std::to_string(b) + "]";
     BodiesFile::Entry& entry = file.bodies->emplace_back(entry_of(bodies[b], where));
     if (used.insert(entry.name).second) continue;
-    refuse(member(where, "name"), "is the name of another body: rename one of the bodies called '" +
-                                      entry.name + "'");
+    refuse(member(where, "name"),
+           "is the name of another body: rename one of the bodies called '" + entry.name + "'");
   }
   return file;
 }

@@ -29,7 +29,7 @@ struct BodiesFile {
 constexpr std::size_t most_bytes_of_bodies = std::size_t{1} << 20;
 
 /// Reads a text. Throws Error, which names the field and what to write, for a text that is not JSON
-/// or has another form, unknown and duplicate fields, and numbers that are not finite.
+/// or has another form. Unknown and duplicate fields, and numbers that are not finite, are errors.
 BodiesFile parse_bodies(std::string_view text);
 
 }  // namespace keepout

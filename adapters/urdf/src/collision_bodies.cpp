@@ -66,16 +66,16 @@ class Shape {
     const TiXmlElement* const origin = only(element, "origin");
     const Vec3 rpy = origin != nullptr ? vector(*origin, "rpy", Vec3::Zero()) : Vec3::Zero();
     Pose at;
-    at.rotation = (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
-                   Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
-                      .toRotationMatrix();
+    at.rotation =
+        (Eigen::AngleAxisd(rpy.z(), Vec3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vec3::UnitY()) *
+         Eigen::AngleAxisd(rpy.x(), Vec3::UnitX()))
+            .toRotationMatrix();
     if (origin != nullptr) at.position = scale * vector(*origin, "xyz", Vec3::Zero());
     pose_ = place.pose * at;
-    // Of the roundings of all poses up to here.
+    // The roundings of all poses up to here are relative to these lengths.
     lengths_ = place.pose.position.norm() + at.position.norm();
     const TiXmlElement* const geometry = only(element, "geometry");
-    const TiXmlElement* const form =
-        geometry != nullptr ? geometry->FirstChildElement() : nullptr;
+    const TiXmlElement* const form = geometry != nullptr ? geometry->FirstChildElement() : nullptr;
     if (form == nullptr) refuse("has no shape in <geometry>: write one, or remove the element");
     enclose(*form, folder, notices);
   }
@@ -108,7 +108,10 @@ class Shape {
     std::array<double, count> read{};
     const char* at = text;
     const char* const end = text + std::strlen(text);
-    const auto skip_blanks = [&] { at = std::find_if_not(at, end, [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }); };
+    const auto skip_blanks = [&] {
+      at = std::find_if_not(at, end,
+                            [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; });
+    };
     bool is_read = true;
     for (double& number : read) {
       skip_blanks();
@@ -146,8 +149,8 @@ class Shape {
       if (half.minCoeff() < 0.0) refuse("has a negative <box size>: write lengths");
       std::vector<Vec3> corners;
       for (int i = 0; i < 8; ++i) {
-        corners.push_back(half.cwiseProduct(Vec3((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0,
-                                                 (i & 4) != 0 ? 1.0 : -1.0)));
+        corners.push_back(half.cwiseProduct(
+            Vec3((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 4) != 0 ? 1.0 : -1.0)));
       }
       set_around(corners);
     } else if (kind == "mesh") {
@@ -159,7 +162,8 @@ class Shape {
 
   void set_along_z(double radius, double length) {
     const Vec3 half(0.0, 0.0, 0.5 * length);
-    capsule_ = {pose_ * Vec3(-half), pose_ * half, radius + outwards * (radius + length + lengths_)};
+    capsule_ = {pose_ * Vec3(-half), pose_ * half,
+                radius + outwards * (radius + length + lengths_)};
   }
 
   /// `points`: in the frame of the shape.
@@ -179,7 +183,8 @@ class Shape {
     if (name == nullptr || *name == '\0') refuse("has no <mesh filename>: write it");
     const Vec3 factors = vector(form, "scale", Vec3::Ones());
     try {
-      const LoadedMesh loaded = load_mesh(mesh_file(name, folder), {.scale = 1.0, .check = MeshCheck::none});
+      const LoadedMesh loaded =
+          load_mesh(mesh_file(name, folder), {.scale = 1.0, .check = MeshCheck::none});
       notices.insert(notices.end(), loaded.warnings.begin(), loaded.warnings.end());
       std::vector<Vec3> points;
       for (const Vec3& vertex : loaded.mesh->vertices()) {
@@ -203,8 +208,8 @@ class Shape {
 /// Returns the name with characters that every record and table can have, and that no other has.
 std::string unique_name(std::string name, std::set<std::string>& used) {
   for (char& c : name) {
-    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                          c == '_' || c == '-' || c == '.';
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
     if (!is_plain) c = '_';
   }
   name = name.empty() ? "body" : name.substr(0, longest_name);
@@ -264,12 +269,14 @@ std::vector<Body> bodies_of_collisions(const UrdfDescription& read, const UrdfCh
         break;
       }
       covered.insert(at.place->link);
-      found.push_back({element, name, own != nullptr && *own != '\0' ? own : name, which, *at.place});
+      found.push_back(
+          {element, name, own != nullptr && *own != '\0' ? own : name, which, *at.place});
     }
   }
   for (std::size_t k = 1; k < chain.links.size(); ++k) {
     if (covered.contains(static_cast<int>(k))) continue;
-    notices.push_back("link '" + chain.links[k] + "' has no collision element: nothing of it is guarded");
+    notices.push_back("link '" + chain.links[k] +
+                      "' has no collision element: nothing of it is guarded");
   }
   if (found.empty() || found.size() > Instrument::most_bodies) {
     throw Error("the links from base to tip have " + std::to_string(found.size()) +

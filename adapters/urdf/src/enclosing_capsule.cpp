@@ -57,7 +57,8 @@ Capsule capsule_along(std::span<const Vec3> points, const Vec3& axis) {
   }
   // With the radius of a ball around all points, the segment has no length.
   double most = least;
-  for (const OnLine& at : places) most = std::max(most, std::hypot(at.along - 0.5 * (low + high), at.off));
+  for (const OnLine& at : places)
+    most = std::max(most, std::hypot(at.along - 0.5 * (low + high), at.off));
   Capsule best{center, center, std::numeric_limits<double>::infinity()};
   double smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= radii_tried; ++i) {
@@ -104,7 +105,8 @@ Capsule enclosing_capsule(std::span<const Vec3> points) {
     const auto size = [](const Capsule& c) { return volume(c.radius, (c.to - c.from).norm()); };
     if (size(one) < size(best)) best = one;
   }
-  // The proof of the enclosure does not depend on the search: the radius follows from all distances.
+  // The proof of the enclosure does not depend on the search: the radius follows from all
+  // distances.
   double farthest = 0.0, size = 0.0;
   for (const Vec3& point : points) {
     farthest = std::max(farthest, distance(best, point));

@@ -7,12 +7,6 @@
 
 namespace keepout {
 
-/// All points within `radius` of the segment between two points; a ball if they are equal. [length]
-struct Capsule {
-  Vec3 from, to;
-  double radius;
-};
-
 /// A bound of the rounding errors of a length, relative to the lengths from which it follows. Some
 /// dozen operations have errors of 2^-53 each, so it is a thousand times larger than needed.
 inline constexpr double outwards = 0x1p-40;

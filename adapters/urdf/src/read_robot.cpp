@@ -23,8 +23,8 @@ auto in_file(const std::filesystem::path& file, const Function& function) {
   }
 }
 
-/// Returns the bodies of a file, with points in the frames of the chain's links. `scale`: the length
-/// of a meter.
+/// Returns the bodies of a file, with points in the frames of the chain's links. `scale`: the
+/// length of a meter.
 std::vector<Body> bodies_of(const BodiesFile& file, const UrdfDescription& read,
                             const UrdfChain& chain, double scale) {
   const double millimeter = scale / 1000.0;
@@ -46,8 +46,8 @@ std::vector<Body> bodies_of(const BodiesFile& file, const UrdfDescription& read,
         body.points.push_back({found.place->link, found.place->pose * Vec3(millimeter * position)});
         continue;
       }
-      throw Error(where + "the chain from '" + chain.links.front() + "' to the tip does not carry '" +
-                  name + "'" +
+      throw Error(where + "the chain from '" + chain.links.front() +
+                  "' to the tip does not carry '" + name + "'" +
                   (found.moved_by.empty() ? "" : ": joint '" + found.moved_by + "' moves it") +
                   "; name a link between base and tip, or fixed to one");
     }
@@ -70,19 +70,20 @@ UrdfRobot read_robot(const std::filesystem::path& urdf, const std::filesystem::p
     return chain_of(read, base.empty() ? file.base : base, tip.empty() ? file.tip : tip, scale);
   });
   std::vector<std::string> notices;
-  std::vector<Body> made = file.bodies ? in_file(bodies, [&] { return bodies_of(file, read, chain, scale); })
-                                       : in_file(urdf, [&] {
-                                           return bodies_of_collisions(read, chain, urdf.parent_path(),
-                                                                       scale, notices);
-                                         });
+  std::vector<Body> made =
+      file.bodies ? in_file(bodies, [&] { return bodies_of(file, read, chain, scale); })
+                  : in_file(urdf, [&] {
+                      return bodies_of_collisions(read, chain, urdf.parent_path(), scale, notices);
+                    });
   for (std::string& notice : notices) notice.insert(0, urdf.string() + ": ");
   Pose pose = file.base_pose;
   pose.position *= scale / 1000.0;
   return in_file(file.bodies ? bodies : urdf, [&] {
-    return UrdfRobot{.name = chain.robot,
-                     .instrument = Instrument(Chain(chain.joints, pose, chain.flange), std::move(made)),
-                     .links = chain.links,
-                     .notices = std::move(notices)};
+    return UrdfRobot{
+        .name = chain.robot,
+        .instrument = Instrument(Chain(chain.joints, pose, chain.flange), std::move(made)),
+        .links = chain.links,
+        .notices = std::move(notices)};
   });
 }
 

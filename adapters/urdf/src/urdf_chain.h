@@ -15,7 +15,7 @@ namespace keepout {
 UrdfChain chain_of(const UrdfDescription& read, std::string_view base, std::string_view tip,
                    double scale);
 
-/// Returns the link of this name. Throws Error, with a similar name, if there is none.
+/// Returns the link of this name. Throws Error, with a similar name, if it does not exist.
 urdf::LinkConstSharedPtr link_named(const urdf::ModelInterface& model, std::string_view wanted);
 
 /// Returns a pose of a URDF. `scale`: the length of a meter.

@@ -82,8 +82,8 @@ void require_tree(const std::map<std::string, const TiXmlElement*>& joints) {
   }
 }
 
-/// Returns the text with cylinders in place of capsules, which urdfdom does not know: it would reject
-/// the robot. The chain does not depend on shapes.
+/// Returns the text with cylinders in place of capsules, which urdfdom does not know: it would
+/// reject the robot. The chain does not depend on shapes.
 std::string without_capsules(const std::string& xml, const TiXmlDocument& document) {
   if (xml.find("<capsule") == std::string::npos) return xml;
   TiXmlDocument copy(document);

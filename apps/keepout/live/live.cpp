@@ -177,7 +177,8 @@ void print_page(std::ostream& out, const LiveOptions& options, const std::string
 }
 
 constexpr const char* recorded_only =
-    "This page shows a recorded run only: the tool in it cannot be dragged. The engine inside a live "
+    "This page shows a recorded run only: the tool in it cannot be dragged. The engine inside a "
+    "live "
     "page has the instrument of psm, and not that of a URDF file.";
 
 /// Writes the page of a recorded run with the robot of a URDF file. Returns the exit status.

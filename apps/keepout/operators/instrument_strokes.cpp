@@ -75,7 +75,8 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
     const oracle::JudgedRobot judged = on.robot.judged();
     const auto links = oracle::place(judged, drawn->base, drawn->positions);
     // Without a port, it leans with the body before the tool.
-    const std::size_t before_tool = judged.bodies.size() - std::min<std::size_t>(2, judged.bodies.size());
+    const std::size_t before_tool =
+        judged.bodies.size() - std::min<std::size_t>(2, judged.bodies.size());
     const auto& leaning = judged.bodies[has_port ? 0 : before_tool];
     const auto& body = is_leaning ? leaning : judged.bodies.back();
     const Facing one =

@@ -154,13 +154,12 @@ class GuardedInstrument final : public SimulatedTool {
   std::shared_ptr<const Mesh> open(const std::filesystem::path& path,
                                    const StopSignal& stop) override {
     const std::string name = path.stem().string();
-    auto opened = unless_stopped(
-        stop, [=, load = options_.load, index = options_.constraint.index, margin = margin_,
-               robot = robot_] {
-          const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, load).mesh;
-          require_area(path.string(), *mesh);
-          return std::make_unique<RobotScene>(RobotScene{{name, mesh, index}, margin, robot});
-        });
+    auto opened = unless_stopped(stop, [=, load = options_.load, index = options_.constraint.index,
+                                        margin = margin_, robot = robot_] {
+      const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, load).mesh;
+      require_area(path.string(), *mesh);
+      return std::make_unique<RobotScene>(RobotScene{{name, mesh, index}, margin, robot});
+    });
     if (!opened) return nullptr;
     on_ = *std::move(opened);
     const std::shared_ptr<const Mesh> mesh = on_->scene.mesh();

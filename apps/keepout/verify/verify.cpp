@@ -99,9 +99,9 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   command.add_option("MESH", options.meshes,
                      "Mesh files in mm, or sample meshes; default: all sample meshes");
   Campaign& campaign = options;
-  CLI::Option* named = add_robot(command, campaign.robot, campaign.bodies,
-                                 names(robots_under_test()),
-                                 "Attack a whole instrument, in joint space");
+  CLI::Option* named =
+      add_robot(command, campaign.robot, campaign.bodies, names(robots_under_test()),
+                "Attack a whole instrument, in joint space");
   CLI::Option* chosen =
       command.add_option("--scenario", campaign.scenarios, "Kinds of attack, also in joint space")
           ->check(one_of(names(app::scenarios())))

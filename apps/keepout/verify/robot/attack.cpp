@@ -304,7 +304,7 @@ class RobotAttack final : public Attack {
   const Arena& arena_;
   const Scenario& scenario_;
   std::shared_ptr<const RobotUnderTest> robot_;  // null: drawn for each start
-  bool is_drawn_;                // mesh or robot change with each setup
+  bool is_drawn_;                                // mesh or robot change with each setup
   std::shared_ptr<std::shared_ptr<Scene>>
       loaded_;  // shared by all rows of the mesh; null until the first one
   std::uint64_t draws_ = 0;

@@ -70,9 +70,8 @@ std::vector<Joint> all_joints(const Chain& chain) {
   return joints;
 }
 
-RobotUnderTest known_robot(std::string name, std::string description,
-                           const Instrument& instrument, oracle::JudgedRobot model,
-                           std::vector<RobotUnderTest::Range> starts) {
+RobotUnderTest known_robot(std::string name, std::string description, const Instrument& instrument,
+                           oracle::JudgedRobot model, std::vector<RobotUnderTest::Range> starts) {
   return {std::move(name),
           std::move(description),
           all_joints(instrument.chain()),
@@ -105,15 +104,15 @@ RobotUnderTest robot_of_files([[maybe_unused]] const std::string& urdf,
   for (const std::string& notice : read.notices) warn_on_stderr(notice);
   RobotUnderTest robot = known_robot(urdf, "", read.instrument, {}, {});
   for (const Joint& joint : robot.joints) {
-    robot.model.table.push_back({.slides = joint.kind == JointKind::prismatic,
-                                 .before = joint.origin,
-                                 .axis = joint.axis});
+    robot.model.table.push_back(
+        {.slides = joint.kind == JointKind::prismatic, .before = joint.origin, .axis = joint.axis});
     robot.starts.push_back(start_of(joint));
   }
   for (const Body& body : robot.bodies) {
     oracle::JudgedBody& judged = robot.model.bodies.emplace_back();
     judged.radius = body.radius;
-    for (const LinkPoint& point : body.points) judged.points.push_back({point.link, point.position});
+    for (const LinkPoint& point : body.points)
+      judged.points.push_back({point.link, point.position});
   }
   return robot;
 #else
@@ -196,7 +195,8 @@ bool RobotUnderTest::has_port() const noexcept {
 RobotUnderTest chosen_robot(const std::string& robot, const std::filesystem::path& bodies) {
   if (is_robot_file(robot)) return robot_of_files(robot, bodies);
   if (bodies.empty()) return robot_named(robot);
-  throw Error("--bodies: the robot '" + robot + "' has its own bodies: name a URDF file as --robot");
+  throw Error("--bodies: the robot '" + robot +
+              "' has its own bodies: name a URDF file as --robot");
 }
 
 RobotUnderTest drawn_robot(Random& random) {

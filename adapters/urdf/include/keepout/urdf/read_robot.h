@@ -23,15 +23,15 @@ struct UrdfRobot {
 /// and `tip`: links, as in read_chain; if empty, those of the JSON file. `scale`: the length of a
 /// meter in the mesh's unit, 1000 for mm.
 ///
-/// If `bodies` is empty, or its file has no bodies, each collision element of a link that the chain
-/// carries becomes a body: a sphere a ball, and every other shape a capsule that contains it. Radii
-/// are rounded up, so that no rounding leaves a part of the shape outside. The body that comes
-/// nearest to the tip is the last one.
+/// If `bodies` is empty, or its file has no bodies, the collision elements of all links that the
+/// chain carries become bodies. A sphere becomes a ball, every other shape a capsule that contains
+/// it. Radii are rounded up, so that no rounding leaves a part of the shape outside. The body that
+/// comes nearest to the tip is the last one.
 ///
-/// Throws Error, which names file, field or element, and what to do: as read_chain, for a JSON file
-/// that is not of this format, and for bodies that are not valid (see Instrument). Without bodies
-/// in a file, also throws Error for a shape that cannot be read, for a shape behind a joint that
-/// moves and is not in the chain, and unless there are 1 to Instrument::most_bodies shapes.
+/// Throws Error, which names file, field or element, and what to do, like read_chain. Also throws
+/// Error for a JSON file of another format, and for invalid bodies (see Instrument). Without bodies
+/// in a file, throws Error for a shape that cannot be read. Also throws Error then for a shape that
+/// a joint outside of the chain moves, and unless there are 1 to Instrument::most_bodies shapes.
 UrdfRobot read_robot(const std::filesystem::path& urdf, const std::filesystem::path& bodies = {},
                      std::string_view base = {}, std::string_view tip = {}, double scale = 1000.0);
 
