@@ -142,7 +142,7 @@ std::vector<Vec3> cloud(Random& random) {
 
 TEST(EnclosingCapsule, ContainsEachPointExactly) {
   Random random(20261127);
-  const int count = trials(2000);
+  const int count = test::trials(2000);
   for (int i = 0; i < count; ++i) {
     const std::vector<Vec3> points = cloud(random);
     const Capsule capsule = enclosing_capsule(points);
@@ -347,7 +347,7 @@ TEST_F(FaultyRobot, FilesThatAreNoneAreNamed) {
 TEST_F(FaultyRobot, AChangedFileOfBodiesIsRefusedOrReadAndNeverCrashes) {
   const std::string good = contents_of(robots + "/six_joint_arm.json");
   Random random(7);
-  const int count = trials(1000);
+  const int count = test::trials(1000);
   int refused = 0;
   for (int i = 0; i < count; ++i) {
     std::string text = good;
