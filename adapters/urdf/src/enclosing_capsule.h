@@ -13,7 +13,7 @@ inline constexpr double outwards = 0x1p-40;
 
 /// Returns a small capsule that contains all points, with its radius rounded up. A capsule is
 /// convex, so it also contains the convex hull of the points, and each solid whose corners they
-/// are. Of capsules along the principal axes and the coordinate axes it takes the least volume.
+/// are. It is the smallest of the capsules along the principal axes and the coordinate axes.
 /// Precondition: one point or more. [length]
 Capsule enclosing_capsule(std::span<const Vec3> points);
 

@@ -130,7 +130,11 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   const range = make(
     "select",
     { "aria-label": "view" },
-    make("option", { value: "whole" }, "the whole anatomy and the port"),
+    make(
+      "option",
+      { value: "whole" },
+      `the whole anatomy and the ${hasPort(mesh.strokes[0]) ? "port" : "base"}`,
+    ),
     make("option", { value: "tip" }, "the tip"),
   );
   const content = make("div");
