@@ -135,7 +135,7 @@ def test_serve_guards_the_robot(folder):
     assert answer["body_names"] == shapes
     assert "nothing of it is guarded" in answer["notices"][0]
     both = ask({"id": 4, **named, "capsules": [[6, 0, 0, 0, 6, 0, 0, 9, 1]]})
-    assert both["error"]["kind"] == "not_a_request" and "omit one of them" in both["error"]["message"]
+    assert both["error"]["kind"] == "no_instrument" and "omit one of them" in both["error"]["message"]
     process.stdin.close()
     assert process.wait(timeout=10) == 0
     process.stdout.close()

@@ -104,7 +104,7 @@ ReadInstrument read_robot_of(const Json&) { refuse_urdf(); }
 ReadInstrument read_instrument(const Json& request) {
   if (!request.contains("capsules")) return read_robot_of(request);
   if (request.contains("bodies")) {
-    refuse("'capsules' and 'bodies' both describe the bodies: omit one of them");
+    throw Error("'capsules' and 'bodies' both describe the bodies: omit one of them");
   }
   std::vector<Body> bodies;
   const std::vector<double> capsules = numbers(request, "capsules");
