@@ -52,6 +52,9 @@ def test_simulate_keeps_all_bodies_off_the_mesh(folder, more, names):
     assert rows["certified"]["refused"] < 450
     assert rows["none"]["in_mesh"] > 0, "the strokes do not test the guard"
     assert "kept all bodies (" + ", ".join(names[:-1]) in record["headline"]
+    schema = json.loads((Path(__file__).parents[2] / "docs/schemas/record.json").read_text())
+    jsonschema = pytest.importorskip("jsonschema", reason="needs python3-jsonschema")
+    assert list(jsonschema.Draft202012Validator(schema).iter_errors(record)) == []
     stroke = record["meshes"][0]["strokes"][0]
     for run_of_mode in stroke["runs"]:
         assert len(run_of_mode["places"][0]) == len(run_of_mode["begins"][0]) == len(names)
