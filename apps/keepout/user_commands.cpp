@@ -178,13 +178,10 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
              "Number of strokes of the operator");
   add_number(command, "--cycles", options.strokes.cycles, 10, 1'000'000,
              "Control cycles of each stroke, at 1 kHz");
-  CLI::Option* const robot =
-      command
-          .add_option(
-              "--robot", options.robot,
-              "Drive the instrument of a robot instead: shaft, wrist and jaw, guarded in joint "
-              "space, guarded in part, and unguarded; without MESH on skull, airway and brain")
-          ->check(one_of({"psm"}));
+  CLI::Option* const robot = add_robot(
+      command, options.robot, options.bodies, {"psm"},
+      "Drive the instrument of a robot instead, guarded in joint space, guarded in part, and "
+      "unguarded; without MESH on skull, airway and brain");
   command
       .add_option("--speed", options.speeds, "Speeds, in multiples of 0.5 mm and 0.02 rad a cycle")
       ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "keepout/geometry/shapes.h"
+#include "keepout/robot/instrument.h"
 #include "keepout/step/guide.h"
 #include "shared/timing.h"
 
@@ -24,15 +25,23 @@ enum class Outcome : std::uint8_t {
   stopped        // no motion, or less than a nanometer of a tip
 };
 
-/// The result of one control cycle of a simulated stroke. A tip is one body; an instrument has
-/// shaft, wrist and jaw.
+/// The result of one control cycle of a simulated stroke. A tip is one body; an instrument has one
+/// or more.
 struct Cycle {
   static constexpr double far = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t most_bodies = Instrument::most_bodies;
+  /// Returns the clearances of bodies that are far away, or do not exist.
+  static constexpr std::array<double, most_bodies> all_far() {
+    std::array<double, most_bodies> clearances{};
+    clearances.fill(far);
+    return clearances;
+  }
 
-  std::array<Vec3, 3> places;  // the ends of the bodies [mm]
+  std::array<Vec3, most_bodies> places;  // the ends of the bodies [mm]
+  std::array<Vec3, most_bodies> begins;  // the other ends of the bodies of an instrument [mm]
   /// The least distance of each body to the surface, measured independently: negative inside, never
   /// negative for a tip beside an open surface, infinite beyond the margin of an instrument. [mm]
-  std::array<double, 3> clearances{far, far, far};
+  std::array<double, most_bodies> clearances = all_far();
   float step_us = 0.0F;  // time of a tip's step; 0 without a guard [µs]
   Outcome outcome = Outcome::moved_freely;
   bool is_breach =
@@ -80,7 +89,7 @@ struct RunTally {
   std::size_t strokes_breached = 0;          // with a cycle inside, or with a breach
   std::size_t starts_too_close = 0;          // strokes that began closer than required
   BodyTally any = {};                        // all bodies together
-  std::array<BodyTally, 3> bodies = {};
+  std::array<BodyTally, Cycle::most_bodies> bodies = {};
   double least = Cycle::far;  // smallest clearance [mm]
   std::vector<double> times_us = {};
 
