@@ -26,9 +26,7 @@ class MeasuredInstrument {
   /// Returns the positions at the start, before the first cycle. [rad or mm]
   std::span<const double> first() const noexcept { return first_; }
   /// Returns the measured positions at the end of a cycle. [rad or mm]
-  std::span<const double> positions(std::size_t cycle) const noexcept {
-    return measured_[cycle];
-  }
+  std::span<const double> positions(std::size_t cycle) const noexcept { return measured_[cycle]; }
   /// Returns the tracking error of each body at the end of a cycle: the largest distance of any of
   /// its points from where the setpoint has that point. [mm]
   std::vector<double> errors(std::size_t cycle) const;

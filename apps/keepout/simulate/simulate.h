@@ -51,6 +51,7 @@ struct SimulateOptions {
   bool is_verbose = false;               // print the tables of these timings
   std::string robot;                     // whose instrument is driven; empty: a tip
   std::vector<double> speeds{1.0, 5.0};  // of a robot, in multiples of 0.5 mm and 0.02 rad a cycle
+  bool has_physics = false;              // simulate the robot's masses and servos as well
   std::string called_as = "keepout";     // for the suggestions at the end; empty: no suggestions
   std::string command;                   // the command that repeats the simulation
 };
