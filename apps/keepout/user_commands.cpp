@@ -191,12 +191,15 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->delimiter(',')
       ->capture_default_str()
       ->needs(robot);
-  command
-      .add_flag("--physics", options.has_physics,
-                "Let servos with limited efforts move the robot's masses (MuJoCo), and compare the "
-                "measured instrument with its setpoint; without --speed at 20, 50 and 100 mm/s")
-      ->needs(robot);
+  CLI::Option* const physics =
+      command
+          .add_flag(
+              "--physics", options.has_physics,
+              "Let servos with limited efforts move the robot's masses (MuJoCo), and compare the "
+              "measured instrument with its setpoint; without --speed at 20, 50 and 100 mm/s")
+          ->needs(robot);
   CLI::Option* const guide = add_guides(command, options.guides);
+  physics->excludes(guide);  // a session does not report the guides of an instrument
   for (const char* other : {"--activation", "--verbose", "--index-cache", "--solver", "--max-step",
                             "--inside", "--tool"}) {
     command.get_option(other)->excludes(robot);

@@ -177,7 +177,9 @@ class GuardedInstrument final : public SimulatedTool {
     if (is_measured_) {
       q_.assign(measured_->first().begin(), measured_->first().end());
     } else if (measured_) {
-      measured_->start(q_);
+      InstrumentConstraint guard(instrument, std::make_unique<ActiveSet>(), step);
+      guard.add_mesh(scene.mesh(), scene.shared_index());
+      measured_->start(std::move(guard), q_, stroke.speed * fastest_way / cycle_seconds);
     }
     judge_.emplace(oracle::JudgedScene{.robot = on_->robot.judged(),
                                        .base = stroke.start.base,
@@ -196,6 +198,13 @@ class GuardedInstrument final : public SimulatedTool {
       std::ranges::copy(measured_->errors(cycle_++), cycle.errors.begin());
       return cycle;
     }
+    if (measured_) {
+      const HapticCycle moved = measured_->follow(goal);
+      q_.assign(measured_->setpoint().begin(), measured_->setpoint().end());
+      return judged({.outcome = !moved.ok()                  ? Outcome::stopped
+                                : moved.step != Status::free ? Outcome::limited
+                                                             : Outcome::moved_freely});
+    }
     ChainState state;
     joints_->instrument().chain().forward_kinematics(q_, state);
     const Pose at = state.flange();
@@ -210,7 +219,6 @@ class GuardedInstrument final : public SimulatedTool {
                     : step.status != Status::free ? Outcome::limited
                                                   : Outcome::moved_freely;
     cycle.guides_inside = guides_inside(step.guides);
-    if (measured_) measured_->follow(q_);
     return judged(cycle);
   }
 

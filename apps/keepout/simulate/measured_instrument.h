@@ -2,29 +2,36 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "keepout/control/crtk_session.h"
 #include "keepout/oracle/judged_robot.h"
 #include "simulate/simulated_robot.h"
 
 namespace keepout::app {
 
-/// Records the setpoints of a stroke, and the positions at which a simulated robot follows them.
+/// An instrument in the loop: a CrtkSession takes the goals of an operator and the measured joints,
+/// and its setpoints drive a simulated robot. Records setpoints and measured joints of a stroke.
 class MeasuredInstrument {
  public:
   /// Throws Error like make_simulated_robot. `robot`: for the judge.
   MeasuredInstrument(const std::string& name, oracle::JudgedRobot robot)
       : simulated_(make_simulated_robot(name)), robot_(std::move(robot)) {}
 
-  /// Begins a stroke: the robot is at rest.
-  void start(std::span<const double> setpoint);
-  /// Simulates a cycle with the servos set to `setpoint`, and records both.
-  void follow(std::span<const double> setpoint);
+  /// Begins a stroke: the robot is at rest, and the session is engaged. `guard`: with a mesh.
+  /// `top_speed`: of the setpoint [mm/s].
+  void start(InstrumentConstraint guard, std::span<const double> setpoint, double top_speed);
+  /// Runs one cycle of the session towards a goal of the operator, then one of the robot.
+  HapticCycle follow(const Pose& goal);
 
   /// Returns the positions at the start, before the first cycle. [rad or mm]
   std::span<const double> first() const noexcept { return first_; }
+  /// Returns the setpoint of the last cycle. [rad or mm]
+  std::span<const double> setpoint() const noexcept { return setpoints_.back(); }
   /// Returns the measured positions at the end of a cycle. [rad or mm]
   std::span<const double> positions(std::size_t cycle) const noexcept { return measured_[cycle]; }
   /// Returns the tracking error of each body at the end of a cycle: the largest distance of any of
@@ -34,6 +41,7 @@ class MeasuredInstrument {
  private:
   std::unique_ptr<SimulatedRobot> simulated_;
   oracle::JudgedRobot robot_;
+  std::optional<CrtkSession> session_;
   std::vector<double> first_;
   std::vector<std::vector<double>> setpoints_, measured_;  // of each cycle
 };
