@@ -177,9 +177,9 @@ class GuardedInstrument final : public SimulatedTool {
     if (is_measured_) {
       q_.assign(measured_->first().begin(), measured_->first().end());
     } else if (measured_) {
-      InstrumentConstraint guard(instrument, std::make_unique<ActiveSet>(), step);
-      guard.add_mesh(scene.mesh(), scene.shared_index());
-      measured_->start(std::move(guard), q_, stroke.speed * fastest_way / cycle_seconds);
+      InstrumentConstraint in_session(instrument, std::make_unique<ActiveSet>(), step);
+      in_session.add_mesh(scene.mesh(), scene.shared_index());
+      measured_->start(std::move(in_session), q_, stroke.speed * fastest_way / cycle_seconds);
     }
     judge_.emplace(oracle::JudgedScene{.robot = on_->robot.judged(),
                                        .base = stroke.start.base,
@@ -201,9 +201,11 @@ class GuardedInstrument final : public SimulatedTool {
     if (measured_) {
       const HapticCycle moved = measured_->follow(goal);
       q_.assign(measured_->setpoint().begin(), measured_->setpoint().end());
-      return judged({.outcome = !moved.ok()                  ? Outcome::stopped
-                                : moved.step != Status::free ? Outcome::limited
-                                                             : Outcome::moved_freely});
+      Cycle cycle;
+      cycle.outcome = !moved.ok()                  ? Outcome::stopped
+                      : moved.step != Status::free ? Outcome::limited
+                                                   : Outcome::moved_freely;
+      return judged(cycle);
     }
     ChainState state;
     joints_->instrument().chain().forward_kinematics(q_, state);
