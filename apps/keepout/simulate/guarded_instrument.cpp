@@ -309,7 +309,8 @@ class GuardedInstrument final : public SimulatedTool {
           {{"name", body_names[b]}, {"radius_mm", joints_->instrument().bodies()[b].radius}});
     }
     const Columns<RunTally> columns =
-        measured_ ? tracking_columns(mode_columns(has_guides), body_names, joints_->options())
+        measured_ ? tracking_columns(mode_columns(has_guides), joints_->instrument().bodies(),
+                                     joints_->options())
                   : mode_columns(has_guides);
     record["rows"] = json_of(columns, runs);
     record["meshes"] = std::move(meshes_);

@@ -26,7 +26,7 @@ std::string rounded_up(const Json& mm) {
 
 }  // namespace
 
-Columns<RunTally> tracking_columns(Columns<RunTally> modes, std::span<const char* const> bodies,
+Columns<RunTally> tracking_columns(Columns<RunTally> modes, std::span<const Body> bodies,
                                    const InstrumentOptions& options) {
   Columns<RunTally> columns = std::move(modes);
   for (auto& column : columns) {
@@ -42,7 +42,7 @@ Columns<RunTally> tracking_columns(Columns<RunTally> modes, std::span<const char
        {"mm_per_s", [](const RunTally& run) { return Json(millimeters_per_second(run.speed)); },
         "mm/s", 5, figure_text<3>}});
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const std::string body = bodies[b];
+    const std::string& body = bodies[b].name;
     const auto error = [b](const RunTally& run) {
       return is_measured(run) ? Json(run.bodies[b].error) : Json(nullptr);
     };

@@ -18,7 +18,7 @@ inline const std::vector<std::string> physical_mode_names{"setpoint", "measured"
 /// Returns the columns of the modes with --physics: also the margin and the speed in mm/s. For each
 /// body: the smallest clearance, the largest tracking error, and the margin whose certified
 /// clearance is that error. `modes`: the columns without physics.
-Columns<RunTally> tracking_columns(Columns<RunTally> modes, std::span<const char* const> bodies,
+Columns<RunTally> tracking_columns(Columns<RunTally> modes, std::span<const Body> bodies,
                                    const InstrumentOptions& options);
 
 /// Returns the sentence of the headline on the measured instrument, after a space.
