@@ -10,6 +10,7 @@ option(KEEPOUT_WITH_CCD "Narrow phase of libccd" ON)
 option(KEEPOUT_WITH_NLOPT "Solvers of NLopt" ON)
 option(KEEPOUT_WITH_OMPL "Validators and a planner for OMPL" ON)
 option(KEEPOUT_WITH_URDF "Reader of robots in URDF" ON)
+option(KEEPOUT_WITH_MUJOCO "Simulate masses and servos of a robot: keepout simulate --physics" ON)
 # GPL-3: programs that link it may be distributed only under the GPL. Never in the library.
 option(KEEPOUT_WITH_CGAL "Index of CGAL, for tests and benchmarks" OFF)
 

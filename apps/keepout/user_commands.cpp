@@ -188,7 +188,15 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->delimiter(',')
       ->capture_default_str()
       ->needs(robot);
+  CLI::Option* const physics =
+      command
+          .add_flag(
+              "--physics", options.has_physics,
+              "Let servos with limited efforts move the robot's masses (MuJoCo), and compare the "
+              "measured instrument with its setpoint; without --speed at 20, 50 and 100 mm/s")
+          ->needs(robot);
   CLI::Option* const guide = add_guides(command, options.guides);
+  physics->excludes(guide);  // a session does not report the guides of an instrument
   for (const char* other : {"--activation", "--verbose", "--index-cache", "--solver", "--max-step",
                             "--inside", "--tool"}) {
     command.get_option(other)->excludes(robot);
@@ -203,8 +211,10 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
     if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
   }
   command.footer("Ctrl-C ends the run early and reports the finished strokes.");
-  command.final_callback([&options] {
+  command.final_callback([&options, &command] {
     guides_of(options.guides, options.robot.empty() ? Guided::tip : Guided::instrument);
+    if (options.has_physics && command.count("--speed") == 0) options.speeds = {0.04, 0.1, 0.2};
+    if (options.has_physics && command.count("--cycles") == 0) options.strokes.cycles = 0;
     if (options.constraint.tool) options.rules = {options.constraint.activation};
     if (!options.robot.empty()) return;
     if (options.meshes.empty()) throw CLI::RequiredError("MESH");
