@@ -108,13 +108,13 @@ int soak(const char* keepout, const char* name, double seconds) {
   std::string fault;
   std::thread reader([&] {
     try {
-      for (Budget budget; !is_done;) {
+      while (!is_done) {
         const LibraryPeer::Message message = peer.receive();
         if (message.type != "TRANSFORM") continue;
         ++frames;
         const Vec3 tip(message.matrix[0][3], message.matrix[1][3], message.matrix[2][3]);
-        const TriangleId t = index.nearest(tip, budget);
-        budget = Budget();
+        Budget unlimited;
+        const TriangleId t = index.nearest(tip, unlimited);
         if (t != no_triangle) {
           nearest = std::min(nearest, closest_point(mesh->triangle(t), tip).distance);
         }
