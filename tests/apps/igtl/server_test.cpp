@@ -103,7 +103,6 @@ TEST(IgtlServer, AWrongMessageMakesTheToolStandStillAlsoIfAValidOneFollows) {
       {transform(scaled), CycleStatus::invalid_pose, 0},
       {transform(Pose{above, nan * Mat3::Identity()}), CycleStatus::invalid_pose, 0},
       {transform(Pose{.position = above}, "OtherTool"), CycleStatus::other_frame, 0},
-      {transform(Pose{.position = above}, "Tool", 1.6e9), CycleStatus::stale, 0},
   };
   for (const auto& [wrong, status, code] : cases) {
     SCOPED_TRACE(code);
@@ -262,11 +261,13 @@ TEST(IgtlServer, AFloodDelaysNoCycle) {
   for (int i = 0; i < 400; ++i) {
     flood = joined(std::move(flood), transform(Vec3(i % 7, i % 5, top - 10.0 + i % 30)));
   }
+  ByteList commands;
+  for (int i = 0; i < 200; ++i) commands = joined(std::move(commands), string_message("start"));
   std::size_t at = 0;
   std::size_t most = 0;
   for (int cycle = 0; cycle < trials(2000); ++cycle) {
     at = (at + peer.send(Bytes(flood).subspan(at), MSG_DONTWAIT)) % flood.size();
-    other.send(ByteList(8000, 0), MSG_DONTWAIT);
+    other.send(commands, MSG_DONTWAIT);
     const std::size_t before = server.counts().messages;
     (*server).receive(server.moment());
     most = std::max(most, server.counts().messages - before);
@@ -274,7 +275,8 @@ TEST(IgtlServer, AFloodDelaysNoCycle) {
     ASSERT_GE(tip(server).z(), top + kept - accuracy);
   }
   EXPECT_GT(server.counts().messages, 100'000u / 4u);
-  EXPECT_LE(most, 32'768 / 106 + 1);
+  const std::size_t size = commands.size() / 200;
+  EXPECT_LE(most, 32'768 / 106 + 4'096 / size + 2);
 }
 
 TEST(IgtlServer, AClientThatDoesNotReadLosesFramesAndTheOthersDoNot) {
@@ -284,7 +286,7 @@ TEST(IgtlServer, AClientThatDoesNotReadLosesFramesAndTheOthersDoNot) {
   RawPeer slow(server.port());
   RawPeer reader(server.port());
   (*server).receive(server.moment());
-  const int all = 20'000;
+  const int all = 10'000;
   std::size_t frames = 0;
   for (int i = 0; i < all; ++i) {
     if (i % 50 == 0) {
@@ -293,8 +295,7 @@ TEST(IgtlServer, AClientThatDoesNotReadLosesFramesAndTheOthersDoNot) {
     }
     server.tick();
     reader.receive("GuardedTool");
-    while (peer.receive("GuardedTool").body.empty()) {
-    }
+    peer.receive("GuardedTool");
     ++frames;
   }
   EXPECT_EQ(frames, static_cast<std::size_t>(all));
@@ -326,15 +327,22 @@ TEST(IgtlServer, RefusesTheSeventeenthClient) {
   cycles.join();
 }
 
-TEST(IgtlServer, IgnoresStampsOnlyIfToldTo) {
-  ServerOptions options = options_of_cube();
-  options.stamps = Stamps::ignored;
-  RunningServer server(options);
-  RawPeer peer(server.port());
-  server.engage(peer);
-  peer.send(transform(Pose{.position = above + Vec3(0.1, 0, 0)}, "Tool", 1.0));
-  server.take_and_tick();
-  EXPECT_TRUE(server.session().cycle().ok());
+TEST(IgtlServer, AnOldStampMakesTheToolStandStillUnlessStampsAreIgnored) {
+  for (const Stamps stamps : {Stamps::checked, Stamps::ignored}) {
+    ServerOptions options = options_of_cube();
+    options.stamps = stamps;
+    RunningServer server(options);
+    RawPeer peer(server.port());
+    server.engage(peer);
+    const Pose goal{.position = above + Vec3(0.1, 0, 0)};
+    for (const double age : {0.05, 0.2, -0.2}) {
+      peer.send(transform(goal, "Tool", server.moment().unix - age));
+      server.take_and_tick();
+      const bool is_used = stamps == Stamps::ignored || age == 0.05;
+      EXPECT_EQ(server.session().cycle().status,
+                is_used ? CycleStatus::guarded : CycleStatus::stale);
+    }
+  }
 }
 
 TEST(IgtlServer, GuardsFromAMeshThatIsSentWhileTheToolIsReleased) {
@@ -356,6 +364,7 @@ TEST(IgtlServer, GuardsFromAMeshThatIsSentWhileTheToolIsReleased) {
   EXPECT_EQ(peer.receive("KeepoutNote").name(), "preparing");
   server.exchange_mesh();
   RawPeer::Message note = peer.receive("KeepoutNote");
+  while (note.name() == "preparing") note = peer.receive("KeepoutNote");  // of the second mesh
   EXPECT_EQ(note.name(), "mesh");
   EXPECT_CONTAINS(note.text(), "triangles");
 
