@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "apps/igtl/messages.h"
+#include "apps/igtl/client_messages.h"
 #include "igtl/polydata.h"
 #include "igtl/stream.h"
 #include "keepout/error.h"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <thread>
 
-#include "apps/igtl/messages.h"
+#include "apps/igtl/client_messages.h"
 #include "apps/igtl/raw_peer.h"
 #include "control/guarded_shapes.h"
 #include "igtl/server.h"
