@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -247,6 +248,14 @@ void Server::take_transform(Connection& client, Bytes content, const Moment& mom
   const Header& header = client.stream.header();
   const bool has_stamp = options_.stamps == Stamps::checked && header.stamp > 0.0;
   const double age = has_stamp ? moment.unix - header.stamp : 0.0;
+  if (!(std::abs(age) <= options_.longest_silence)) {
+    session_.refuse(CycleStatus::stale);
+    return refuse(client,
+                  {StatusCode::time_out, "wrong_stamp",
+                   "the time stamp is not within --silence of now: set it, or set it to 0, "
+                   "synchronize the clocks, or start with --ignore-stamps"},
+                  moment);
+  }
   const MessageHeader sent{.stamp = moment.now - age, .frame = header.device_name()};
   session_.on_servo_cp(*pose, sent);
   if (!session_.engaged()) session_.on_setpoint_cp(*pose, sent);  // where the tool would engage

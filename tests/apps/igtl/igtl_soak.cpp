@@ -100,7 +100,7 @@ int soak(const char* keepout, const char* name, double seconds) {
   Server server(keepout, name);
   LibraryPeer peer(server.port());
   const Box box = mesh->bounds();
-  peer.send_transform("Tool", matrix_of(goal(box, 0.0)));
+  peer.send_transform("Tool", matrix_of(goal(box, 0.0)), LibraryPeer::Stamp::now);
   peer.send_string("engage");
   std::atomic<bool> is_done = false;
   std::size_t frames = 0;
@@ -126,7 +126,7 @@ int soak(const char* keepout, const char* name, double seconds) {
   std::size_t sent = 0;
   const auto begin = Clock::now();
   for (double time = 0.0; time < seconds; time = 0.001 * static_cast<double>(++sent)) {
-    peer.send_transform("Tool", matrix_of(goal(box, time)));
+    peer.send_transform("Tool", matrix_of(goal(box, time)), LibraryPeer::Stamp::now);
     std::this_thread::sleep_until(begin + sent * std::chrono::milliseconds(1));
   }
   is_done = true;

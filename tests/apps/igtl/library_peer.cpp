@@ -7,6 +7,7 @@
 #include <igtlPolyDataMessage.h>
 #include <igtlStatusMessage.h>
 #include <igtlStringMessage.h>
+#include <igtlTimeStamp.h>
 #include <igtlTransformMessage.h>
 
 #include <stdexcept>
@@ -20,7 +21,8 @@ namespace library = ::igtl;
 constexpr int patience = 20'000;  // for a message, on a busy machine [ms]
 
 template <class Message>
-void send(library::ClientSocket& socket, Message& message) {
+void send(library::ClientSocket& socket, Message& message, bool has_stamp = false) {
+  if (!has_stamp) message.SetTimeStamp(0U, 0U);  // the library leaves it uninitialized
   message.Pack();
   if (socket.Send(message.GetPackPointer(), message.GetPackSize()) == 0) {
     throw std::runtime_error("the library could not send");
@@ -76,8 +78,14 @@ LibraryPeer::~LibraryPeer() {
 LibraryPeer::LibraryPeer(LibraryPeer&&) noexcept = default;
 LibraryPeer& LibraryPeer::operator=(LibraryPeer&&) noexcept = default;
 
-void LibraryPeer::send_transform(const std::string& device, const Matrix& matrix) {
-  send(*socket_->socket, *transform_message(device, matrix));
+void LibraryPeer::send_transform(const std::string& device, const Matrix& matrix, Stamp stamp) {
+  const auto message = transform_message(device, matrix);
+  if (stamp == Stamp::now) {
+    auto time = library::TimeStamp::New();
+    time->GetTime();
+    message->SetTimeStamp(time);
+  }
+  send(*socket_->socket, *message, stamp == Stamp::now);
 }
 
 void LibraryPeer::send_string(const std::string& text) {

@@ -15,6 +15,7 @@ class LibraryPeer {
  public:
   using Matrix = std::array<std::array<float, 4>, 4>;  // rows
   using Point = std::array<float, 3>;
+  enum class Stamp { none, now };
 
   /// The contents of a message, as the library reads it.
   struct Message {
@@ -32,7 +33,7 @@ class LibraryPeer {
   LibraryPeer(LibraryPeer&&) noexcept;
   LibraryPeer& operator=(LibraryPeer&&) noexcept;
 
-  void send_transform(const std::string& device, const Matrix& matrix);
+  void send_transform(const std::string& device, const Matrix& matrix, Stamp stamp = Stamp::none);
   void send_string(const std::string& text);
   void send_points(const std::string& device, const std::vector<Point>& points);
   void send_polydata(const std::vector<Point>& points,

@@ -32,6 +32,13 @@ TEST(IgtlServer, SendsNothingToMoveUntilItIsEngaged) {
   server.tick();
   EXPECT_EQ(peer.receive("Keepout").name(), "guarded");
   EXPECT_EQ(tip(server), above);
+  peer.send(transform(above + Vec3(0.1, 0, 0)));
+  server.take_and_tick();
+  const Vec3 moved = tip(server);
+  peer.send(string_message("engage"));
+  server.take(1);
+  EXPECT_EQ(peer.receive("KeepoutNote").name(), "engaged");
+  EXPECT_EQ(tip(server), moved) << "it does not jump to where it was engaged";
 }
 
 TEST(IgtlServer, EngagesOnlyWhereAToolIs) {
@@ -103,6 +110,7 @@ TEST(IgtlServer, AWrongMessageMakesTheToolStandStillAlsoIfAValidOneFollows) {
       {transform(scaled), CycleStatus::invalid_pose, 0},
       {transform(Pose{above, nan * Mat3::Identity()}), CycleStatus::invalid_pose, 0},
       {transform(Pose{.position = above}, "OtherTool"), CycleStatus::other_frame, 0},
+      {transform(Pose{.position = above}, "Tool", 1.6e9), CycleStatus::stale, 7},
   };
   for (const auto& [wrong, status, code] : cases) {
     SCOPED_TRACE(code);
@@ -146,7 +154,7 @@ TEST(IgtlServer, AnAnswerTellsWhyAMessageIsRefused) {
       {string_message("start"), "unknown_command", "'engage', 'release' and 'register'"},
       {message("STRING", "", ByteList(3)), "unknown_command", "'engage'"},
       {message("IMAGE", "", ByteList(2000)), "unknown_type", "TRANSFORM, STRING, POINT"},
-      {string_message("register"), "not_registered", "3"},
+      {string_message("register"), "not_registered", "at least three pairs"},
   };
   for (const auto& [wrong, name, text] : cases) {
     SCOPED_TRACE(name);
@@ -414,7 +422,8 @@ TEST(IgtlServer, HostileMessagesNeverMoveTheToolTooClose) {
       ByteList one = transform(goal);
       switch (random() % 20) {
         case 0:
-          one = string_message(random() % 4 == 0 ? "release" : "engage");
+          one = random() % 4 == 0 ? string_message("release")
+                                  : joined(transform(above), string_message("engage"));
           break;
         case 1:
           one[random() % one.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
