@@ -277,6 +277,9 @@ void Server::take_command(Connection& client, Bytes content, const Moment& momen
                    "the commands are 'engage', 'release' and 'register'"},
                   moment);
   }
+  if (session_.engaged()) {  // the tool would jump to where it was engaged
+    return refuse(client, {StatusCode::busy, "engaged", "the tool is engaged already"}, moment);
+  }
   if (is_preparing()) {
     return refuse(
         client,

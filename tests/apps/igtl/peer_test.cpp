@@ -104,23 +104,26 @@ TEST(IgtlPeer, ReadsTheReasonsAndTheActiveTriangles) {
   LibraryPeer peer(server.port());
   LibraryPeer reader(server.port());
   engage(server, peer, {.position = above});
+  std::set<std::string> states;
+  LibraryPeer::Message triangles;
+  const auto read_to_the_next_tool = [&] {
+    while (true) {
+      LibraryPeer::Message message = reader.receive();
+      if (message.device == "Keepout") states.insert(message.name);
+      if (message.device == "ActiveTriangles") triangles = message;
+      if (message.device == "GuardedTool") return position(message.matrix);
+    }
+  };
   Vec3 tip;
   for (int i = 0; i < 150; ++i) {
     peer.send_transform("Tool", matrix_of(Vec3(above - Vec3(0, 0, 20))));
     server.take_and_tick();
-    tip = position(reader.receive("GuardedTool").matrix);
+    tip = read_to_the_next_tool();
   }
   EXPECT_NEAR(tip.z(), top + kept, 1e-5);
-  server.tick(200);
-  std::set<std::string> states;
-  LibraryPeer::Message triangles;
   for (int i = 0; i < 200; ++i) {
-    LibraryPeer::Message message;
-    do {
-      message = reader.receive();
-      if (message.device == "Keepout") states.insert(message.name);
-      if (message.device == "ActiveTriangles") triangles = message;
-    } while (message.device != "GuardedTool");
+    server.tick();
+    read_to_the_next_tool();
   }
   EXPECT_TRUE(states.contains("guarded"));
   EXPECT_TRUE(states.contains("stale"));
