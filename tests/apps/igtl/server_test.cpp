@@ -420,9 +420,9 @@ TEST(IgtlServer, HostileMessagesNeverMoveTheToolTooClose) {
     for (int i = 0; i < 10; ++i, ++sent) {
       const Vec3 goal(3.0 * std::sin(sent), 4.0, top + 3.0 * std::sin(0.01 * sent));
       ByteList one = transform(goal);
-      switch (random() % 20) {
+      switch (random() % 60) {
         case 0:
-          one = random() % 4 == 0 ? string_message("release")
+          one = random() % 8 == 0 ? string_message("release")
                                   : joined(transform(above), string_message("engage"));
           break;
         case 1:
@@ -448,7 +448,7 @@ TEST(IgtlServer, HostileMessagesNeverMoveTheToolTooClose) {
     if (server.session().engaged()) {
       ASSERT_GE(tip(server).z(), top + kept - accuracy);
     }
-    if (random() % 50 == 0) {  // a stream that cannot be cut any more
+    if (random() % 30 == 0) {  // for example because the stream cannot be cut any more
       peer = std::make_unique<RawPeer>(server.port());
     }
   }
