@@ -58,7 +58,7 @@ class Server {
 
   /// Listens. Throws Error for an option out of range, or for an address that cannot be used.
   Server(const ServerOptions& options, std::shared_ptr<const Mesh> mesh);
-  /// Tells the clients that the server ends.
+  /// Sends a note to the clients that the server ends.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -16,7 +16,7 @@ namespace {
 constexpr double state_period = 1.0;             // the state is sent at least this often [s]
 constexpr double triangles_period = 1.0 / 30.0;  // triangles are sent at most this often [s]
 
-/// Returns the code that tells a client best what to do.
+/// Returns the code that describes a status best.
 StatusCode code_of(CycleStatus status) noexcept {
   switch (status) {
     case CycleStatus::guarded:

@@ -139,7 +139,7 @@ TEST(IgtlCodec, TrianglesAndStripsOfPolydataAreThoseThatWereSent) {
     std::ranges::sort(triangles);
     EXPECT_EQ(triangles, expected);
   }
-  // Of a long strip every second triangle is turned back to one winding.
+  // Every second triangle of a long strip is turned back to one winding.
   ByteList strip;
   Writer writer(strip, "POLYDATA", "", 0.0);
   for (const std::uint32_t n : {4u, 0u, 0u, 0u, 0u, 0u, 0u, 1u, 20u, 0u}) writer.number(n);

@@ -408,7 +408,7 @@ TEST(IgtlServer, ARefusedMeshLeavesTheLastOne) {
   EXPECT_NEAR(tip(server).z(), top + kept, accuracy);
 }
 
-// Garbled messages of a client that controls the tool. Whatever comes, the tool keeps its distance.
+// The client that controls the tool sends garbled messages. The tool keeps its distance.
 TEST(IgtlServer, HostileMessagesNeverMoveTheToolTooClose) {
   std::mt19937_64 random(40);
   RunningServer server;
