@@ -83,6 +83,10 @@ int serve_igtl(const IgtlOptions& options, std::ostream& log) {
   out << "keepout: guarding '" << settings.device << "' from " << options.mesh.string() << " ("
       << counted(loaded.mesh->triangle_count(), "triangle") << ") on " << settings.address << ':'
       << server.port() << std::endl;
+  if (!settings.address.starts_with("127.")) {
+    warn_on_stderr("each program that can connect to " + settings.address +
+                   " may move the tool, as there is no authentication");
+  }
   const double memory = resident_memory();
   const CycleTally tally = run(server, 1.0 / settings.rate, stop);
   const igtl::ServerCounts& counts = server.counts();
