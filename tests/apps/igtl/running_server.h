@@ -14,6 +14,8 @@
 
 namespace keepout::test::igtl {
 
+inline constexpr double accuracy = 1e-6;  // of a limited step [mm]
+
 /// A point above the cube.
 inline const Vec3 above(3.0, 4.0, top + 5.0);
 
@@ -36,6 +38,8 @@ class RunningServer {
   const ServerCounts& counts() const { return server_.counts(); }
   Server& operator*() { return server_; }
   Moment moment() const { return moment_; }
+  /// Returns the setpoint. Precondition: the tool is engaged.
+  Vec3 tip() const { return server_.session().setpoint_cp()->position; }
 
   /// Receives until this number of messages has come since the last call. The clock stands still
   /// meanwhile.
