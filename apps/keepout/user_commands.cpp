@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "igtl/igtl.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/mesh/load_mesh.h"
@@ -263,6 +264,9 @@ std::vector<Command> user_commands(TimeParts time_parts) {
   const auto serve_on_stdin = [](const ServeOptions& options, std::ostream&) {
     return serve(options, std::cerr);
   };
+  const auto igtl_server = [](const IgtlOptions& options, std::ostream&) {
+    return serve_igtl(options, std::cerr);
+  };
   return {command("inspect", add_inspect, inspect),
           command("convert", add_convert, convert),
           command("register", add_register, register_fiducials),
@@ -270,6 +274,7 @@ std::vector<Command> user_commands(TimeParts time_parts) {
           command("simulate", add_simulate, simulate, simulation),
           command("live", add_live, live),
           command("serve", add_serve, serve_on_stdin),
+          command("igtl", add_igtl, igtl_server),
           command("verify", add_verify, verify),
           command("report", add_report, report),
           command("docs", add_docs, docs)};
