@@ -37,8 +37,7 @@ GuardNode::GuardNode(const Settings& settings, const Scene& scene, Transport& tr
   setpoint_js_ = of_robot("setpoint_js", Kind::joints);
   operating_state_ = of_robot("operating_state", Kind::state);
   // Only to see who else publishes them.
-  robot_commands_ = {of_robot("servo_cp", Kind::pose), of_robot("servo_jp", Kind::joints),
-                     of_robot("move_cp", Kind::pose), of_robot("move_jp", Kind::joints)};
+  robot_commands_ = {of_robot("servo_cp", Kind::pose), of_robot("servo_jp", Kind::joints)};
   servo_cp_ = of_operator("servo_cp", Kind::pose);
   servo_jp_ = of_operator("servo_jp", Kind::joints);
   servo_jv_ = of_operator("servo_jv", Kind::joints);
@@ -106,11 +105,12 @@ void GuardNode::receive_joints(int topic, const Message& message) {
 
 void GuardNode::cycle(double now) {
   transport_.deliver(*this);
-  const bool is_contested =
-      std::ranges::any_of(robot_commands_,
-                          [&](int topic) { return transport_.publishers(topic) > 0; }) ||
-      transport_.publishers(servo_cp_) + transport_.publishers(servo_jp_) +
-              transport_.publishers(servo_jv_) > 1;
+  const auto has_more_than = [&](int count) {
+    return [this, count](int topic) { return transport_.publishers(topic) > count; };
+  };
+  const std::array goals{servo_cp_, servo_jp_, servo_jv_};
+  const bool is_contested = std::ranges::any_of(robot_commands_, has_more_than(0)) ||
+                            std::ranges::any_of(goals, has_more_than(1));
   session_.on_contest(is_contested);
   CycleStatus status = CycleStatus::guarded;
   if (is_asked_ && !session_.engaged()) status = session_.engage(now);
@@ -119,8 +119,8 @@ void GuardNode::cycle(double now) {
   if (is_ok(status)) status = session_.tick(now);
   ++counts_[std::min<std::size_t>(static_cast<std::size_t>(status), counts_.size() - 1)];
   if (!is_ok(status)) {
-    worst_ = status;
-    text_ = session_.reason();
+    status_ = status;
+    reason_ = session_.reason();
   }
   // Two senders would move the robot to and fro.
   if (session_.engaged() && status != CycleStatus::contested) send_setpoint(now);
@@ -163,12 +163,14 @@ void GuardNode::send_to_teleoperation(double now) {
 /// Sends the reason of the last failed cycle since the last report, if it is another one.
 void GuardNode::report(double now) {
   next_report_ = now + report_period;
-  if (is_ok(worst_)) text_ = session_.reason();
-  if (text_ != sent_text_) {
-    transport_.send(reason_out_, {.text = text_});
-    sent_text_ = text_;
+  if (is_ok(status_)) reason_ = session_.reason();
+  if (reason_ != sent_reason_) {
+    std::string text(name(status_));
+    text.append(": ").append(reason_);
+    transport_.send(reason_out_, {.text = text});
+    sent_reason_ = reason_;
   }
-  worst_ = CycleStatus::guarded;
+  status_ = CycleStatus::guarded;
   if (drawing_ && session_.engaged()) {
     drawing_->draw(session_.cycle().proxy, goal_);
   }

@@ -39,16 +39,16 @@ class GuardNode final : public Node {
   // Subscriptions.
   int measured_cp_, measured_js_, setpoint_cp_, setpoint_js_, operating_state_;
   int servo_cp_, servo_jp_, servo_jv_, engage_;
-  std::array<int, 4> robot_commands_;  // of the robot: servo_cp, servo_jp, move_cp, move_jp
+  std::array<int, 2> robot_commands_;  // of the robot: servo_cp, servo_jp
   // Announcements.
   int command_, hand_ = -1, measured_out_, setpoint_out_, state_out_, reason_out_;
   std::optional<Drawing> drawing_;  // of a tip
 
   bool is_asked_ = false;                       // to engage in the next cycle
   Vec3 goal_ = Vec3::Zero();                    // the last goal of the teleoperation [m]
-  CycleStatus worst_ = CycleStatus::guarded;    // the last failure since a reason was sent
-  std::string_view text_ = {};                  // its reason
-  std::string_view sent_text_ = {};             // the reason that was sent
+  CycleStatus status_ = CycleStatus::guarded;   // the last failure since a reason was sent
+  std::string_view reason_ = {};                // its reason
+  std::string_view sent_reason_ = {};           // the reason that was sent
   std::optional<OperatingState> sent_state_;    // the state that was sent
   double next_report_ = 0.0;                    // when reasons and shapes are due [s]
   std::array<std::uint64_t, 16> counts_ = {};   // of cycles, by CycleStatus
