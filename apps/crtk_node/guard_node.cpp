@@ -142,10 +142,10 @@ void GuardNode::send_setpoint(double now) {
 void GuardNode::send_to_teleoperation(double now) {
   const OperatingState state = session_.operating_state();
   if (state != sent_state_) {
-    transport_.send(state_out_, {.stamp = now,
-                                 .text = name(state),
-                                 .flag = state == OperatingState::enabled ||
-                                         state == OperatingState::paused});
+    transport_.send(state_out_,
+                    {.stamp = now,
+                     .text = name(state),
+                     .flag = state == OperatingState::enabled || state == OperatingState::paused});
     sent_state_ = state;
   }
   if (const auto& measured = session_.measured_cp()) {

@@ -44,14 +44,14 @@ class GuardNode final : public Node {
   int command_, hand_ = -1, measured_out_, setpoint_out_, state_out_, reason_out_;
   std::optional<Drawing> drawing_;  // of a tip
 
-  bool is_asked_ = false;                       // to engage in the next cycle
-  Vec3 goal_ = Vec3::Zero();                    // the last goal of the teleoperation [m]
-  CycleStatus status_ = CycleStatus::guarded;   // the last failure since a reason was sent
-  std::string_view reason_ = {};                // its reason
-  std::string_view sent_reason_ = {};           // the reason that was sent
-  std::optional<OperatingState> sent_state_;    // the state that was sent
-  double next_report_ = 0.0;                    // when reasons and shapes are due [s]
-  std::array<std::uint64_t, 16> counts_ = {};   // of cycles, by CycleStatus
+  bool is_asked_ = false;                      // to engage in the next cycle
+  Vec3 goal_ = Vec3::Zero();                   // the last goal of the teleoperation [m]
+  CycleStatus status_ = CycleStatus::guarded;  // the last failure since a reason was sent
+  std::string_view reason_ = {};               // its reason
+  std::string_view sent_reason_ = {};          // the reason that was sent
+  std::optional<OperatingState> sent_state_;   // the state that was sent
+  double next_report_ = 0.0;                   // when reasons and shapes are due [s]
+  std::array<std::uint64_t, 16> counts_ = {};  // of cycles, by CycleStatus
 };
 
 }  // namespace keepout::crtk

@@ -8,7 +8,7 @@
 
 namespace keepout::crtk {
 
-/// What a loop has measured.
+/// The measurements of a loop.
 struct LoopReport {
   double seconds = 0.0;         // that it ran
   std::uint64_t cycles = 0;     // that it ran

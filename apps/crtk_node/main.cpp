@@ -21,7 +21,8 @@ void stop(int) { is_stopped = 1; }
 
 int run(int argc, char** argv) {
   CLI::App app{std::string("Keeps a robot's tool out of a triangle mesh, between a teleoperation "
-                           "and a robot that follow CRTK. ") + program_help};
+                           "and a robot that follow CRTK. ") +
+               program_help};
   app.name(program_name);
   Settings settings;
   add_options(app, settings);
@@ -46,12 +47,13 @@ int run(int argc, char** argv) {
   if (settings.role == Role::guard) {
     node = std::make_unique<GuardNode>(settings, scene, *transport);
   } else {
-    if (!settings.robot.empty()) throw keepout::Error("the simulated robot has a tip only: omit --robot");
+    if (!settings.robot.empty())
+      throw keepout::Error("the simulated robot has a tip only: omit --robot");
     node = std::make_unique<SimulatedRobot>(settings, scene, *transport);
   }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, &stop);
-  const LoopReport report =
-      run_loop(*node, settings.period, settings.seconds, +[] { return is_stopped != 0; });
+  const LoopReport report = run_loop(
+      *node, settings.period, settings.seconds, +[] { return is_stopped != 0; });
   std::cout << report.text() << '\n' << node->summary() << '\n';
   return EXIT_SUCCESS;
 }

@@ -22,10 +22,11 @@ namespace {
 std::string name_of_topic(const char* option, std::string name) {
   while (name.starts_with('/')) name.erase(0, 1);
   while (name.ends_with('/')) name.pop_back();
-  const bool is_valid = !name.empty() && name.size() <= 200 && std::ranges::all_of(name, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '/';
-  });
+  const bool is_valid =
+      !name.empty() && name.size() <= 200 && std::ranges::all_of(name, [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '/';
+      });
   if (!is_valid) {
     throw Error(std::string(option) + " must be a name of letters, digits, '_' and '/', not " +
                 app::in_quotes(name));
@@ -35,8 +36,8 @@ std::string name_of_topic(const char* option, std::string name) {
 
 void require(const char* option, double value, double low, double high) {
   if (value >= low && value <= high) return;  // also refuses NaN
-  throw Error(std::string(option) + " must be a number from " + nlohmann::json(low).dump() + " to " +
-              nlohmann::json(high).dump());
+  throw Error(std::string(option) + " must be a number from " + nlohmann::json(low).dump() +
+              " to " + nlohmann::json(high).dump());
 }
 
 /// Reads the file of `keepout register --json`.
@@ -57,8 +58,8 @@ Registration read_registration(const Settings& settings) {
     }
     if (json.at("unit") != "mm") throw Error(file + ": the 'unit' of the translation must be mm");
   } catch (const nlohmann::json::exception& error) {
-    throw Error(file + " is no registration of 'keepout register --json': " +
-                app::printable(error.what()));
+    throw Error(
+        file + " is no registration of 'keepout register --json': " + app::printable(error.what()));
   }
   if (const auto doubt = json.value("doubt", std::string()); !doubt.empty()) {
     throw Error(file + ": do not trust this registration: " + app::printable(doubt));
@@ -142,13 +143,12 @@ MotionConstraint make_tip_guard(const Settings& settings, const Scene& scene) {
 }
 
 CrtkSession make_session(const Settings& settings, const Scene& scene) {
-  const CrtkOptions options{
-      .haptic = {.period = settings.period,
-                 .top_speed = settings.top_speed,
-                 .fade = std::max(HapticOptions{}.fade, settings.period)},
-      .longest_silence = settings.silence,
-      .farthest_lag = settings.lag,
-      .frame = settings.frame};
+  const CrtkOptions options{.haptic = {.period = settings.period,
+                                       .top_speed = settings.top_speed,
+                                       .fade = std::max(HapticOptions{}.fade, settings.period)},
+                            .longest_silence = settings.silence,
+                            .farthest_lag = settings.lag,
+                            .frame = settings.frame};
   if (settings.robot.empty()) {
     return {make_tip_guard(settings, scene), scene.registration, options};
   }

@@ -27,8 +27,8 @@ SimulatedRobot::SimulatedRobot(const Settings& settings, const Scene& scene, Tra
   state_out_ = transport.advertise(settings.of_robot("operating_state"), Kind::state, true);
   goal_out_ = transport.advertise(settings.of_guard("servo_cp"), Kind::pose);
   engage_ = transport.advertise(settings.of_guard("engage"), Kind::flag);
-  const Vec3 highest = *std::ranges::max_element(
-      scene.mesh->vertices(), {}, [](const Vec3& vertex) { return vertex.z(); });
+  const Vec3 highest = *std::ranges::max_element(scene.mesh->vertices(), {},
+                                                 [](const Vec3& vertex) { return vertex.z(); });
   start_ = highest + Vec3(0, 0, settings.tool_radius + settings.margin + above);
   position_ = scene.registration.point_to_robot(start_);
 }

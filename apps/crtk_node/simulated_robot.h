@@ -10,8 +10,8 @@
 
 namespace keepout::crtk {
 
-/// A robot that is always where it was sent, and its operator, who pushes the tip into the highest
-/// place of the mesh, moves it sideways, and back, again and again. To try a guard of a tip.
+/// A robot that is always where it was sent, and its operator, to try a guard of a tip. Again and
+/// again, the operator pushes the tip into the highest place of the mesh, sideways, and back.
 class SimulatedRobot final : public Node {
  public:
   /// Subscribes and announces. `transport` must outlive the node.

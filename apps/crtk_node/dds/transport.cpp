@@ -179,11 +179,12 @@ class DdsTransport final : public Transport {
  public:
   explicit DdsTransport(std::uint32_t domain) {
     if (std::getenv("CYCLONEDDS_URI") == nullptr) {
-      domain_ = checked(dds_create_domain(domain, on_loopback), "cannot use the loopback interface");
+      domain_ =
+          checked(dds_create_domain(domain, on_loopback), "cannot use the loopback interface");
     }
-    participant_ = checked(dds_create_participant(domain, nullptr, nullptr),
-                           "cannot join domain " + std::to_string(domain) +
-                               ": see CYCLONEDDS_URI and ROS_DOMAIN_ID");
+    participant_ = checked(
+        dds_create_participant(domain, nullptr, nullptr),
+        "cannot join domain " + std::to_string(domain) + ": see CYCLONEDDS_URI and ROS_DOMAIN_ID");
   }
   ~DdsTransport() override {
     dds_delete(participant_);
@@ -197,8 +198,8 @@ class DdsTransport final : public Transport {
     const bool is_event = kind == Kind::flag || kind == Kind::state || kind == Kind::text;
     const auto read = [&](dds_durability_kind_t durability) {
       dds_qos_t* const qos = dds_create_qos();
-      dds_qset_reliability(
-          qos, is_event ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, 0);
+      dds_qset_reliability(qos, is_event ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
+                           0);
       dds_qset_durability(qos, durability);
       dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, queue_length);
       dds_qset_ignorelocal(qos, DDS_IGNORELOCAL_PARTICIPANT);
@@ -223,8 +224,7 @@ class DdsTransport final : public Transport {
       dds_qos_t* const qos = dds_create_qos();
       // Readers of ROS 2 request reliable writers. The writer never waits for a reader.
       dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, 0);
-      dds_qset_durability(qos,
-                          is_kept ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
+      dds_qset_durability(qos, is_kept ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
       dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, is_kept ? 1 : queue_length);
       writer = dds_create_writer(participant_, topic_of(topic, kind), qos, nullptr);
       dds_delete_qos(qos);
@@ -247,8 +247,8 @@ class DdsTransport final : public Transport {
   }
 
   int publishers(int subscription) override {
-    return dds_get_matched_publications(
-        subscribed_[static_cast<std::size_t>(subscription)].reader, nullptr, 0);
+    return dds_get_matched_publications(subscribed_[static_cast<std::size_t>(subscription)].reader,
+                                        nullptr, 0);
   }
 
   bool is_read(int advertised) override {
@@ -311,7 +311,8 @@ std::unique_ptr<Transport> connect(std::vector<std::string>&, const std::vector<
 
 const char* const program_name = "keepout-dds-node";
 const char* const program_help =
-    "Over DDS, with the topics and types of ROS 2. The domain is that of ROS_DOMAIN_ID. Topics stay "
+    "Over DDS, with the topics and types of ROS 2. The domain is that of ROS_DOMAIN_ID. Topics "
+    "stay "
     "on loopback unless CYCLONEDDS_URI configures other interfaces.";
 
 }  // namespace keepout::crtk

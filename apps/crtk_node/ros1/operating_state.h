@@ -37,7 +37,7 @@ struct DataType<crtk_msgs::operating_state> {
 
 template <>
 struct MD5Sum<crtk_msgs::operating_state> {
-  // Of the fields; genpy computes the same sum (tests/apps/crtk_node/test_ros1_node.py).
+  // The sum of the fields; genpy computes the same sum (tests/apps/crtk_node/test_ros1_node.py).
   static const char* value() { return "b1bd4021639d9d9c5fbfff78d6ff3158"; }
   static const char* value(const crtk_msgs::operating_state&) { return value(); }
 };

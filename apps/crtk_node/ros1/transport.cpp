@@ -212,7 +212,7 @@ class Ros1Transport final : public Transport {
     marker.type = is_list ? Marker::TRIANGLE_LIST : Marker::LINE_LIST;
     marker.action = shape.points.empty() ? Marker::DELETE : Marker::ADD;
     marker.pose.orientation.w = 1.0;
-    // Of triangles a factor, of lines their width [m].
+    // The scale of triangles, or the width of lines [m].
     marker.scale.x = marker.scale.y = marker.scale.z = is_list ? 1.0 : 0.0005;
     marker.color.r = shape.color[0];
     marker.color.g = shape.color[1];

@@ -22,11 +22,11 @@
 namespace keepout::test {
 namespace {
 
-constexpr double period = 0.001;      // [s]
-constexpr double top_speed = 200.0;   // [mm/s]
-constexpr double tool_radius = 1.0;   // [mm]
-constexpr double margin = 2.0;        // [mm]
-constexpr double patience = 5.0;      // of the test, for what takes milliseconds [s]
+constexpr double period = 0.001;     // [s]
+constexpr double top_speed = 200.0;  // [mm/s]
+constexpr double tool_radius = 1.0;  // [mm]
+constexpr double margin = 2.0;       // [mm]
+constexpr double patience = 5.0;     // of the test, for what takes milliseconds [s]
 const char* const frame = "PSM1_base";
 
 double now() {
@@ -52,9 +52,9 @@ std::string cube_at(const Vec3& middle) {
   std::string text;
   for (int corner = 0; corner < 8; ++corner) {
     char line[120];
-    std::snprintf(line, sizeof line, "v %.17g %.17g %.17g\n",
-                  middle.x() + (corner & 1 ? 20.0 : -20.0), middle.y() + (corner & 2 ? 20.0 : -20.0),
-                  middle.z() + (corner & 4 ? 20.0 : -20.0));
+    std::snprintf(
+        line, sizeof line, "v %.17g %.17g %.17g\n", middle.x() + (corner & 1 ? 20.0 : -20.0),
+        middle.y() + (corner & 2 ? 20.0 : -20.0), middle.z() + (corner & 4 ? 20.0 : -20.0));
     text += line;
   }
   // Counterclockwise, seen from outside.
@@ -92,13 +92,14 @@ class DdsNode : public testing::Test {
   }
 
   std::vector<std::string> arguments(std::vector<std::string> more = {}) const {
-    std::vector<std::string> all{KEEPOUT_DDS_NODE,
-                                 "--arm=PSM1",
-                                 "--mesh=" + (folder_.path() / "cube.obj").string(),
-                                 "--registration=" + (folder_.path() / "registration.json").string(),
-                                 "--tool-radius=1",
-                                 "--margin=2",
-                                 "--silence=0.25"};  // the test is no real-time process
+    std::vector<std::string> all{
+        KEEPOUT_DDS_NODE,
+        "--arm=PSM1",
+        "--mesh=" + (folder_.path() / "cube.obj").string(),
+        "--registration=" + (folder_.path() / "registration.json").string(),
+        "--tool-radius=1",
+        "--margin=2",
+        "--silence=0.25"};  // the test is no real-time process
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -248,8 +249,8 @@ TEST_F(DdsNode, SetpointsAreBitwiseThoseOfADirectConstraint) {
   write_files(Vec3::Zero());
   start();
   const auto mesh = load_mesh(folder_.path() / "cube.obj").mesh;
-  auto guard = make_motion_constraint(mesh,
-                                      {.options = {.tool_radius = tool_radius, .margin = margin}});
+  auto guard =
+      make_motion_constraint(mesh, {.options = {.tool_radius = tool_radius, .margin = margin}});
   // From above the cube: straight down; down and along it; away from it; over its edge.
   const std::array<std::array<Vec3, 2>, 4> pairs{{{Vec3(1, 2, 45), Vec3(1, 2, 15)},
                                                   {Vec3(-15, 3, 30), Vec3(15, 8, 12)},
@@ -341,7 +342,8 @@ TEST_F(DdsNode, StandsStillWithAReasonForEveryWrongMessage) {
   engage();
   const WirePose good = pose_at(Vec3(0, 0, 29.9));
   goal_ = good;
-  ASSERT_TRUE(play([&] { return poses_.size() >= 2 && reason_.starts_with("guarded"); })) << reason_;
+  ASSERT_TRUE(play([&] { return poses_.size() >= 2 && reason_.starts_with("guarded"); }))
+      << reason_;
 
   const auto expect_still = [&](const std::string& status, const std::function<void()>& fault) {
     SCOPED_TRACE(status);

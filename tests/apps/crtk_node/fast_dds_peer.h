@@ -3,8 +3,11 @@
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
 
 #include <condition_variable>
+#include <cstdint>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -15,10 +18,6 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
-#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -43,7 +42,7 @@ struct WireHeader {
 struct WirePose {
   static constexpr const char* type = "geometry_msgs::msg::dds_::PoseStamped_";
   WireHeader header = {};
-  std::array<double, 3> position = {};            // [m]
+  std::array<double, 3> position = {};               // [m]
   std::array<double, 4> orientation = {0, 0, 0, 1};  // x, y, z, w
 
   template <class Cdr>
@@ -110,8 +109,7 @@ class WireType : public eprosima::fastdds::dds::TopicDataType {
     m_isGetKeyDefined = false;
   }
   bool serialize(void* data, eprosima::fastrtps::rtps::SerializedPayload_t* payload) override {
-    eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(payload->data),
-                                         payload->max_size);
+    eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(payload->data), payload->max_size);
     eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS,
                                eprosima::fastcdr::Cdr::DDS_CDR);
     payload->encapsulation = CDR_LE;
@@ -178,8 +176,7 @@ class FastDdsPeer {
 
   /// Reads a topic; `receive` gets each message in a thread of Fast DDS.
   template <class M>
-  void read(const std::string& topic, std::function<void(const M&)> receive,
-            bool is_kept = false) {
+  void read(const std::string& topic, std::function<void(const M&)> receive, bool is_kept = false) {
     using namespace eprosima::fastdds::dds;
     struct Listener : DataReaderListener {
       std::function<void(const M&)> receive;
