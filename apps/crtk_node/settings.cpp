@@ -15,6 +15,11 @@
 #include "shared/named_mesh.h"
 #include "shared/names.h"
 
+#if __has_include("keepout/urdf/read_robot.h")
+#include "keepout/urdf/read_robot.h"
+#define KEEPOUT_READS_ROBOTS 1
+#endif
+
 namespace keepout::crtk {
 namespace {
 
@@ -74,10 +79,20 @@ Registration read_registration(const Settings& settings) {
                                                 .mesh = LengthUnit::millimetre});
 }
 
-Instrument instrument_of(const std::string& robot) {
-  if (robot == "psm") return psm();
-  if (robot == "seven_joint_arm") return seven_joint_arm();
-  throw Error("--robot must be psm or seven_joint_arm, not " + app::in_quotes(robot));
+Instrument instrument_of(const Settings& settings) {
+  if (settings.robot == "psm") return psm();
+  if (settings.robot == "seven_joint_arm") return seven_joint_arm();
+#if KEEPOUT_READS_ROBOTS
+  const Instrument instrument = read_robot(settings.robot, settings.bodies).instrument;
+  if (instrument.chain().base().position != Vec3::Zero() ||
+      instrument.chain().base().rotation != Mat3::Identity()) {
+    throw Error(settings.bodies.string() +
+                ": omit the pose of the base: the registration states where the anatomy is");
+  }
+  return instrument;
+#else
+  throw Error("--robot must be psm or seven_joint_arm, not " + app::in_quotes(settings.robot));
+#endif
 }
 
 }  // namespace
@@ -98,9 +113,11 @@ void add_options(CLI::App& app, Settings& settings) {
                  "Frame of the robot's poses; others are refused; default: ARM_base");
   app.add_option("--hand", settings.hand,
                  "Namespace that gets the force on the hand (servo_cf), for example MTMR/body");
-  app.add_option("--robot", settings.robot,
-                 "Guard the whole instrument of this robot by its joints: psm or seven_joint_arm; "
-                 "default: guard the tip");
+  app.add_option(
+      "--robot", settings.robot,
+      "Guard the whole instrument of this robot by its joints: psm, seven_joint_arm or a "
+      "URDF file; default: guard the tip");
+  app.add_option("--bodies", settings.bodies, "Bodies of the robot of a URDF file: a JSON file");
   app.add_option("--tool-radius", settings.tool_radius, "Radius of the tip's ball [mm]")
       ->capture_default_str();
   app.add_option("--margin", settings.margin, "Required clearance of the tool [mm]")
@@ -152,7 +169,7 @@ CrtkSession make_session(const Settings& settings, const Scene& scene) {
   if (settings.robot.empty()) {
     return {make_tip_guard(settings, scene), scene.registration, options};
   }
-  const Instrument instrument = instrument_of(settings.robot);
+  const Instrument instrument = instrument_of(settings);
   const double band =
       std::min(recommended_band(instrument, settings.period), 0.5 * settings.margin);
   return {make_instrument_constraint(

@@ -29,6 +29,7 @@ struct Settings {
   std::string frame = {};                   // of the robot's poses; empty: <arm>_base
   std::string hand = {};                    // the namespace that gets servo_cf; empty: no force
   std::string robot = {};                   // the instrument; empty: a tip
+  std::filesystem::path bodies = {};        // of the robot of a URDF file
   double tool_radius = 0.0;                 // of a tip [mm]
   double margin = 0.5;                      // [mm]
   double period = 0.001;                    // [s]
