@@ -118,7 +118,8 @@ void GuardNode::cycle(double now) {
   // After a failed engage(), the reason is that of engage().
   if (is_ok(status)) status = session_.tick(now);
   ++counts_[std::min<std::size_t>(static_cast<std::size_t>(status), counts_.size() - 1)];
-  if (!is_ok(status)) {
+  // The cause of a failed engage() is not replaced by its consequence.
+  if (!is_ok(status) && (status != CycleStatus::not_engaged || is_ok(status_))) {
     status_ = status;
     reason_ = session_.reason();
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A node with the interface of CRTK: see docs/ros1.md and docs/ros2.md.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <exception>
 #include <iostream>
@@ -28,7 +29,8 @@ int run(int argc, char** argv) {
   add_options(app, settings);
   std::vector<std::string> names, arguments(argv + 1, argv + argc);
   for (const CLI::Option* option : app.get_options()) {
-    if (!option->get_lnames().empty()) names.push_back(option->get_lnames().front());
+    if (!option->get_lnames().empty() && option != app.get_help_ptr())
+      names.push_back(option->get_lnames().front());
   }
   std::unique_ptr<Transport> transport;
   try {

@@ -79,7 +79,8 @@ class Transport {
   /// Sends a shape, if the middleware has shapes.
   virtual void show(int, const std::string& /*frame*/, const Shape&) {}
 
-  /// Returns the number of publishers of a subscribed topic in other processes.
+  /// Returns the number of publishers of a subscribed topic in other processes. A process must
+  /// subscribe to a topic before it announces the same topic.
   virtual int publishers(int subscription) = 0;
   /// Returns true if a process reads an announced topic.
   virtual bool is_read(int advertised) = 0;

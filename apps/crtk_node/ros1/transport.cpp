@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
+#include <tuple>
 
 #include "ros1/operating_state.h"
 
@@ -175,6 +176,11 @@ class Ros1Transport final : public Transport {
         announce(visualization_msgs::Marker());
         break;
     }
+    for (Subscribed& subscribed : subscribed_) {
+      const bool is_own =
+          subscribed.subscriber.getTopic() == announced_.back().publisher.getTopic();
+      if (is_own) ++subscribed.own;
+    }
     return static_cast<int>(announced_.size()) - 1;
   }
 
@@ -228,12 +234,8 @@ class Ros1Transport final : public Transport {
   }
 
   int publishers(int subscription) override {
-    const ros::Subscriber& subscriber = subscribers_[static_cast<std::size_t>(subscription)];
-    // A topic that this process announces too has a connection within the process.
-    const bool is_own = std::any_of(announced_.begin(), announced_.end(), [&](const Announced& a) {
-      return a.publisher.getTopic() == subscriber.getTopic();
-    });
-    return static_cast<int>(subscriber.getNumPublishers()) - (is_own ? 1 : 0);
+    const Subscribed& subscribed = subscribed_[static_cast<std::size_t>(subscription)];
+    return static_cast<int>(subscribed.subscriber.getNumPublishers()) - subscribed.own;
   }
 
   bool is_read(int advertised) override {
@@ -245,22 +247,26 @@ class Ros1Transport final : public Transport {
     ros::Publisher publisher;
     Kind kind;
   };
+  struct Subscribed {
+    ros::Subscriber subscriber;
+    int own = 0;  // publishers in this process, which announces after it subscribes
+  };
 
   template <class M>
   int subscribe(const std::string& topic) {
-    const int number = static_cast<int>(subscribers_.size());
+    const int number = static_cast<int>(subscribed_.size());
     const boost::function<void(const boost::shared_ptr<const M>&)> pass_on =
         [this, number](const boost::shared_ptr<const M>& message) {
           inbox_->receive(number, values_of(*message));
         };
-    subscribers_.push_back(node_.subscribe<M>(topic, queue_length, pass_on, ros::VoidConstPtr(),
-                                              ros::TransportHints().tcpNoDelay()));
+    subscribed_.push_back({node_.subscribe<M>(topic, queue_length, pass_on, ros::VoidConstPtr(),
+                                              ros::TransportHints().tcpNoDelay())});
     return number;
   }
 
   ros::CallbackQueue queue_;
   ros::NodeHandle node_;
-  std::vector<ros::Subscriber> subscribers_;
+  std::vector<Subscribed> subscribed_;
   std::vector<Announced> announced_;
   Inbox* inbox_ = nullptr;
 };
