@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "drawing.h"
 
+#include <Eigen/Geometry>
 #include <utility>
 
 #include "keepout/mesh/mesh.h"

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "guard_node.h"
+#include "keepout/error.h"
 #include "loop.h"
 #include "settings.h"
 #include "simulated_robot.h"

@@ -101,7 +101,8 @@ void add_options(CLI::App& app, Settings& settings) {
   const std::map<std::string, Role> roles{{"guard", Role::guard}, {"robot", Role::robot}};
   app.add_option("--as", settings.role,
                  "guard: the node; robot: a simulated robot and operator, to try the node")
-      ->transform(CLI::CheckedTransformer(roles));
+      ->transform(CLI::CheckedTransformer(roles))
+      ->option_text("guard|robot");
   app.add_option("--mesh", settings.mesh, "The anatomy [mm]: a file, or a sample mesh")->required();
   app.add_option("--registration", settings.registration,
                  "Where the anatomy is: the file of 'keepout register --json'")

@@ -2,7 +2,6 @@
 // The transport of ROS 1. C++17: the headers of the messages do not compile as C++20.
 #include "transport.h"
 
-#include <XmlRpcValue.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <ros/callback_queue.h>
@@ -11,6 +10,7 @@
 #include <std_msgs/Bool.h>
 #include <std_msgs/String.h>
 #include <visualization_msgs/Marker.h>
+#include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
 #include <cstdlib>
