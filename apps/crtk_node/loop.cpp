@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "loop.h"
 
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -24,6 +25,13 @@ void sleep_until(double monotonic) {
   const timespec time{static_cast<time_t>(whole), static_cast<long>(1e9 * (monotonic - whole))};
   // After a signal, the caller looks for it.
   clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, nullptr);
+}
+
+/// Returns how often this thread has waited for a lock, a file or a clock.
+long waits() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_nvcsw;
 }
 
 double resident_megabytes() {
@@ -52,8 +60,10 @@ LoopReport run_loop(Node& node, double period, double seconds, bool (*stop)()) {
   double due = start;
   while (!stop()) {
     const double before = seconds_of(CLOCK_THREAD_CPUTIME_ID);
+    const long waits_before = waits();
     node.cycle(seconds_of(CLOCK_REALTIME));
     const double computed = seconds_of(CLOCK_THREAD_CPUTIME_ID) - before;
+    const bool is_late_here = computed > period || waits() > waits_before;
     ++report.cycles;
     report.longest = std::max(report.longest, computed);
 
@@ -63,7 +73,7 @@ LoopReport run_loop(Node& node, double period, double seconds, bool (*stop)()) {
       const double missed = std::floor((now - due) / period);
       due += missed * period;
       report.lost += static_cast<std::uint64_t>(missed);
-      if (computed > period) report.lost_here += static_cast<std::uint64_t>(missed);
+      if (is_late_here) report.lost_here += static_cast<std::uint64_t>(missed);
     }
     report.seconds = now - start;
     if (seconds > 0.0) {

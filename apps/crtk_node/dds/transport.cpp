@@ -211,7 +211,7 @@ class DdsTransport final : public Transport {
     Subscribed subscribed{kind, read(DDS_DURABILITY_VOLATILE), 0};
     // A publisher that keeps its last state sends it only to a reader that requests it, and such a
     // reader does not match other publishers.
-    if (kind == Kind::state || kind == Kind::text) {
+    if (kind == Kind::state) {
       subscribed.kept = read(DDS_DURABILITY_TRANSIENT_LOCAL);
     }
     subscribed_.push_back(subscribed);
