@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "keepout/control/crtk_guard.h"
+#include "keepout/control/crtk_session.h"
 #include "keepout/index/query.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/keepout.h"
@@ -12,8 +12,12 @@
 /// Replaces a PSM: follows its setpoint with a small delay. In meters, in its own frame.
 struct Robot {
   keepout::Pose pose;
-  keepout::Pose measured_cp() const { return pose; }  // subscribe: /PSM1/measured_cp
-  keepout::Pose setpoint_cp() const { return pose; }  // subscribe: /PSM1/setpoint_cp
+  // Subscribe: /PSM1/operating_state, /PSM1/measured_cp and /PSM1/setpoint_cp.
+  void report(keepout::CrtkSession& session, double now) const {
+    session.on_operating_state(keepout::OperatingState::enabled, true);
+    session.on_measured_cp(pose, {now});
+    session.on_setpoint_cp(pose, {now});
+  }
   void servo_cp(const keepout::Pose& setpoint) {      // publish: /PSM1/servo_cp
     pose.position += 0.3 * (setpoint.position - pose.position);
     pose.rotation = setpoint.rotation;
@@ -53,7 +57,7 @@ int main(int argc, char** argv) try {
                         .robot = keepout::LengthUnit::metre,
                         .mesh = keepout::LengthUnit::millimetre});
 
-  keepout::CrtkGuard guard(
+  keepout::CrtkSession session(
       keepout::make_motion_constraint(mesh,
                                       {.options = {.tool_radius = tool_radius, .margin = margin}}),
       registration,
@@ -69,9 +73,10 @@ int main(int argc, char** argv) try {
   const keepout::Vec3 start = highest + keepout::Vec3(0, 0, 5);
   Robot robot{{registration.point_to_robot(start), keepout::Mat3::Identity()}};
   Hand hand;
-  const keepout::Pose begin = robot.setpoint_cp();
-  if (!is_ok(guard.engage(begin))) {
-    std::fprintf(stderr, "%s\n", guard.reason().data());
+  const keepout::Pose begin = robot.pose;
+  robot.report(session, 0.0);
+  if (!is_ok(session.engage(0.0))) {
+    std::fprintf(stderr, "%s\n", session.reason().data());
     return 1;
   }
 
@@ -81,22 +86,22 @@ int main(int argc, char** argv) try {
   int held = 0, stopped = 0;
   constexpr int cycles = 4000;
   for (int cycle = 0; cycle < cycles; ++cycle) {  // here: wait for the next millisecond
-    guard.measured_cp(robot.measured_cp());
+    const double now = 0.001 * (cycle + 1);
+    robot.report(session, now);
     const bool message_lost = cycle % 100 < 3;
-    if (message_lost) {
-      guard.await_cp();
-    } else {
-      guard.servo_cp({begin.position + hand.way(0.001 * cycle), begin.rotation});
+    if (!message_lost) {
+      session.on_servo_cp({begin.position + hand.way(0.001 * cycle), begin.rotation}, {now});
     }
-    robot.servo_cp(*guard.setpoint_cp());  // after a failed cycle, the last one
-    hand.servo_cf(guard.servo_cf());       // after a failed cycle, it fades out
+    session.tick(now);
+    robot.servo_cp(*session.setpoint_cp());  // after a failed cycle, the last one
+    hand.servo_cf(session.servo_cf());       // after a failed cycle, it fades out
 
-    if (!guard.cycle().ok() && stopped++ == 0) std::printf("%s\n", guard.reason().data());
-    held += guard.cycle().step == keepout::Status::limited;
-    nearest = std::min(nearest, nearest_triangle(guard.cycle().proxy).closest.offset.norm());
+    if (!session.cycle().ok() && stopped++ == 0) std::printf("%s\n", session.reason().data());
+    held += session.cycle().step == keepout::Status::limited;
+    nearest = std::min(nearest, nearest_triangle(session.cycle().proxy).closest.offset.norm());
   }
 
-  const keepout::EnergyReport& energy = guard.energy();
+  const keepout::EnergyReport& energy = session.energy();
   std::printf("held back in %d of %d cycles, stopped in %d, nearest %.9f mm of %.1f\n", held,
               cycles, stopped, nearest, tool_radius + margin);
   std::printf("largest force on the tool %.9f N, on the hand %.9f N\n", energy.largest_force,

@@ -55,4 +55,101 @@ void EnergyReport::book_blind(double now_stored) noexcept {
   ++blind_cycles;
 }
 
+void check(const HapticOptions& options) {
+  constexpr double most = 1e30;  // far from overflow
+  check(options.spring);
+  require_number("haptic proxy: period, in seconds", options.period, {1e-6, 1.0});
+  require_number("haptic proxy: top_speed", options.top_speed, above_zero(most));
+  require_number("haptic proxy: farthest", options.farthest, above_zero(most));
+  require_number("haptic proxy: fade, from one period on", options.fade, {options.period, 10.0});
+  require_number("haptic proxy: largest_brake", options.largest_brake, {0.0, most});
+}
+
+HapticForce::HapticForce(const HapticOptions& options) noexcept
+    : spring_(options.spring),
+      period_(options.period),
+      fade_(options.fade),
+      passivity_(options.largest_brake) {}
+
+void HapticForce::engage(const Vec3& position) noexcept {
+  release();
+  energy_ = {};
+  proxy_ = hand_ = position;
+  seen_ = true;
+}
+
+void HapticForce::release() noexcept {
+  passivity_.restart();
+  held_ = {};
+  hand_way_ = Vec3::Zero();
+  stretch_ = 0.0;
+  share_ = 1.0;
+  seen_ = false;
+}
+
+void HapticForce::follow(const Vec3& hand, const Vec3& proxy) noexcept {
+  change_share(1.0);
+  book(hand, proxy);
+  update();
+}
+
+void HapticForce::fade(const Vec3& hand) noexcept {
+  change_share(0.0);
+  book(hand, proxy_);
+  update();
+}
+
+void HapticForce::fade() noexcept {
+  const double before = share_;
+  change_share(0.0);
+  held_.spring *= before > 0.0 ? share_ / before : 0.0;
+  held_.brake = Vec3::Zero();
+  energy_.book_blind(share_ * spring_.stored(stretch_));
+  seen_ = false;
+}
+
+void HapticForce::change_share(double towards) noexcept {
+  const double change = period_ / fade_;
+  share_ = towards > share_ ? std::min(share_ + change, 1.0) : std::max(share_ - change, towards);
+}
+
+void HapticForce::book(const Vec3& hand, const Vec3& proxy) noexcept {
+  const double stretch = (proxy - hand).norm();
+  const double stored = share_ * spring_.stored(stretch);
+  rate_ = 0.0;
+  hand_way_ = Vec3::Zero();
+  if (seen_) {
+    hand_way_ = hand - hand_;
+    rate_ = (stretch - stretch_) / period_;
+    passivity_.observe(held_.total(), hand_way_);
+    energy_.book(held_, hand_way_, proxy - proxy_, stored);
+    energy_.active = std::max(energy_.active, -passivity_.energy());
+  } else {
+    energy_.book_blind(stored);
+  }
+  proxy_ = proxy;
+  hand_ = hand;
+  stretch_ = stretch;
+  seen_ = true;
+}
+
+void HapticForce::update() noexcept {
+  const double newtons_before = held_.spring.norm();
+  held_ = {};
+  if (!(stretch_ > 0.0)) {
+    passivity_.leave_contact();
+    return;
+  }
+  const double newtons = std::min(share_ * spring_.force(stretch_, rate_),
+                                  newtons_before + spring_.largest_rise * period_);
+  held_.spring = (newtons / stretch_) * (proxy_ - hand_);
+  held_.brake = share_ * passivity_.brake(hand_way_, period_);
+  const double total = held_.total().norm();
+  if (total > spring_.largest_force) {
+    held_.spring *= spring_.largest_force / total;
+    held_.brake *= spring_.largest_force / total;
+  }
+  energy_.largest_force = std::max(energy_.largest_force, held_.total().norm());
+}
+
 }  // namespace keepout

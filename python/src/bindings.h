@@ -136,6 +136,7 @@ void bind_instrument(py::module_& module);
 void bind_instrument_guard(py::module_& module);
 void bind_instrument_results(py::module_& module);
 void bind_registration(py::module_& module);
+void bind_session(py::module_& module);
 
 /// Replaces the message for a call that fits no signature: the new message names the wrong
 /// argument. Must be called last.

@@ -52,6 +52,14 @@ class GuardOf {
     settings_.options = options;
   }
 
+  /// Returns a constraint like this one, with all meshes and guides, for a loop of its own.
+  Constraint another() const {
+    Constraint made = made_anew();
+    made.set_guides(guides_);
+    return made;
+  }
+  const std::vector<Guide>& guides() const noexcept { return guides_; }
+
   /// Returns the index of the first mesh.
   const std::shared_ptr<IndexHandle>& index() const noexcept { return meshes_.front().index; }
   const Settings& settings() const noexcept { return settings_; }
@@ -78,12 +86,8 @@ class GuardOf {
   /// See Workers.
   template <class Item>
   void do_each(std::size_t items, std::size_t chunk, unsigned threads, const Item& item) {
-    const auto make = [this] {
-      Constraint made = made_anew();
-      made.set_guides(guides_);
-      return made;
-    };
-    workers_.do_each(items, chunk, threads, make, item);
+    workers_.do_each(
+        items, chunk, threads, [this] { return another(); }, item);
   }
 
   /// Replaces a mesh by that of an index; `follow()` makes the constraint follow it.

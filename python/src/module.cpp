@@ -81,5 +81,6 @@ PYBIND11_MODULE(_core, module) {
   bind_instrument_results(module);
   bind_instrument_guard(module);
   bind_registration(module);
+  bind_session(module);
   explain_call_errors(module);
 }

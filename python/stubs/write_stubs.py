@@ -29,6 +29,9 @@ from numpy.typing import ArrayLike, NDArray
 JOINT_KIND = 'Literal["revolute", "prismatic"]'
 SPACE = 'Literal["RAS", "LPS"] | None'
 ARGUMENTS = {
+    "CrtkSession.guard": "MotionConstraint | InstrumentGuard",
+    "CrtkSession.mesh_unit": 'Literal["m", "mm"]',
+    "CrtkSession.robot_unit": 'Literal["m", "mm"]',
     "convention": 'Literal["modified", "standard"]',
     "kind": JOINT_KIND,
     "mesh": "Mesh",
@@ -48,6 +51,8 @@ RESULTS = {
     "Body.points": "list[tuple[int, tuple[float, float, float]]]",
     "Inspection.places": "dict[str, NDArray[np.float64]]",
     "Guide.kind": 'Literal["point", "axis", "shaft"]',
+    "CrtkSession.status": "str",
+    "CrtkSession.step_status": "Status",
     "InstrumentStep.degraded": "tuple[tuple[int, int, float | None], ...]",
     "activations": "list[Part]",
     "high": "tuple[float, float, float]",

@@ -27,7 +27,7 @@ def test_stubtest(tmp_path):
     )
     allowed = [
         # pybind11 adds its own metaclass, and an __init__ to classes without a constructor.
-        r"keepout\.(Body|Chain|Index|Instrument|InstrumentGuard|Joint|Mesh|MotionConstraint|TableRow|"
+        r"keepout\.(Body|Chain|CrtkSession|Index|Instrument|InstrumentGuard|Joint|Mesh|MotionConstraint|TableRow|"
         + made_by_others.replace(" ", "|") + ")",
         r"keepout\.(" + made_by_others.replace(" ", "|") + r")\.__init__",
         r"keepout\._results\.NamedTuple",  # a function in Python 3.11, which mypy 1.0 does not know
@@ -58,6 +58,8 @@ whole = keepout.InstrumentGuard(mesh, instrument, index=guard.index, margin=0.5)
 q: np.ndarray[Any, np.dtype[np.float64]] = whole.step([0.0], linear=(0, 0, 1)).increment
 share: float = whole.prove(q, increment=[0.1]).fraction
 clear = whole.proofs(np.zeros((4, 1)), threads=2).is_clear.all()
+session = keepout.CrtkSession(guard, np.eye(4), robot_unit="m", period=0.001)
+cause: str = session.tick(0.0)
 loaded = keepout.load_mesh("mesh.vtp", space="RAS", unit="m", flip=True)
 notices: list[str] = loaded.notices
 names: list[str] = [part.name for part in keepout.indices()]

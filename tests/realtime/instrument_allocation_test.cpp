@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <array>
 #include <set>
 
 #include "control/guarded_shapes.h"
-#include "keepout/control/crtk_guard.h"
+#include "guards.h"
+#include "keepout/control/crtk_session.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/robot/instrument_constraint.h"
@@ -85,56 +87,134 @@ TEST(InstrumentConstraint, AllocatesNothingWhateverTheOutcome) {
   }
 }
 
-/// Fails if a cycle allocates. Returns the number of cycles in which a guide limits the proxy.
-int count_guided_cycles(const std::vector<Guide>& guides) {
-  const auto registration = Registration::mesh_from_robot(
+/// Returns the registration of a robot in meters, with the axes of the mesh.
+Registration registration() {
+  return Registration::mesh_from_robot(
       Eigen::Matrix4d::Identity(),
       {.transform = LengthUnit::metre, .robot = LengthUnit::metre, .mesh = LengthUnit::millimetre});
-  CrtkGuard guard(
-      guard_of(cube()), registration,
-      {.haptic = {.spring = {.damping = 0.01}, .largest_brake = 0.01, .guides = guides}});
+}
+
+/// Sends good and bad messages of every kind to a session near `start`, and ticks. Fails if a
+/// cycle allocates. Returns the number of cycles in which a guide limits the proxy. `joints`: the
+/// positions at the start; empty for a tip.
+int count_guided_cycles(CrtkSession& session, const Pose& start,
+                        const std::vector<double>& joints) {
   Random random(4);
   std::vector<CycleStatus> seen;
   seen.reserve(100'000);
   int guided = 0;
+  double now = 1.0;
+  const std::array<double, 2> wrong_joints{};
+  const std::array<double, 6> inside{0, 0, 0.15, 0, 0, 0};  // the cube
+  const auto tick = [&] {
+    now += 0.001;
+    seen.push_back(session.tick(now));
+    guided += session.cycle().limits.has(Limit::guide) ? 1 : 0;
+  };
+  const auto measure = [&](const Vec3& away) {
+    session.on_measured_cp({start.position + away, start.rotation}, {now + 0.001, "base"});
+    session.on_measured_js(joints, {now + 0.001});
+  };
+  const auto engage = [&](const Pose& pose) {
+    session.on_setpoint_cp(pose, {now, "base"});
+    session.on_setpoint_js(joints, {now});
+    seen.push_back(session.engage(now));
+  };
   const std::size_t before = allocations();
   for (int round = 0; round < 50; ++round) {
-    const Pose start{0.001 * (Vec3(3, 4, top + 5.0) + random.direction()), Mat3::Identity()};
-    seen.push_back(guard.servo_cp(start));
-    seen.push_back(guard.engage({1000.0 * start.position, Mat3::Identity()}));
-    seen.push_back(guard.engage(start));
+    session.on_operating_state(OperatingState::disabled, false);
+    tick();
+    session.on_operating_state(OperatingState::enabled, true);
+    session.on_servo_cp(start, {now});
+    tick();
+    engage({1000.0 * Vec3::Ones(), start.rotation});
+    engage(start);
+    const Vec3 side = 0.001 * random.direction();
     for (int i = 0; i < 100; ++i) {
-      const Vec3 goal = start.position - Vec3(0, 0, 1e-4 * i) + 1e-4 * random.direction();
-      guard.measured_cp(*guard.setpoint_cp());
-      seen.push_back(guard.servo_cp({goal, Mat3::Identity()}));
-      guided += guard.cycle().limits.has(Limit::guide) ? 1 : 0;
+      const Vec3 away = side - Vec3(0, 0, 1e-4 * i) + 1e-4 * random.direction();
+      measure(Vec3::Zero());
+      session.on_servo_cp({start.position + away, start.rotation}, {now + 0.001, "base"});
+      tick();
     }
-    guard.measured_cp({Vec3::Constant(0.5), Mat3::Identity()});
-    seen.push_back(guard.servo_cp(start));
-    seen.push_back(guard.servo_cp({{test::nan, 0, 0}, Mat3::Identity()}));
-    seen.push_back(guard.servo_cp({Vec3::Constant(5.0), Mat3::Identity()}));
-    seen.push_back(guard.servo_cp(start));
-    for (int i = 0; i < 30; ++i) seen.push_back(guard.await_cp());
-    guard.release();
-    seen.push_back(guard.engage({Vec3::Zero(), Mat3::Identity()}));
-    seen.push_back(guard.servo_cp({Vec3::Zero(), Mat3::Identity()}));
-    guard.release();
+    if (!joints.empty()) {
+      session.on_servo_jp(joints, {now + 0.001});
+      tick();
+      session.on_servo_jv(joints, {now + 0.001});
+      tick();
+    }
+    session.on_servo_jp(wrong_joints, {now + 0.001});
+    tick();
+    session.on_servo_cp(start, {now + 0.001, "camera"});
+    tick();
+    session.on_servo_cp({{test::nan, 0, 0}, start.rotation}, {now + 0.001});
+    tick();
+    session.on_servo_cp({Vec3::Constant(5.0), start.rotation}, {now + 0.001});
+    measure(Vec3::Zero());
+    tick();
+    session.on_contest(true);
+    tick();
+    session.on_contest(false);
+    measure(Vec3::Constant(0.5));
+    if (!joints.empty()) session.on_measured_js(inside, {now + 0.001});
+    session.on_servo_cp(start, {now + 0.001});
+    tick();
+    for (int i = 0; i < 30; ++i) tick();
+    session.on_servo_cp(start, {now + 0.001});
+    tick();
+    session.release();
+    session.on_setpoint_cp({Vec3::Zero(), Mat3::Identity()}, {now});
+    session.on_setpoint_js(inside, {now});
+    session.engage(now);
+    measure(-start.position);
+    if (!joints.empty()) session.on_measured_js(inside, {now + 0.001});
+    session.on_servo_cp({Vec3::Zero(), start.rotation}, {now + 0.001});
+    tick();
+    session.release();
   }
   EXPECT_EQ(allocations(), before);
-  EXPECT_EQ(std::set<CycleStatus>(seen.begin(), seen.end()).size(), 8u) << "every outcome";
+  std::set<CycleStatus> kinds(seen.begin(), seen.end());
+  for (int i = 0; i <= static_cast<int>(CycleStatus::wrong_command); ++i) {
+    const auto status = static_cast<CycleStatus>(i);
+    // No configuration of the instrument is far from the mesh.
+    if (!joints.empty() && status == CycleStatus::far_from_mesh) continue;
+    EXPECT_TRUE(kinds.contains(status)) << name(status);
+  }
   return guided;
 }
 
-TEST(CrtkGuard, AllocatesNothingWhateverTheOutcome) { EXPECT_EQ(count_guided_cycles({}), 0); }
+int count_guided_cycles_of_tip(const std::vector<Guide>& guides) {
+  CrtkSession session(
+      guard_of(cube()), registration(),
+      {.haptic = {.spring = {.damping = 0.01}, .largest_brake = 0.01, .guides = guides},
+       .frame = "base"});
+  return count_guided_cycles(session, {0.001 * Vec3(3, 4, top + 5.0), Mat3::Identity()}, {});
+}
 
-TEST(CrtkGuard, AllocatesNothingWithGuides) {
+TEST(CrtkSession, AllocatesNothingWhateverTheOutcome) {
+  EXPECT_EQ(count_guided_cycles_of_tip({}), 0);
+}
+
+TEST(CrtkSession, OfAnInstrumentAllocatesNothingWhateverTheOutcome) {
+  const auto mesh = mesh_of(make_cube(20.0));
+  const Instrument instrument = psm(port_over(Vec3::Zero(), 120.0));
+  CrtkSession session(guard_of(mesh, instrument, {.period = 0.001}), registration(),
+                      {.haptic = {.spring = {.damping = 0.01}, .largest_brake = 0.01},
+                       .farthest_lag = 50.0,
+                       .frame = "base"});
+  const std::vector<double> start{0, 0, 0.05, 0, 0, 0};  // [m] in joint 3
+  const Pose flange =
+      test::state_of(instrument.chain(), std::vector<double>{0, 0, 50, 0, 0, 0}).flange();
+  EXPECT_EQ(count_guided_cycles(session, {0.001 * flange.position, flange.rotation}, start), 0);
+}
+
+TEST(CrtkSession, AllocatesNothingWithGuides) {
   const Vec3 start(3, 4, top + 5.0);
   const std::vector<Guide> guides{
       Guide::point("corridor", Region::slab(start, Vec3::UnitX(), 0.5)),
       Guide::point("ball", Region::ball(start, 4.0)),
       Guide::point("beyond the cube", Region::half_space(start + Vec3(0, 9, 0), Vec3::UnitY())),
       Guide::point("before the cube", Region::half_space(start - Vec3(0, 9, 0), -Vec3::UnitY()))};
-  EXPECT_GT(count_guided_cycles(guides), 1000);
+  EXPECT_GT(count_guided_cycles_of_tip(guides), 1000);
 }
 
 }  // namespace

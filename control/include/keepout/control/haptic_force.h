@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "keepout/geometry/shapes.h"
+#include "keepout/step/guide.h"
 
 namespace keepout {
 
@@ -107,6 +109,72 @@ struct EnergyReport {
 
   /// Adds a cycle without a measured hand. The change of the spring's energy counts as dissipated.
   void book_blind(double now_stored) noexcept;
+};
+
+/// The options of a proxy and its force.
+struct HapticOptions {
+  double period = 0.001;     // of a cycle [s], 1e-6 to 1
+  SpringDamper spring = {};  // between proxy and hand
+  double top_speed = 200.0;  // of the proxy, which the robot follows [length / s], > 0
+  double farthest = 50.0;    // from proxy to hand; farther goals are rejected [length], > 0
+  /// The time in which the force fades out when cycles fail, and returns afterwards [s], >= period
+  double fade = 0.05;
+  double largest_brake = 0.0;      // of the passivity controller [N s / length]; 0: only observes
+  std::vector<Guide> guides = {};  // of a tip, in the frame of the mesh: Guide::point
+};
+
+/// Throws Error, which names the option, if an option is out of range.
+void check(const HapticOptions& options);
+
+/// The force that pulls the operator's hand to its proxy, from cycle to cycle. Positions are in the
+/// frame and the unit of the mesh. No function allocates, locks or throws.
+///
+/// If a cycle fails, the force fades out over `fade` seconds. The force must not vanish at once,
+/// because the hand leans against it. It must not stay either, because a motor must not push after
+/// a fault. While the hand is measured, the spring still connects it to the proxy, and the force of
+/// the spring fades. While the hand is not measured, the last force fades. From the next successful
+/// cycle on, the force returns over the same time.
+class HapticForce {
+ public:
+  /// Precondition: the options are checked.
+  explicit HapticForce(const HapticOptions& options) noexcept;
+
+  /// Sets hand and proxy to one position. The force is zero, and all energies are reset.
+  void engage(const Vec3& position) noexcept;
+  /// Sets the force to zero at once. Does not reset the energies.
+  void release() noexcept;
+
+  /// Adds a successful cycle, in which the proxy has moved to `proxy`.
+  void follow(const Vec3& hand, const Vec3& proxy) noexcept;
+  /// Adds a failed cycle with a measured hand: the proxy did not move.
+  void fade(const Vec3& hand) noexcept;
+  /// Adds a failed cycle without a measured hand: the last force fades.
+  void fade() noexcept;
+
+  /// Returns the force on the hand until the next cycle. [N]
+  Vec3 force() const noexcept { return held_.total(); }
+  /// Returns the energies since engage().
+  const EnergyReport& energy() const noexcept { return energy_; }
+
+ private:
+  /// Adds the last cycle to the energies, and stores the positions of hand and proxy.
+  void book(const Vec3& hand, const Vec3& proxy) noexcept;
+  void update() noexcept;
+  void change_share(double towards) noexcept;
+
+  SpringDamper spring_;
+  double period_;  // [s]
+  double fade_;    // [s]
+  PassivityObserver passivity_;
+  EnergyReport energy_;
+  HeldForce held_;  // the forces since the last cycle
+  Vec3 proxy_ = Vec3::Zero();
+  Vec3 hand_ = Vec3::Zero();      // the last measured position
+  Vec3 hand_way_ = Vec3::Zero();  // displacement in the last cycle; zero if not known
+  double stretch_ = 0.0;          // between proxy and hand in the last cycle [length]
+  double rate_ = 0.0;             // of the stretch [length / s]
+  double share_ = 1.0;            // the fraction of the force that has not faded
+  bool seen_ = false;             // true if the hand was measured in the last cycle
 };
 
 }  // namespace keepout

@@ -89,6 +89,11 @@ class Registration {
   /// Rotates a force into the robot's frame. [N]
   Vec3 force_to_robot(const Vec3& force) const noexcept { return rotation_.transpose() * force; }
 
+  /// Returns the pose of the mesh in the robot's frame, in the unit of the mesh.
+  Pose mesh_in_robot() const noexcept {
+    return {-(rotation_.transpose() * translation_), rotation_.transpose()};
+  }
+
   /// Returns the robot's unit divided by the mesh's unit: 1000 for meters and millimeters.
   double scale() const noexcept { return scale_; }
 
