@@ -275,11 +275,14 @@ TEST_F(DdsNode, SetpointsAreBitwiseThoseOfADirectConstraint) {
     const Quaternion q = to_quaternion(rotation);
     const Vec3 hand = registration_.point_to_mesh(at(pose_at(to)));
     Vec3 proxy = registration_.point_to_mesh(at(pose_at(from)));
-    ASSERT_GT(poses_.size(), 50U) << reason_;
-    for (std::size_t k = 0; k < poses_.size(); ++k) {
-      const Vec3 expected = registration_.point_to_robot(proxy);
-      ASSERT_EQ(at(poses_[k]), expected) << "setpoint " << k;
-      ASSERT_EQ(poses_[k].orientation, (std::array{q.x, q.y, q.z, q.w}));
+    // A slow reader loses setpoints, so those that came are a part of these.
+    constexpr int most_cycles = 400;
+    std::size_t next = 0;
+    for (int cycle = 0; cycle < most_cycles && next < poses_.size(); ++cycle) {
+      if (at(poses_[next]) == registration_.point_to_robot(proxy)) {
+        ASSERT_EQ(poses_[next].orientation, (std::array{q.x, q.y, q.z, q.w}));
+        ++next;
+      }
       // The next cycle of the direct constraint: at the top speed.
       Vec3 desired = hand - proxy;
       const double distance = desired.norm(), radius = guard.options().radius;
@@ -290,10 +293,12 @@ TEST_F(DdsNode, SetpointsAreBitwiseThoseOfADirectConstraint) {
       const bool arrives = distance <= radius && fraction == 1.0 && step.motion == desired;
       proxy = arrives ? hand : Vec3(proxy + fraction * step.motion);
       held += step.status == Status::limited;
-      ++compared;
     }
+    EXPECT_EQ(next, poses_.size()) << "a setpoint is not one of the direct constraint";
+    EXPECT_GT(next, 50U) << reason_;
+    compared += next;
   }
-  EXPECT_GT(compared, 300U);
+  EXPECT_GT(compared, 250U);
   EXPECT_GT(held, 50U);
 }
 
@@ -321,12 +326,11 @@ TEST_F(DdsNode, JointSetpointsAreBitwiseThoseOfADirectConstraint) {
       mesh, instrument, {.options = {.margin = margin, .band = band, .period = period}});
   guard.place(0, registration_.mesh_in_robot());
   const std::lock_guard lock(mutex_);
-  ASSERT_GT(joints_.size(), 50U) << reason_;
-  std::size_t held = 0;
-  for (std::size_t k = 0; k < joints_.size(); ++k) {
+  std::size_t held = 0, next = 0;
+  for (int cycle = 0; cycle < 1000 && next < joints_.size(); ++cycle) {
     std::vector<double> expected = q;
     expected[2] /= 1000.0;
-    ASSERT_EQ(joints_[k], expected) << "setpoint " << k;
+    next += joints_[next] == expected;  // a slow reader loses setpoints
     std::vector<double> desired = joint_goal_->position;
     desired[2] *= 1000.0;
     for (std::size_t j = 0; j < q.size(); ++j) desired[j] -= q[j];
@@ -335,6 +339,8 @@ TEST_F(DdsNode, JointSetpointsAreBitwiseThoseOfADirectConstraint) {
     for (std::size_t j = 0; j < q.size(); ++j) q[j] += step.increment[j];
     held += step.limits.has(Limit::mesh);
   }
+  EXPECT_EQ(next, joints_.size()) << "a setpoint is not one of the direct constraint";
+  EXPECT_GT(next, 50U) << reason_;
   EXPECT_GT(held, 0U);
 }
 
@@ -425,7 +431,8 @@ TEST_F(DdsNode, ContinuesThroughAFloodAndTheDeathOfItsPeer) {
     servo_cp_->write(&flood);
   }
   goal_ = good;
-  EXPECT_TRUE(play([&] { return poses_.size() >= 2 && reason_.starts_with("guarded"); })) << reason_;
+  EXPECT_TRUE(play([&] { return poses_.size() >= 2 && reason_.starts_with("guarded"); }))
+      << reason_;
   // A new robot and teleoperation, after silence: the node stands still, and goes on.
   peer_.reset();
   std::this_thread::sleep_for(std::chrono::milliseconds(300));

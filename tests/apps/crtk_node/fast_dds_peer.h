@@ -152,7 +152,8 @@ class FastDdsPeer {
       qos.wire_protocol().builtin.initialPeersList.push_back(locator);
     }
     // A participant that starts later is found without delay.
-    qos.wire_protocol().builtin.discovery_config.leaseDuration_announcementperiod = {0, 100'000'000};
+    qos.wire_protocol().builtin.discovery_config.leaseDuration_announcementperiod = {0,
+                                                                                     100'000'000};
     participant_ = DomainParticipantFactory::get_instance()->create_participant(domain, qos);
     publisher_ = participant_->create_publisher(PUBLISHER_QOS_DEFAULT);
     subscriber_ = participant_->create_subscriber(SUBSCRIBER_QOS_DEFAULT);
