@@ -13,7 +13,7 @@ struct LoopReport {
   double seconds = 0.0;      // that it ran
   std::uint64_t cycles = 0;  // that it ran
   std::uint64_t lost = 0;    // periods without a cycle
-  /// Of these, lost because a cycle computed for longer than a period, or waited for a lock.
+  /// The lost periods after a cycle that computed for longer than a period, or waited for a lock.
   std::uint64_t lost_here = 0;
   double longest = 0.0;         // the most processor time of a cycle [s]
   double resident_early = 0.0;  // memory after a tenth of the time, or at the end [MB]

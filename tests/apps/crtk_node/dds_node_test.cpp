@@ -123,6 +123,10 @@ class DdsNode : public testing::Test {
       if (joints_.empty() || joints_.back() != joints.position) joints_.push_back(joints.position);
       ++received_;
     });
+    peer_->read<WirePose>("rt/keepout/PSM1/measured_cp", [this](const WirePose& pose) {
+      const std::lock_guard lock(mutex_);
+      seen_ = pose.position;
+    });
     peer_->read<WireText>(
         "rt/keepout/PSM1/reason",
         [this](const WireText& text) {
@@ -191,8 +195,12 @@ class DdsNode : public testing::Test {
   /// Enables the robot, and engages where it is.
   void engage() {
     set_state("ENABLED", true);
-    ASSERT_TRUE(play([&] { return state_ == "PAUSED"; })) << reason_;
     forget();
+    // The node must know where the robot is now.
+    ASSERT_TRUE(play([&] {
+      return state_ == "PAUSED" && (!robot_joints_.position.empty() || seen_ == robot_.position);
+    })) << reason_;
+    play([] { return false; }, 0.03);
     double asked = 0.0;
     ASSERT_TRUE(play([&] {
       if (state_ != "ENABLED" && now() > asked + 0.3) {
@@ -243,6 +251,7 @@ class DdsNode : public testing::Test {
   std::optional<WireJoints> joint_goal_;
   std::mutex mutex_;
   // With the mutex: what came from the node. Equal consecutive setpoints count once.
+  std::array<double, 3> seen_ = {};  // the last measured position
   std::vector<WirePose> poses_;
   std::vector<std::vector<double>> joints_;
   int received_ = 0;

@@ -174,6 +174,7 @@ class FastDdsPeer {
     qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
     qos.durability().kind = is_kept ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
     qos.history().depth = 10;
+    qos.reliable_writer_qos().times.heartbeatPeriod = {0, 50'000'000};  // default: 3 s
     return publisher_->create_datawriter(topic_of<M>(topic), qos);
   }
   void remove(eprosima::fastdds::dds::DataWriter* writer) { publisher_->delete_datawriter(writer); }

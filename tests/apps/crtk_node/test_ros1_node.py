@@ -97,7 +97,7 @@ class Robot:
 
     def __init__(self):
         self.pose, self.goal, self.setpoints, self.received = None, None, [], 0
-        self.reason, self.state = "", ""
+        self.reason, self.state, self.seen = "", "", None
         self.lock = threading.Lock()
         self.state_out = rospy.Publisher("/PSM1/operating_state", OperatingState, queue_size=1, latch=True)
         self.measured_cp = rospy.Publisher("/PSM1/measured_cp", PoseStamped, queue_size=1, tcp_nodelay=True)
@@ -107,6 +107,7 @@ class Robot:
         self.engage_out = rospy.Publisher("/keepout/PSM1/engage", Bool, queue_size=1)
         self.inputs = [
             rospy.Subscriber("/PSM1/servo_cp", PoseStamped, self.on_servo_cp, tcp_nodelay=True),
+            rospy.Subscriber("/keepout/PSM1/measured_cp", PoseStamped, self.on_measured_cp, tcp_nodelay=True),
             rospy.Subscriber("/keepout/PSM1/reason", String, lambda text: setattr(self, "reason", text.data)),
             rospy.Subscriber("/keepout/PSM1/operating_state", OperatingState, lambda m: setattr(self, "state", m.state)),
         ]
@@ -117,6 +118,9 @@ class Robot:
             point = (pose.pose.position.x, pose.pose.position.y, pose.pose.position.z)
             if not self.setpoints or self.setpoints[-1] != point:
                 self.setpoints.append(point)
+
+    def on_measured_cp(self, pose):
+        self.seen = [pose.pose.position.x, pose.pose.position.y, pose.pose.position.z]
 
     def forget(self):
         with self.lock:
@@ -152,8 +156,10 @@ class Robot:
 
     def engage(self):
         self.set_state("ENABLED")
-        assert self.play(lambda: self.state == "PAUSED"), self.reason
         self.forget()
+        # The node must know where the robot is now.
+        assert self.play(lambda: self.state == "PAUSED" and self.seen == list(self.pose)), self.reason
+        self.play(lambda: False, 0.03)
         asked = [0.0]
 
         def is_engaged():
