@@ -46,7 +46,7 @@ double resident_megabytes() {
 std::string LoopReport::text() const {
   char line[300];
   std::snprintf(line, sizeof line,
-                "%.1f s: %llu cycles, %llu lost, %llu of them by this program; longest %.0f us; "
+                "%.1f s: %llu cycles, %llu lost, %llu of them by this program; longest %.0f µs; "
                 "resident %.1f MB early, %.1f MB at the end",
                 seconds, static_cast<unsigned long long>(cycles),
                 static_cast<unsigned long long>(lost), static_cast<unsigned long long>(lost_here),
