@@ -141,6 +141,12 @@ endforeach()
 forbid(apps/web "${include}\"(bench|compare|live|operators|plan|record|serve|simulate|verify)/" "a page knows no study")
 forbid(apps/web "${include}keepout/(judges|oracle)/" "the oracle is for tests and the command")
 
+# A node uses the library and the names of meshes; its transports use nothing of keepout.
+forbid(apps/crtk_node "${include}(\"(commands\\.h|\\.\\./|(live|operators|page|record|serve|simulate|verify)/)|keepout/(judges|oracle)/)" "a node knows only shared parts of the command")
+foreach(transport ros1 dds)
+  forbid(apps/crtk_node/${transport} "${include}[<\"](keepout/|settings|node|guard_node)" "a transport knows only transport.h")
+endforeach()
+
 # Tests, examples and comparisons are the top layer: no other part may depend on them.
 forbid(examples "${include}(keepout/(fixtures|judges|oracle)/|\"\\.\\./)" "an example is a program of a user")
 forbid(benchmarks/native "${include}\"(\\.\\./|shared/|bench/|verify/)" "experiments know the libraries, and not the command")
