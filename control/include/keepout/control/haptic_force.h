@@ -120,8 +120,8 @@ struct HapticOptions {
   /// The time in which the force fades out when cycles fail, and returns afterwards [s], >= period
   double fade = 0.05;
   double largest_brake = 0.0;  // of the passivity controller [N s / length]; 0: only observes
-  /// Of a tip, in the frame of the mesh: Guide::point. They replace those of the motion constraint;
-  /// if there are none, its own stay.
+  /// Guides of a tip, in the frame of the mesh: Guide::point. They replace the guides of the motion
+  /// constraint. An empty list leaves them.
   std::vector<Guide> guides = {};
 };
 
