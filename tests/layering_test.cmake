@@ -109,13 +109,14 @@ forbid(engine/src/index/wide_bvh "${include}(\\.\\./)+pd_tree/|${include}keepout
 
 # In the command, main and its smaller commands may include every folder. A folder may include only the folders listed
 # here.
-set(folders live operators page record serve shared simulate verify)
+set(folders igtl live operators page record serve shared simulate verify)
 set(known_to_shared)
 set(known_to_page shared)
 set(known_to_record shared page)
 set(known_to_serve shared)
 set(known_to_operators shared simulate verify)  # for audits and scenes
 set(known_to_verify operators shared record)
+set(known_to_igtl shared)
 set(known_to_live shared page verify)
 set(known_to_simulate operators shared record verify)
 foreach(folder IN LISTS folders)
@@ -139,6 +140,12 @@ endforeach()
 # A page uses the library and the mesh diagnostics, but no study.
 forbid(apps/web "${include}\"(bench|compare|live|operators|plan|record|serve|simulate|verify)/" "a page knows no study")
 forbid(apps/web "${include}keepout/(judges|oracle)/" "the oracle is for tests and the command")
+
+# A node uses the library and the names of meshes; its transports use nothing of keepout.
+forbid(apps/crtk_node "${include}(\"(commands\\.h|\\.\\./|(live|operators|page|record|serve|simulate|verify)/)|keepout/(judges|oracle)/)" "a node knows only shared parts of the command")
+foreach(transport ros1 dds)
+  forbid(apps/crtk_node/${transport} "${include}[<\"](keepout/|settings|node|guard_node)" "a transport knows only transport.h")
+endforeach()
 
 # Tests, examples and comparisons are the top layer: no other part may depend on them.
 forbid(examples "${include}(keepout/(fixtures|judges|oracle)/|\"\\.\\./)" "an example is a program of a user")

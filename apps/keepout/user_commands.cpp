@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "igtl/igtl.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/mesh/load_mesh.h"
@@ -188,7 +189,15 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
       ->delimiter(',')
       ->capture_default_str()
       ->needs(robot);
+  CLI::Option* const physics =
+      command
+          .add_flag(
+              "--physics", options.has_physics,
+              "Let servos with limited efforts move the robot's masses (MuJoCo), and compare the "
+              "measured instrument with its setpoint; without --speed at 20, 50 and 100 mm/s")
+          ->needs(robot);
   CLI::Option* const guide = add_guides(command, options.guides);
+  physics->excludes(guide);  // a session does not report the guides of an instrument
   for (const char* other : {"--activation", "--verbose", "--index-cache", "--solver", "--max-step",
                             "--inside", "--tool"}) {
     command.get_option(other)->excludes(robot);
@@ -203,8 +212,10 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
     if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
   }
   command.footer("Ctrl-C ends the run early and reports the finished strokes.");
-  command.final_callback([&options] {
+  command.final_callback([&options, &command] {
     guides_of(options.guides, options.robot.empty() ? Guided::tip : Guided::instrument);
+    if (options.has_physics && command.count("--speed") == 0) options.speeds = {0.04, 0.1, 0.2};
+    if (options.has_physics && command.count("--cycles") == 0) options.strokes.cycles = 0;
     if (options.constraint.tool) options.rules = {options.constraint.activation};
     if (!options.robot.empty()) return;
     if (options.meshes.empty()) throw CLI::RequiredError("MESH");
@@ -253,6 +264,9 @@ std::vector<Command> user_commands(TimeParts time_parts) {
   const auto serve_on_stdin = [](const ServeOptions& options, std::ostream&) {
     return serve(options, std::cerr);
   };
+  const auto igtl_server = [](const IgtlOptions& options, std::ostream&) {
+    return serve_igtl(options, std::cerr);
+  };
   return {command("inspect", add_inspect, inspect),
           command("convert", add_convert, convert),
           command("register", add_register, register_fiducials),
@@ -260,6 +274,7 @@ std::vector<Command> user_commands(TimeParts time_parts) {
           command("simulate", add_simulate, simulate, simulation),
           command("live", add_live, live),
           command("serve", add_serve, serve_on_stdin),
+          command("igtl", add_igtl, igtl_server),
           command("verify", add_verify, verify),
           command("report", add_report, report),
           command("docs", add_docs, docs)};

@@ -104,7 +104,9 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
   const Tremor tremor(0.1, random);
   Pass pass;
   double last = -1.0;
-  for (std::size_t cycle = 0; cycle < settings.cycles; ++cycle) {
+  const auto of_a_pass = static_cast<std::size_t>(std::ceil(pass_lasts / speed));
+  const std::size_t cycles = settings.cycles > 0 ? settings.cycles : of_a_pass;
+  for (std::size_t cycle = 0; cycle < cycles; ++cycle) {
     const double time = speed * static_cast<double>(cycle) / pass_lasts;  // [passes]
     if (std::floor(time) != last) pass = draw_pass(stroke.manner, facing_most.inwards, random);
     last = std::floor(time);

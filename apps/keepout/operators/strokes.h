@@ -19,7 +19,7 @@ namespace keepout::app {
 struct StrokeSettings {
   std::uint64_t seed = 1;
   std::size_t count = 24;
-  std::size_t cycles = 1000;  // of each stroke
+  std::size_t cycles = 1000;  // of each stroke; 0: an instrument goes in and comes back once
 };
 inline constexpr double cycle_seconds = 0.001;
 

@@ -17,18 +17,24 @@
 #include "shared/number_text.h"
 #include "shared/robot_file.h"
 #include "simulate/guide_audit.h"
+#include "simulate/measured_instrument.h"
 #include "simulate/simulated_tool.h"
+#include "simulate/tracking_columns.h"
 #include "verify/campaign.h"
 
 namespace keepout::app {
 namespace {
 
-/// The guard of an instrument.
-enum class Mode : std::uint8_t { certified, linearized, tip_only, none };
+/// The guard of an instrument. `measured`: that of a simulated robot, which follows the setpoints
+/// of the run before it.
+enum class Mode : std::uint8_t { certified, linearized, tip_only, none, measured };
 const std::vector<std::string> mode_names{"certified", "linearized", "tip only", "none"};
 
 /// More bodies than this have no columns on a terminal, only in the record.
 constexpr std::size_t most_printed_bodies = 3;
+
+/// The modes with --physics: the certified step, and the robot that follows it.
+constexpr std::array physical_modes{Mode::certified, Mode::measured};
 
 std::string manner_name(Manner manner, bool is_file) {
   switch (manner) {
@@ -149,7 +155,9 @@ class GuardedInstrument final : public SimulatedTool {
       : options_(options),
         robot_(chosen_robot(options.robot, options.bodies)),
         margin_(options.constraint.options.margin),
-        guides_(guides_of(options.guides, Guided::instrument)) {}
+        guides_(guides_of(options.guides, Guided::instrument)) {
+    if (options.has_physics) measured_.emplace(options.robot, robot_.judged());
+  }
 
   std::shared_ptr<const Mesh> open(const std::filesystem::path& path,
                                    const StopSignal& stop) override {
@@ -170,7 +178,9 @@ class GuardedInstrument final : public SimulatedTool {
     return mesh;
   }
 
-  std::vector<std::string> guards() const override { return mode_names; }
+  std::vector<std::string> guards() const override {
+    return measured_ ? physical_mode_names : mode_names;
+  }
 
   Stroke draw(std::uint64_t number, double speed) override {
     return instrument_stroke(*on_, options_.strokes, number, speed);
@@ -179,10 +189,12 @@ class GuardedInstrument final : public SimulatedTool {
   /// All modes use the same step with different meshes. It has no mesh if only the tip is guarded,
   /// or if there is no guard. Without a mesh it is damped least squares within the joint limits.
   StrokeStart start(const Stroke& stroke, std::size_t guard) override {
-    const auto mode = static_cast<Mode>(guard);
+    const Mode mode = measured_ ? physical_modes[guard] : static_cast<Mode>(guard);
+    is_measured_ = mode == Mode::measured;
     const Scene& scene = on_->scene;
     const Instrument instrument = on_->robot.make(stroke.start.base);
     InstrumentOptions step = options_of({.margin = margin_}, instrument.chain(), stroke.speed);
+    if (measured_) step.period = cycle_seconds;  // the servos run in real time
     if (mode == Mode::linearized) step.certified = CertifiedMotion::linearized;
     joints_.emplace(instrument, std::make_unique<ActiveSet>(), step);
     if (mode != Mode::none) joints_->set_guides(guides_);
@@ -198,6 +210,14 @@ class GuardedInstrument final : public SimulatedTool {
     speed_ = stroke.speed;
     random_ = stroke.random;
     q_ = stroke.start.positions;
+    cycle_ = 0;
+    if (is_measured_) {
+      q_.assign(measured_->first().begin(), measured_->first().end());
+    } else if (measured_) {
+      InstrumentConstraint in_session(instrument, std::make_unique<ActiveSet>(), step);
+      in_session.add_mesh(scene.mesh(), scene.shared_index());
+      measured_->start(std::move(in_session), q_, stroke.speed * fastest_way / cycle_seconds);
+    }
     judge_.emplace(oracle::JudgedScene{.robot = on_->robot.judged(),
                                        .base = stroke.start.base,
                                        .meshes = {{scene.tree()}},
@@ -208,6 +228,22 @@ class GuardedInstrument final : public SimulatedTool {
   }
 
   Cycle follow(const Pose& goal) override {
+    if (is_measured_) {
+      const auto positions = measured_->positions(cycle_);
+      q_.assign(positions.begin(), positions.end());
+      Cycle cycle = judged({});
+      std::ranges::copy(measured_->errors(cycle_++), cycle.errors.begin());
+      return cycle;
+    }
+    if (measured_) {
+      const HapticCycle moved = measured_->follow(goal);
+      q_.assign(measured_->setpoint().begin(), measured_->setpoint().end());
+      Cycle cycle;
+      cycle.outcome = !moved.ok()                  ? Outcome::stopped
+                      : moved.step != Status::free ? Outcome::limited
+                                                   : Outcome::moved_freely;
+      return judged(cycle);
+    }
     ChainState state;
     joints_->instrument().chain().forward_kinematics(q_, state);
     const Pose at = state.flange();
@@ -222,6 +258,11 @@ class GuardedInstrument final : public SimulatedTool {
                     : step.status != Status::free ? Outcome::limited
                                                   : Outcome::moved_freely;
     cycle.guides_inside = guides_inside(step.guides);
+    return judged(cycle);
+  }
+
+  /// Judges the motion of the instrument to its positions.
+  Cycle judged(Cycle cycle) {
     const oracle::RobotVerdict verdict = judge_->judge(q_);
     cycle.is_breach = verdict.limits_broken;
     cycle.is_guide_left = verdict.is_guide_left;
@@ -245,11 +286,12 @@ class GuardedInstrument final : public SimulatedTool {
               {"port", json_of(stroke.start.base.position)},
               {"runs", Json::array()}};
     double told = 0.0;  // shortfall of all guarded modes [mm]
-    for (std::size_t mode = 0; mode < mode_names.size(); ++mode) {
+    const std::vector<std::string> modes = guards();
+    for (std::size_t mode = 0; mode < modes.size(); ++mode) {
       const std::vector<Cycle>& cycles = followed.runs[mode];
       const double least = std::ranges::min_element(cycles, {}, &Cycle::least)->least();
-      if (mode_names[mode] != "none") told += std::max(0.0, margin_ - least);
-      json["runs"].push_back(run_json(mode_names[mode], cycles, joints_->instrument()));
+      if (modes[mode] != "none") told += std::max(0.0, margin_ - least);
+      json["runs"].push_back(run_json(modes[mode], cycles, joints_->instrument()));
     }
     if (told <= told_[manner]) return;
     told_[manner] = told;
@@ -264,7 +306,7 @@ class GuardedInstrument final : public SimulatedTool {
       if (run.stood_still()) {
         still.push_back("'" + run.guard + "' on " + run.mesh + " at speed " + trimmed(run.speed));
       }
-      if (run.guard != mode_names.front()) continue;
+      if (run.guard != guards().front()) continue;
       cycles += run.cycles;
       has_moved |= !run.stood_still();
       broken += run.any.below + run.breaches + run.guides_left;
@@ -277,7 +319,10 @@ class GuardedInstrument final : public SimulatedTool {
     const std::string all_bodies = is_robot_file(options_.robot)
                                        ? "all bodies (" + listed(names(robot_.bodies)) + ")"
                                        : "shaft, wrist and jaw";
-    const Columns<RunTally> columns = mode_columns(robot_.bodies, has_guides);
+    Columns<RunTally> columns = mode_columns(robot_.bodies, has_guides);
+    if (measured_) {
+      columns = tracking_columns(std::move(columns), robot_.bodies, joints_->options());
+    }
     Json record = new_record(
         {.kind = "simulate_robot",
          .command = options_.command,
@@ -291,14 +336,17 @@ class GuardedInstrument final : public SimulatedTool {
              (still.empty() ? ""
                             : " The instrument stood still in all cycles of " + listed(still) +
                                   ": nothing was tested there.") +
+             (measured_ ? sentence_on_tracking(runs, joints_->options().band) : "") +
              sentence_on_untested(untested),
          .machine = this_machine(),
-         .settings = {{"robot", options_.robot},
-                      {"strokes", grouped(options_.strokes.count)},
-                      {"cycles per stroke", grouped(options_.strokes.cycles)},
-                      {"margin", trimmed(margin_) + " mm"},
-                      {"seed", std::to_string(options_.strokes.seed)},
-                      {"index", options_.constraint.index}}});
+         .settings = {
+             {"robot", options_.robot},
+             {"strokes", grouped(options_.strokes.count)},
+             {"cycles per stroke",
+              options_.strokes.cycles == 0 ? "once in and back" : grouped(options_.strokes.cycles)},
+             {"margin", trimmed(margin_) + " mm"},
+             {"seed", std::to_string(options_.strokes.seed)},
+             {"index", options_.constraint.index}}});
     if (has_guides) record["settings"]["guides"] = listed(options_.guides);
     if (!options_.bodies.empty()) record["settings"]["bodies"] = options_.bodies.string();
     if (!options_.notice.empty()) record["account"].push_back(options_.notice);
@@ -310,7 +358,7 @@ class GuardedInstrument final : public SimulatedTool {
     record["meshes"] = std::move(meshes_);
     return {.record = std::move(record),
             .columns = columns,
-            .legend = columns_meaning,
+            .legend = measured_ ? tracking_meaning : columns_meaning,
             .is_broken = broken > 0,
             .is_untested = !has_moved || (has_guides && untested.size() == guides_.size())};
   }
@@ -335,7 +383,10 @@ class GuardedInstrument final : public SimulatedTool {
   Json meshes_ = Json::array();
   std::array<double, manners.size()> told_ = {};  // of the strokes of the last mesh [mm]
   std::optional<InstrumentConstraint> joints_;
-  std::optional<MotionConstraint> tip_;  // guards the tip alone
+  std::optional<MotionConstraint> tip_;         // guards the tip alone
+  std::optional<MeasuredInstrument> measured_;  // with --physics
+  bool is_measured_ = false;                    // the run follows the measured instrument
+  std::size_t cycle_ = 0;                       // of that run
   std::optional<oracle::RobotJudge> judge_;
   Random random_{0};       // of the judge
   std::vector<double> q_;  // joint positions

@@ -53,6 +53,7 @@ struct SimulateOptions {
   std::filesystem::path bodies;  // of the robot of a URDF file
   std::string notice;            // a sentence that the page must show
   std::vector<double> speeds{1.0, 5.0};  // of a robot, in multiples of 0.5 mm and 0.02 rad a cycle
+  bool has_physics = false;              // simulate the robot's masses and servos as well
   std::string called_as = "keepout";     // for the suggestions at the end; empty: no suggestions
   std::string command;                   // the command that repeats the simulation
 };

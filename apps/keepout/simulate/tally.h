@@ -42,6 +42,8 @@ struct Cycle {
   /// The least distance of each body to the surface, measured independently: negative inside, never
   /// negative for a tip beside an open surface, infinite beyond the margin of an instrument. [mm]
   std::array<double, most_bodies> clearances = all_far();
+  /// The largest distance of each body of a measured instrument from its setpoint. [mm]
+  std::array<double, most_bodies> errors{};
   float step_us = 0.0F;  // time of a tip's step; 0 without a guard [µs]
   Outcome outcome = Outcome::moved_freely;
   bool is_breach =
@@ -67,11 +69,13 @@ struct StrokeStart {
 
 /// The cycles in which a body was too close.
 struct BodyTally {
-  std::size_t below = 0;    // closer than required
-  std::size_t in_mesh = 0;  // of these: cycles in which the body reached into the mesh
-  double deepest = 0.0;     // of these: the greatest depth [mm]
+  std::size_t below = 0;      // closer than required
+  std::size_t in_mesh = 0;    // of these: cycles in which the body reached into the mesh
+  double deepest = 0.0;       // of these: the greatest depth [mm]
+  double least = Cycle::far;  // smallest clearance; infinite beyond the margin [mm]
+  double error = 0.0;         // largest distance from the setpoint [mm]
 
-  void add(double clearance, double required);
+  void add(double clearance, double required, double from_setpoint = 0.0);
 };
 
 /// The results of all strokes on a mesh, at one speed, under one guard.

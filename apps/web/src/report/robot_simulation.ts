@@ -102,6 +102,12 @@ function figures(record: RobotSimulationRecord): HTMLElement {
         ...harm("deepest", `/${name}_deepest_mm`),
         content: (row: string) => depthOf(`${row}/${name}_deepest_mm`, radius_mm),
       },
+      ...(valueAt(`/rows/0/${name}_error_mm`) === undefined
+        ? []
+        : [
+            { heading: "least", from: `/${name}_least_mm`, format: millimetres },
+            { heading: "from setpoint", from: `/${name}_error_mm`, format: millimetres },
+          ]),
     ]),
   ];
   return tableSection(
