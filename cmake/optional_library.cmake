@@ -10,6 +10,7 @@ option(KEEPOUT_WITH_CCD "Narrow phase of libccd" ON)
 option(KEEPOUT_WITH_NLOPT "Solvers of NLopt" ON)
 option(KEEPOUT_WITH_OMPL "Validators and a planner for OMPL" ON)
 option(KEEPOUT_WITH_URDF "Reader of robots in URDF" ON)
+option(KEEPOUT_WITH_MUJOCO "Simulate masses and servos of a robot: keepout simulate --physics" ON)
 option(KEEPOUT_WITH_ROS1 "Node for ROS 1: keepout-ros1-node" ON)
 option(KEEPOUT_WITH_DDS "Node for DDS, as of ROS 2: keepout-dds-node" ON)
 # GPL-3: programs that link it may be distributed only under the GPL. Never in the library.

@@ -109,13 +109,14 @@ forbid(engine/src/index/wide_bvh "${include}(\\.\\./)+pd_tree/|${include}keepout
 
 # In the command, main and its smaller commands may include every folder. A folder may include only the folders listed
 # here.
-set(folders live operators page record serve shared simulate verify)
+set(folders igtl live operators page record serve shared simulate verify)
 set(known_to_shared)
 set(known_to_page shared)
 set(known_to_record shared page)
 set(known_to_serve shared)
 set(known_to_operators shared simulate verify)  # for audits and scenes
 set(known_to_verify operators shared record)
+set(known_to_igtl shared)
 set(known_to_live shared page verify)
 set(known_to_simulate operators shared record verify)
 foreach(folder IN LISTS folders)

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "commands.h"
+#include "igtl/igtl.h"
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/mesh/load_mesh.h"
@@ -178,20 +179,25 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
              "Number of strokes of the operator");
   add_number(command, "--cycles", options.strokes.cycles, 10, 1'000'000,
              "Control cycles of each stroke, at 1 kHz");
-  CLI::Option* const robot =
-      command
-          .add_option(
-              "--robot", options.robot,
-              "Drive the instrument of a robot instead: shaft, wrist and jaw, guarded in joint "
-              "space, guarded in part, and unguarded; without MESH on skull, airway and brain")
-          ->check(one_of({"psm"}));
+  CLI::Option* const robot = add_robot(
+      command, options.robot, options.bodies, {"psm"},
+      "Drive the instrument of a robot instead, guarded in joint space, guarded in part, and "
+      "unguarded; without MESH on skull, airway and brain");
   command
       .add_option("--speed", options.speeds, "Speeds, in multiples of 0.5 mm and 0.02 rad a cycle")
       ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
       ->delimiter(',')
       ->capture_default_str()
       ->needs(robot);
+  CLI::Option* const physics =
+      command
+          .add_flag(
+              "--physics", options.has_physics,
+              "Let servos with limited efforts move the robot's masses (MuJoCo), and compare the "
+              "measured instrument with its setpoint; without --speed at 20, 50 and 100 mm/s")
+          ->needs(robot);
   CLI::Option* const guide = add_guides(command, options.guides);
+  physics->excludes(guide);  // a session does not report the guides of an instrument
   for (const char* other : {"--activation", "--verbose", "--index-cache", "--solver", "--max-step",
                             "--inside", "--tool"}) {
     command.get_option(other)->excludes(robot);
@@ -206,8 +212,10 @@ void add_simulate(CLI::App& app, SimulateOptions& options) {
     if (option.name != "margin") command.get_option("--" + option.flag())->excludes(robot);
   }
   command.footer("Ctrl-C ends the run early and reports the finished strokes.");
-  command.final_callback([&options] {
+  command.final_callback([&options, &command] {
     guides_of(options.guides, options.robot.empty() ? Guided::tip : Guided::instrument);
+    if (options.has_physics && command.count("--speed") == 0) options.speeds = {0.04, 0.1, 0.2};
+    if (options.has_physics && command.count("--cycles") == 0) options.strokes.cycles = 0;
     if (options.constraint.tool) options.rules = {options.constraint.activation};
     if (!options.robot.empty()) return;
     if (options.meshes.empty()) throw CLI::RequiredError("MESH");
@@ -256,6 +264,9 @@ std::vector<Command> user_commands(TimeParts time_parts) {
   const auto serve_on_stdin = [](const ServeOptions& options, std::ostream&) {
     return serve(options, std::cerr);
   };
+  const auto igtl_server = [](const IgtlOptions& options, std::ostream&) {
+    return serve_igtl(options, std::cerr);
+  };
   return {command("inspect", add_inspect, inspect),
           command("convert", add_convert, convert),
           command("register", add_register, register_fiducials),
@@ -263,6 +274,7 @@ std::vector<Command> user_commands(TimeParts time_parts) {
           command("simulate", add_simulate, simulate, simulation),
           command("live", add_live, live),
           command("serve", add_serve, serve_on_stdin),
+          command("igtl", add_igtl, igtl_server),
           command("verify", add_verify, verify),
           command("report", add_report, report),
           command("docs", add_docs, docs)};

@@ -15,6 +15,7 @@
 #include "keepout/robot/motion_bounds.h"
 #include "operators/attacker.h"
 #include "plan/planning.h"
+#include "shared/robot_file.h"
 #include "verify/robot/start.h"
 
 namespace keepout::app {
@@ -106,6 +107,16 @@ JointPathVerdict judge_joint_path(oracle::InstrumentOracle& oracle, InstrumentCo
   return verdict;
 }
 
+/// Returns the direction of the tool at a start: the z axis of the flange or, for the robot of a
+/// URDF file, the axis of the last body.
+Vec3 direction_of_tool(const RobotUnderTest& robot, const RobotStart& start, const Pose& flange) {
+  if (!is_robot_file(robot.name)) return flange.rotation.col(2);
+  const auto links = oracle::place(robot.judged(), start.base, start.positions);
+  const oracle::Segment axis = axis_of(robot.judged().bodies.back(), links);
+  const double length = (axis.to - axis.from).norm();
+  return length > 0.0 ? Vec3((axis.to - axis.from) / length) : Vec3(flange.rotation.col(2));
+}
+
 /// Moves an instrument from a start by a simulated operator. Returns a problem if it gets far
 /// enough and the straight motion there passes through the mesh.
 std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& start,
@@ -122,7 +133,7 @@ std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& sta
   ChainState state;
   instrument.chain().forward_kinematics(start.positions, state);
   const Pose first = state.flange();
-  const Vec3 along = first.rotation.col(2);
+  const Vec3 along = direction_of_tool(on.robot, start, first);
 
   PlanningProblem problem{.start = start.positions, .base = start.base};
   double farthest = least_advance;
@@ -153,7 +164,8 @@ std::optional<PlanningProblem> led_by_hand(RobotScene& on, const RobotStart& sta
 class InstrumentPlanning final : public Planning {
  public:
   InstrumentPlanning(const PlanOptions& options, Scene scene)
-      : options_(&options), on_{std::move(scene), options.margin, robot_named(options.robot)} {}
+      : options_(&options),
+        on_{std::move(scene), options.margin, chosen_robot(options.robot, options.bodies)} {}
 
   const Scene& scene() const override { return on_.scene; }
 
@@ -181,7 +193,7 @@ class InstrumentPlanning final : public Planning {
     }
     if (problems.size() == count) return problems;
     throw Error(scene().name() + ": only " + std::to_string(problems.size()) + " of " +
-                std::to_string(count) + " problems were found for " + std::string(on_.robot.name) +
+                std::to_string(count) + " problems were found for " + on_.robot.name +
                 "; ask for fewer --problems, or for a smaller --margin");
   }
 

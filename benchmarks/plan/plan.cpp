@@ -26,6 +26,7 @@
 #include "shared/named_mesh.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
+#include "shared/robot_file.h"
 #include "shared/stop_signal.h"
 
 namespace keepout::app {
@@ -236,7 +237,8 @@ void run_all(const PlanOptions& options, Planning& planning, Progress& progress,
 }  // namespace
 
 int plan(const PlanOptions& options, std::ostream& out) {
-  OutputFiles outputs = options.files.open(options.meshes);
+  OutputFiles outputs =
+      options.files.open(options.meshes, "MESH", robot_inputs(options.robot, options.bodies));
   // After the files: if a signal ends the process, they are removed.
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   std::vector<std::filesystem::path> meshes = options.meshes;

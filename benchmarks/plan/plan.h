@@ -23,9 +23,10 @@ struct PlanOptions {
   std::vector<std::filesystem::path> meshes;  // at most one; empty: the sample meshes airway and
                                               // skull
   bool inside = false;                        // plan within the given mesh, not around it
-  std::string robot;  // one of robots_under_test(), for a plan in joint space; empty: for a tip
-  std::size_t problems = 12;  // for each mesh
-  std::size_t seeds = 10;     // with a robot: runs of each problem under each checker
+  std::string robot;             // see chosen_robot, for a plan in joint space; empty: for a tip
+  std::filesystem::path bodies;  // of the robot of a URDF file
+  std::size_t problems = 12;     // for each mesh
+  std::size_t seeds = 10;        // with a robot: runs of each problem under each checker
   std::uint64_t seed = 1;
   std::string planner = "RRTConnect";
   double seconds = 5.0;                                  // of a planner for a problem

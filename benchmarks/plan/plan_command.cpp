@@ -22,10 +22,8 @@ void add_plan(CLI::App& app, PlanOptions& options) {
               "Mesh file in mm, or a sample mesh; default: airway (within) and skull (around)")
           ->expected(1);
   CLI::Option* robot =
-      command
-          .add_option("--robot", options.robot,
-                      "Plan for a whole instrument, in joint space, always around the meshes")
-          ->check(one_of(names(robots_under_test())));
+      add_robot(command, options.robot, options.bodies, names(robots_under_test()),
+                "Plan for a whole instrument, in joint space, always around the meshes");
   command.add_flag("--inside", options.inside, "Plan within MESH, not around it")
       ->needs(mesh)
       ->excludes(robot);

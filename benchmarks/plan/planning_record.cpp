@@ -178,6 +178,7 @@ Json record_of(const PlanOptions& options, std::span<const std::unique_ptr<Plann
   settings.update(is_instrument ? Json{{"robot", options.robot},
                                        {"runs of each problem", std::to_string(options.seeds)}}
                                 : Json{{"motion sphere radius", trimmed(options.radius) + " mm"}});
+  if (!options.bodies.empty()) settings["bodies"] = options.bodies.string();
   settings["seed"] = std::to_string(options.seed);
   Json record = new_record(
       {.kind = is_instrument ? "plan_robot" : "plan",

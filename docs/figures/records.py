@@ -22,7 +22,8 @@ MOST_DAYS = 30
 MOST_LINES = 5000
 
 # Records without printed times. They are valid as long as all steps are bitwise the same.
-RESULTS = {"certified_excess", "moving_meshes", "simulate_psm", "simulate_psm_20", "verify_guides",
+RESULTS = {"certified_excess", "moving_meshes", "simulate_physics", "simulate_psm",
+           "simulate_psm_20", "verify_guides",
            "verify_linearized", "verify_psm", "verify_scenarios", "verify_tip"}
 
 TIP = ["engine", "solvers", "factory"]
@@ -65,7 +66,7 @@ def merged(found):
     first = found[0]
     for other in found[1:]:
         first["rows"] += other["rows"]
-        for key, value in other["total"].items():
+        for key, value in other.get("total", {}).items():
             if isinstance(value, (int, float)):
                 first["total"][key] = (min if key.startswith("least") else max if key.startswith("deepest")
                                        else int.__add__)(first["total"][key], value)

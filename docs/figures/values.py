@@ -5,6 +5,8 @@ Each function handles one kind of record, and yields names and texts. The full n
 record, a dot, and the name that the function yields.
 """
 
+import math
+
 MEASURED_BY = {}
 
 
@@ -99,9 +101,43 @@ def simulate(record):
     yield "cycles", number(record["runs"][0]["summary"]["cycles"])
 
 
+def rounded_up(mm):
+    return "-" if mm is None else f"{math.ceil(100 * mm) / 100:.2f}"
+
+
+def tracking(record, bodies):
+    """The figures of `simulate --physics`: the setpoint beside the measured instrument."""
+    measured = [row for row in record["rows"] if row["mode"] == "measured"]
+    yield "tracking", table(
+        ["speed, mm/s", *(f"{body}: error" for body in bodies), *(f"{body}: margin" for body in bodies)],
+        [[f"{speed:g}", *(f"{max(row[f'{body}_error_mm'] for row in rows):.3f}" for body in bodies),
+          *(rounded_up(max(row[f"{body}_asks_mm"] for row in rows)) for body in bodies)]
+         for speed, rows in grouped(measured, "mm_per_s").items()])
+    cells = []
+    for (mesh, speed, margin), rows in sorted(grouped(record["rows"], "mesh", "mm_per_s", "margin_mm").items()):
+        setpoint, robot = (next(row for row in rows if row["mode"] == mode) for mode in ("setpoint", "measured"))
+        nearest = [setpoint[f"{body}_least_mm"] for body in bodies if setpoint[f"{body}_least_mm"] is not None]
+        cells.append([mesh, f"{speed:g}", f"{margin:g}", f"{min(nearest):.3f}" if nearest else "-",
+                      *("-" if robot[f"{body}_least_mm"] is None else f"{robot[f'{body}_least_mm']:.3f}"
+                        for body in bodies), f"{robot['in_mesh']:,}"])
+    yield "table", table(["mesh", "mm/s", "margin", "setpoint", *bodies, "cycles in the mesh"], cells)
+    setpoint = [row for row in record["rows"] if row["mode"] == "setpoint"]
+    for what in ("cycles", "below"):
+        yield what, f"{total(setpoint, what):,}"
+    yield "in_mesh", f"{total(measured, 'in_mesh'):,}"
+    # The certified clearance minus the smallest measured one.
+    lost = [row["margin_mm"] - (row[f"{body}_asks_mm"] - row[f"{body}_error_mm"]) - row[f"{body}_least_mm"]
+            for row in measured for body in bodies if row[f"{body}_least_mm"] is not None]
+    yield "lost_mm", rounded_up(max(lost, default=None))
+    yield "strokes", record["settings"]["strokes"]
+
+
 @of_kind("simulate_robot")
 def simulate_robot(record):
     bodies = [body["name"] for body in record["bodies"]]
+    if "margin_mm" in record["rows"][0]:
+        yield from tracking(record, bodies)
+        return
     rows = []
     for row in record["rows"]:
         cells = []

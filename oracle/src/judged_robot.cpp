@@ -21,6 +21,19 @@ void screw(LinkFrame& frame, int axis, Real angle, Real way) {
   frame.axes.col(v) = std::cos(angle) * frame.axes.col(v) - std::sin(angle) * before;
 }
 
+/// Rotates a frame about an axis, which is given in this frame, and moves it along that axis.
+/// Source: Rodrigues' formula.
+void screw(LinkFrame& frame, const Vec3& axis, Real angle, Real way) {
+  const Eigen::Matrix<Real, 3, 1> unit = axis.cast<Real>();
+  frame.origin += way * (frame.axes * unit);
+  Eigen::Matrix<Real, 3, 3> across;
+  across << 0, -unit.z(), unit.y(), unit.z(), 0, -unit.x(), -unit.y(), unit.x(), 0;
+  const Eigen::Matrix<Real, 3, 3> turn = Eigen::Matrix<Real, 3, 3>::Identity() +
+                                         std::sin(angle) * across +
+                                         (1 - std::cos(angle)) * across * across;
+  frame.axes = (frame.axes * turn).eval();
+}
+
 }  // namespace
 
 std::vector<LinkFrame> place(const JudgedRobot& robot, const Pose& base,
@@ -33,9 +46,16 @@ std::vector<LinkFrame> place(const JudgedRobot& robot, const Pose& base,
     const TableRow& row = robot.table[k];
     const Real q = positions[k];
     LinkFrame link = links.back();
+    link.origin += link.axes * row.before.position.cast<Real>();
+    link.axes = (link.axes * row.before.rotation.cast<Real>()).eval();
     screw(link, 0, row.alpha_quarters * right_angle, row.a);
-    screw(link, 2, row.theta_quarters * right_angle + (row.slides ? 0 : q),
-          row.d + (row.slides ? q : 0));
+    if (row.axis == Vec3::UnitZ()) {
+      screw(link, 2, row.theta_quarters * right_angle + (row.slides ? 0 : q),
+            row.d + (row.slides ? q : 0));
+    } else {
+      screw(link, 2, row.theta_quarters * right_angle, row.d);
+      screw(link, row.axis, row.slides ? 0 : q, row.slides ? q : 0);
+    }
     links.push_back(link);
   }
   return links;

@@ -2,15 +2,22 @@
 #include "keepout/robot/instrument.h"
 
 #include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "arrays.h"
 #include "bindings.h"
+#include "keepout/error.h"
 #include "keepout/robot/instrument_constraint.h"
+#if KEEPOUT_HAS_URDF
+#include "keepout/urdf/read_robot.h"
+#endif
 
 namespace keepout::python {
 namespace {
@@ -21,6 +28,22 @@ Body body_of(std::string name, const py::iterable& points, double radius) {
     body.points.push_back(link_point(given, "points[" + std::to_string(body.points.size()) + "]"));
   }
   return body;
+}
+
+Instrument instrument_of_files([[maybe_unused]] const std::filesystem::path& path,
+                               [[maybe_unused]] const std::optional<std::filesystem::path>& bodies,
+                               [[maybe_unused]] const std::string& base,
+                               [[maybe_unused]] const std::string& tip,
+                               [[maybe_unused]] double scale) {
+#if KEEPOUT_HAS_URDF
+  UrdfRobot read = read_robot(path, bodies.value_or(""), base, tip, scale);
+  for (const std::string& notice : read.notices) warn(notice);
+  return std::move(read.instrument);
+#else
+  throw Error(
+      "read_robot: this build cannot read URDF; install liburdfdom-dev and liburdfdom-headers-dev, "
+      "and rebuild the module");
+#endif
 }
 
 constexpr const char* body_doc =
@@ -80,6 +103,16 @@ void bind_instrument(py::module_& module) {
         return py::str("<keepout.Instrument: {} bodies on {} joints>")
             .format(self.bodies().size(), self.chain().size());
       });
+  module.def(
+      "read_robot", &instrument_of_files, py::arg("path"), py::arg("bodies") = py::none(),
+      py::kw_only(), py::arg("base") = "", py::arg("tip") = "", py::arg("scale") = 1000.0,
+      "Reads an Instrument from a URDF file and a JSON file of its bodies: docs/robots.md. Raises\n"
+      "Error if this build cannot read URDF.\n"
+      "\n"
+      "bodies: None, or a file without bodies: each collision element becomes a body, a capsule\n"
+      "that contains it. A Python warning names the links that no body guards.\n"
+      "base, tip: as in read_chain; empty for those of the JSON file.\n"
+      "scale: the length of a meter in the unit of the mesh.");
   module.def(
       "free_ball", &free_ball, py::arg("radius"),
       "Returns an Instrument for a ball-shaped tool tip: a ball on three prismatic joints along\n"

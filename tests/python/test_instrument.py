@@ -196,6 +196,26 @@ def test_chains_of_tables_and_files_are_the_same(tmp_path):
             keepout.read_chain(path)
 
 
+def test_a_robot_is_read_with_the_bodies_of_a_file_or_with_its_shapes(tmp_path):
+    urdf = robots / "six_joint_arm.urdf"
+    try:
+        arm = keepout.read_robot(urdf, robots / "six_joint_arm.json")
+    except keepout.Error as error:
+        assert "install liburdfdom-dev" in str(error)
+        pytest.skip("this build reads no URDF")
+    assert [body.name for body in arm.bodies] == ["upper_arm", "forearm", "wrist", "holder", "bit"]
+    np.testing.assert_array_equal(arm.chain.base[:3, 3], [0, 0, 200])
+    chain = keepout.read_chain(urdf, base="base_link", tip="tip")
+    q = np.array([0.1, -0.7, 1.4, 0.2, -0.8, 0.3])
+    np.testing.assert_allclose(arm.chain.forward_kinematics(q), at(0, 0, 200) @ chain.forward_kinematics(q), atol=1e-9)
+    with pytest.warns(UserWarning, match="link 'wrist_1' has no collision element"):
+        shapes = keepout.read_robot(urdf, base="base_link", tip="tip")
+    assert [body.name for body in shapes.bodies][-2:] == ["holder", "bit"]
+    (tmp_path / "bad.json").write_text('{"bodies": [{"name": "a", "radius": 1}]}')
+    with pytest.raises(keepout.Error, match="bad.json: .*did you mean \"radius_mm\""):
+        keepout.read_robot(urdf, tmp_path / "bad.json")
+
+
 @pytest.mark.parametrize(
     "wrong, says",
     [

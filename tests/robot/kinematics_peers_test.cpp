@@ -143,9 +143,9 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 /// Compares the poses of all links, and the Jacobian of the flange. MuJoCo merges the flange into
 /// the last link.
-void compare_with_mujoco(const Chain& ours, const std::string& name) {
+void compare_with_mujoco(const Chain& ours, const std::string& name, const char* format = ".urdf") {
   char message[1000] = "";
-  const std::string file = std::string(KEEPOUT_ROBOTS) + "/" + name + ".urdf";
+  const std::string file = std::string(KEEPOUT_ROBOTS) + "/" + name + format;
   const std::unique_ptr<mjModel, decltype(&mj_deleteModel)> model(
       mj_loadXML(file.c_str(), nullptr, message, sizeof message), mj_deleteModel);
   ASSERT_NE(model, nullptr) << message;
@@ -188,6 +188,7 @@ void compare_with_mujoco(const Chain& ours, const std::string& name) {
 TEST(KinematicsPeers, EachLinkIsWhereMuJoCoPutsThatOfTheUrdfAndMovesSo) {
 #ifdef KEEPOUT_HAS_MUJOCO
   compare_with_mujoco(psm().chain(), "psm");
+  compare_with_mujoco(psm().chain(), "psm_dynamics", ".xml");  // of --physics
   compare_with_mujoco(seven_joint_arm().chain(), "seven_joint_arm");
 #else
   GTEST_SKIP() << "libmujoco-dev was not there";

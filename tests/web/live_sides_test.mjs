@@ -67,6 +67,20 @@ const bothRun = () =>
     { timeout: 150_000 },
   );
 
+/** Returns the section in each scene: its magnification, and if the place beside and above the point is solid. */
+const sections = () =>
+  tab.$$eval("#sides .side", (sides) => {
+    const gaps = sides.map((side) => Number.parseFloat(side.querySelector(".gap").textContent));
+    return sides.map((side, i) => {
+      const { width, height } = side.querySelector("canvas");
+      const pen = side.querySelector("canvas").getContext("2d");
+      const y =
+        height / 2 + (((i === 0 ? 0.2 : -0.2) * gaps[i]) / Math.max(...gaps) - 0.07) * width;
+      const [, , , opacity] = pen.getImageData(0.3 * width, y, 1, 1).data;
+      return { times: side.querySelector("figcaption b").textContent, isSolid: opacity > 0 };
+    });
+  });
+
 /** Saves both paths of a mesh. Returns them: that of the rule of Li et al., and the certified one. */
 async function savedPaths(mesh) {
   await tab.$eval("#sides-save", (button) => button.click()); // on a phone it is not shown
@@ -169,9 +183,22 @@ test("counterexamples: the rule of Li et al. goes through, the certified one sta
     const [left, right] = await heads();
     assert.match(left, /^goes through the surface; −?\d\.\d{3} mm/);
     assert.match(right, /^stays out; \d\.\d{3} mm/);
-    assert.match(await textOf(tab, "#sides-words"), /asks for \d\.\d\d mm .* margin is 0\.001 mm/);
+    assert.match(await textOf(tab, "#sides-words"), /asks for \d\.\d\d mm .* margin of 0\.001 mm/);
+    const [through, out] = await sections();
+    assert.equal(through.times, out.times);
+    assert.deepEqual([through.isSolid, out.isSolid], [true, false], name);
     await tab.screenshot({ path: join(folder, `${name}.png`) });
   }
+  // In motion, no result is shown before the tool has arrived.
+  await tab.emulateMediaFeatures([{ name: "prefers-reduced-motion", value: "no-preference" }]);
+  await tab.waitForFunction(
+    () =>
+      [...document.querySelectorAll("#sides .chip")].every(
+        (chip) => chip.textContent === "moving",
+      ) && [...document.querySelectorAll("#sides .magnifier")].every(({ hidden }) => hidden),
+  );
+  await tab.emulateMediaFeatures([{ name: "prefers-reduced-motion", value: "reduce" }]);
+  await tab.waitForSelector("#sides .magnifier:not([hidden])");
   const before = await picture();
   await tab.mouse.move(box.x + 100, box.y + 200);
   await tab.mouse.down();

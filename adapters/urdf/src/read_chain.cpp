@@ -9,7 +9,7 @@
 #include "keepout/error.h"
 #include "keepout/option_table.h"
 #include "keepout/registry.h"
-#include "urdf_description.h"
+#include "urdf_chain.h"
 #include "xml_bounds.h"
 
 namespace keepout {
@@ -21,12 +21,6 @@ constexpr std::size_t most_listed = 20;  // names in a message
 
 Vec3 vec3(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
-Pose pose(const urdf::Pose& told, double scale) {
-  const urdf::Rotation& r = told.rotation;
-  return {scale * vec3(told.position),
-          Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix()};
-}
-
 std::string listed(std::vector<std::string_view> names) {
   std::sort(names.begin(), names.end());
   std::string text;
@@ -34,16 +28,6 @@ std::string listed(std::vector<std::string_view> names) {
     text += (i > 0 ? ", " : "") + std::string(names[i]);
   }
   return names.size() > most_listed ? text + " and others" : text;
-}
-
-urdf::LinkConstSharedPtr link_named(const urdf::ModelInterface& model, std::string_view wanted) {
-  if (auto link = model.getLink(std::string(wanted))) return link;
-  std::vector<std::string_view> known;
-  for (const auto& entry : model.links_) known.push_back(entry.first);
-  const auto meant = nearest_name(wanted, known);
-  throw Error(
-      "there is no link '" + std::string(wanted) + "'; " +
-      (meant ? "did you mean '" + std::string(*meant) + "'?" : "name one of " + listed(known)));
 }
 
 urdf::LinkConstSharedPtr only_leaf(const urdf::LinkConstSharedPtr& base) {
@@ -124,6 +108,24 @@ class JointReader {
   double scale_;
 };
 
+}  // namespace
+
+Pose pose_of(const urdf::Pose& told, double scale) {
+  const urdf::Rotation& r = told.rotation;
+  return {scale * vec3(told.position),
+          Eigen::Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix()};
+}
+
+urdf::LinkConstSharedPtr link_named(const urdf::ModelInterface& model, std::string_view wanted) {
+  if (auto link = model.getLink(std::string(wanted))) return link;
+  std::vector<std::string_view> known;
+  for (const auto& entry : model.links_) known.push_back(entry.first);
+  const auto meant = nearest_name(wanted, known);
+  throw Error(
+      "there is no link '" + std::string(wanted) + "'; " +
+      (meant ? "did you mean '" + std::string(*meant) + "'?" : "name one of " + listed(known)));
+}
+
 UrdfChain chain_of(const UrdfDescription& read, std::string_view base, std::string_view tip,
                    double scale) {
   if (!(scale > 0.0 && std::isfinite(scale))) {
@@ -141,7 +143,7 @@ UrdfChain chain_of(const UrdfDescription& read, std::string_view base, std::stri
       .robot = read.model->getName(), .joints = {}, .flange = {}, .links = {root->name}};
   for (auto joint = way.rbegin(); joint != way.rend(); ++joint) {
     const JointReader reader(**joint, *read.joints.at((*joint)->name), scale);
-    chain.flange = chain.flange * pose((*joint)->parent_to_joint_origin_transform, scale);
+    chain.flange = chain.flange * pose_of((*joint)->parent_to_joint_origin_transform, scale);
     if ((*joint)->type == urdf::Joint::FIXED) continue;
     chain.joints.push_back(reader.read(chain.flange));
     chain.links.push_back((*joint)->child_link_name);
@@ -157,8 +159,6 @@ UrdfChain chain_of(const UrdfDescription& read, std::string_view base, std::stri
   return chain;
 }
 
-}  // namespace
-
 UrdfChain parse_chain(std::string_view text, std::string_view name, std::string_view base,
                       std::string_view tip, double scale) {
   try {
@@ -168,12 +168,12 @@ UrdfChain parse_chain(std::string_view text, std::string_view name, std::string_
   }
 }
 
-UrdfChain read_chain(const std::filesystem::path& file, std::string_view base, std::string_view tip,
-                     double scale) {
+std::string contents_of(const std::filesystem::path& file, std::size_t most,
+                        std::string_view kind) {
   std::error_code none;  // such a path cannot be opened either
   const std::filesystem::file_status status = std::filesystem::status(file, none);
   if (std::filesystem::is_directory(status)) {
-    throw Error(file.string() + ": is a directory; name a URDF file in it");
+    throw Error(file.string() + ": is a directory; name a " + std::string(kind) + " file in it");
   }
   // Opening a pipe might never return.
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
@@ -181,13 +181,20 @@ UrdfChain read_chain(const std::filesystem::path& file, std::string_view base, s
   }
   std::ifstream stream(file, std::ios::binary);
   // One byte more than the limit, to detect files that are too large or endless.
-  std::string text(most_bytes_of_urdf + 1, '\0');
+  std::string text(most + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.gcount() == 0) {
-    throw Error(file.string() + ": cannot read it, or it is empty; name a file of URDF");
+    throw Error(file.string() + ": cannot read it, or it is empty; name a file of " +
+                std::string(kind));
   }
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  return parse_chain(text, file.string(), base, tip, scale);
+  return text;
+}
+
+UrdfChain read_chain(const std::filesystem::path& file, std::string_view base, std::string_view tip,
+                     double scale) {
+  return parse_chain(contents_of(file, most_bytes_of_urdf, "URDF"), file.string(), base, tip,
+                     scale);
 }
 
 }  // namespace keepout

@@ -82,6 +82,29 @@ void require_tree(const std::map<std::string, const TiXmlElement*>& joints) {
   }
 }
 
+/// Returns the text with cylinders in place of capsules, which urdfdom does not know: it would
+/// reject the robot. The chain does not depend on shapes.
+std::string without_capsules(const std::string& xml, const TiXmlDocument& document) {
+  if (xml.find("<capsule") == std::string::npos) return xml;
+  TiXmlDocument copy(document);
+  TiXmlElement* const robot = copy.RootElement();
+  for (TiXmlElement* link = robot->FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link")) {
+    for (TiXmlElement* part = link->FirstChildElement(); part != nullptr;
+         part = part->NextSiblingElement()) {
+      TiXmlElement* const geometry = part->FirstChildElement("geometry");
+      if (geometry == nullptr) continue;
+      if (TiXmlElement* const capsule = geometry->FirstChildElement("capsule")) {
+        capsule->SetValue("cylinder");
+      }
+    }
+  }
+  TiXmlPrinter printer;
+  printer.SetStreamPrinting();
+  copy.Accept(&printer);
+  return printer.Str();
+}
+
 }  // namespace
 
 UrdfDescription describe(std::string_view text) {
@@ -116,7 +139,7 @@ UrdfDescription describe(std::string_view text) {
 
   HeardMessages messages;
   try {
-    read.model = urdf::parseURDF(xml);
+    read.model = urdf::parseURDF(without_capsules(xml, *read.document));
   } catch (const std::exception& thrown) {
     messages.text = thrown.what();
   }

@@ -2,6 +2,7 @@
 #include "live/live.h"
 
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,8 @@
 #include "shared/number_text.h"
 #include "shared/output_file.h"
 #include "shared/progress.h"
+#include "shared/robot_file.h"
+#include "simulate/simulated_tool.h"
 #include "verify/robot/start.h"
 
 namespace keepout::app {
@@ -173,6 +176,36 @@ void print_page(std::ostream& out, const LiveOptions& options, const std::string
       << " Drag elsewhere to turn the view, and use the wheel to zoom.\n";
 }
 
+constexpr const char* recorded_only =
+    "This page shows a recorded run only: the tool in it cannot be dragged. The engine inside a "
+    "live "
+    "page has the instrument of psm, and not that of a URDF file.";
+
+/// Writes the page of a recorded run with the robot of a URDF file. Returns the exit status.
+int record_run(const LiveOptions& options, std::ostream& out) {
+  SimulateOptions run;
+  run.meshes = options.meshes;
+  run.load = options.load;
+  run.files.page = options.page;
+  run.constraint = options.constraint;
+  run.guides = options.guides;
+  run.strokes.count = manners.size();
+  run.make_instrument = make_guarded_instrument;
+  run.robot = options.robot;
+  run.bodies = options.bodies;
+  run.speeds = {1.0};
+  run.notice = recorded_only;
+  run.called_as = "";
+  run.command = options.command;
+  const int status = simulate(run, out);
+  print_wrapped(out, recorded_only);
+  if (status != exit_interrupted && options.opening == Opening::by_the_desktop &&
+      !entry_of_open_file(options.page)) {
+    open_in_browser(file_url(options.page));
+  }
+  return status;
+}
+
 }  // namespace
 
 void add_live(CLI::App& app, LiveOptions& options) {
@@ -184,11 +217,10 @@ void add_live(CLI::App& app, LiveOptions& options) {
       ->type_name("")
       ->capture_default_str();
   add_load_options(command, options.load);
-  CLI::Option* const robot =
-      command
-          .add_option("--robot", options.robot,
-                      "Drag the jaw of a whole instrument, in joint space, instead of a ball")
-          ->check(one_of({"psm"}));
+  CLI::Option* const robot = add_robot(
+      command, options.robot, options.bodies, {"psm"},
+      "Drag the jaw of a whole instrument, in joint space, instead of a ball; the page of a URDF "
+      "file shows a recorded run");
   command.add_option("--out", options.page, "Where to write the page")
       ->type_name("PAGE.html")
       ->check(name_of_page())
@@ -205,10 +237,15 @@ void add_live(CLI::App& app, LiveOptions& options) {
   add_option_of(command, "tool_radius", step)->excludes(robot);
   add_option_of(command, "margin", step);
   add_option_of(command, "radius", step)->excludes(robot);
-  add_length(command, "--max-step", options.max_step, Zero::refused,
-             "Longest motion of the tool in a cycle of 1 ms");
+  const CLI::Option* const max_step =
+      add_length(command, "--max-step", options.max_step, Zero::refused,
+                 "Longest motion of the tool in a cycle of 1 ms");
   add_guides(command, options.guides);
-  command.final_callback([&options] {
+  command.final_callback([&options, max_step] {
+    if (is_robot_file(options.robot) && !max_step->empty()) {
+      throw CLI::ValidationError(
+          "--max-step", "the page of a URDF file shows a recorded run: use keepout simulate");
+    }
     guides_of(options.guides, options.robot.empty() ? Guided::tip : Guided::instrument);
   });
   command.footer(
@@ -217,7 +254,9 @@ void add_live(CLI::App& app, LiveOptions& options) {
       "share it only if\nyou may share them.");
 }
 
-void live(const LiveOptions& options, std::ostream& out) {
+int live(const LiveOptions& options, std::ostream& out) {
+  if (is_robot_file(options.robot)) return record_run(options, out);
+  if (!options.robot.empty()) chosen_robot(options.robot, options.bodies);  // refuses --bodies
   if (options.robot.empty())
     require_within_reach(options.max_step, options.constraint.options.radius);
   const std::filesystem::path template_file = page_template_file("live.html");
@@ -242,10 +281,11 @@ void live(const LiveOptions& options, std::ostream& out) {
   write_anatomy(page, options, anatomy);
   page << parts.after;
   outputs.commit();
-  if (entry_of_open_file(options.page)) return;  // a browser cannot open it
+  if (entry_of_open_file(options.page)) return EXIT_SUCCESS;  // a browser cannot open it
   const std::string url = file_url(options.page);
   const bool opened = options.opening == Opening::by_the_desktop && open_in_browser(url);
   print_page(out, options, url, std::filesystem::file_size(options.page), opened);
+  return EXIT_SUCCESS;
 }
 
 }  // namespace keepout::app

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -65,6 +66,7 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
   Random random(of_seed.bits() ^ number);
   Stroke stroke{.manner = manners[number % manners.size()], .speed = speed, .number = number};
   const bool is_leaning = stroke.manner == Manner::lean;
+  const bool has_port = on.robot.has_port();
   std::optional<RobotStart> start;
   Facing facing_most;
   for (int i = 0; i < (is_leaning ? starts_to_lean : 1); ++i) {
@@ -72,7 +74,11 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
     if (!drawn) break;
     const oracle::JudgedRobot judged = on.robot.judged();
     const auto links = oracle::place(judged, drawn->base, drawn->positions);
-    const auto& body = is_leaning ? judged.bodies.front() : judged.bodies.back();
+    // Without a port, it leans with the body before the tool.
+    const std::size_t before_tool =
+        judged.bodies.size() - std::min<std::size_t>(2, judged.bodies.size());
+    const auto& leaning = judged.bodies[has_port ? 0 : before_tool];
+    const auto& body = is_leaning ? leaning : judged.bodies.back();
     const Facing one =
         facing(on.scene, axis_of(body, links), is_leaning ? 0.5 : 1.0, is_leaning ? 0.95 : 1.0);
     if (start && one.distance >= facing_most.distance) continue;
@@ -92,13 +98,15 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
   const Pose home = state.flange();
   const Vec3& port = start->base.position;
   const double lever =
-      is_leaning ? (home.position - port).norm() / (facing_most.at - port).norm() : 1.0;
+      is_leaning && has_port ? (home.position - port).norm() / (facing_most.at - port).norm() : 1.0;
   const double off = random.uniform(0.0, 2.0);
   const Vec3 bias = off * random.direction();
   const Tremor tremor(0.1, random);
   Pass pass;
   double last = -1.0;
-  for (std::size_t cycle = 0; cycle < settings.cycles; ++cycle) {
+  const auto of_a_pass = static_cast<std::size_t>(std::ceil(pass_lasts / speed));
+  const std::size_t cycles = settings.cycles > 0 ? settings.cycles : of_a_pass;
+  for (std::size_t cycle = 0; cycle < cycles; ++cycle) {
     const double time = speed * static_cast<double>(cycle) / pass_lasts;  // [passes]
     if (std::floor(time) != last) pass = draw_pass(stroke.manner, facing_most.inwards, random);
     last = std::floor(time);

@@ -19,7 +19,7 @@ namespace keepout::app {
 struct StrokeSettings {
   std::uint64_t seed = 1;
   std::size_t count = 24;
-  std::size_t cycles = 1000;  // of each stroke
+  std::size_t cycles = 1000;  // of each stroke; 0: an instrument goes in and comes back once
 };
 inline constexpr double cycle_seconds = 0.001;
 
@@ -67,9 +67,10 @@ std::function<Stroke()> tip_strokes(Audit& audit, const StrokeSettings& settings
 /// The manner `push` moves the tip to 2 to 12 mm below the nearest place of the surface. There the
 /// tip moves up to 20 mm to and fro along the surface. The manner `lean` does the same with the
 /// axis of the shaft, about the port. It uses the place nearest to the surface on the shaft's last
-/// half. It draws a dozen starts and takes the one whose shaft is nearest. The manner `rotate`
-/// brings the tip to the surface, or up to 3 mm below. It turns the wrist by 0.5 to 1.2 rad to and
-/// fro about a random axis. In the other strokes the turn is at most 0.2 rad.
+/// half. It draws a dozen starts and takes the one whose shaft is nearest. A robot without a port
+/// leans with the body before its tool, which moves as the tip does. The manner `rotate` brings the
+/// tip to the surface, or up to 3 mm below. It turns the wrist by 0.5 to 1.2 rad to and fro about a
+/// random axis. In the other strokes the turn is at most 0.2 rad.
 ///
 /// The commanded position has a bias of up to 2 mm, drawn once for the stroke, and a tremor of 0.1
 /// mm at 8 to 12 Hz. `number` determines the manner; the seed and `number` determine all else.

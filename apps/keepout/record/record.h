@@ -64,9 +64,10 @@ struct RecordFiles {
 
   /// Opens the files of "--json", "--csv" and "--out". Throws Error as OutputFiles and file_of_mesh
   /// do. `meshes`: the meshes that the command reads. `option`: their name on the command line.
+  /// `inputs`: other files that it reads.
   template <class Meshes = std::initializer_list<std::filesystem::path>>
-  OutputFiles open(const Meshes& meshes, std::string_view option = "MESH") const {
-    std::vector<NamedPath> inputs;
+  OutputFiles open(const Meshes& meshes, std::string_view option = "MESH",
+                   std::vector<NamedPath> inputs = {}) const {
     for (const auto& mesh : meshes) inputs.push_back({option, file_of_mesh(mesh)});
     return {inputs, {{"--out", page}, {"--csv", csv}, {"--json", kept_json()}}};
   }

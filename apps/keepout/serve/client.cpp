@@ -14,6 +14,7 @@
 #include "shared/names.h"
 #if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_chain.h"
+#include "keepout/urdf/read_robot.h"
 #endif
 
 namespace keepout::app {
@@ -61,30 +62,62 @@ LinkPoint link_point(std::span<const double> numbers) {
   return {static_cast<int>(link), vector(numbers.subspan(1))};
 }
 
-Chain read_chain_of([[maybe_unused]] const Json& request) {
+/// An instrument, and sentences about its file.
+struct ReadInstrument {
+  Instrument instrument;
+  std::vector<std::string> notices = {};
+};
+
 #if KEEPOUT_HAS_URDF
+Chain read_chain_of(const Json& request) {
   UrdfChain chain = read_chain(file_of(request, "urdf"), request.value("base_link", ""),
                                request.value("tip_link", ""), request.value("scale", 1000.0));
   return Chain(std::move(chain.joints), frame_of(request), chain.flange);
+}
+
+/// Returns the robot of the files "urdf" and "bodies". The request's frame replaces the pose in the
+/// file of bodies.
+ReadInstrument read_robot_of(const Json& request) {
+  UrdfRobot robot = read_robot(file_of(request, "urdf"),
+                               request.contains("bodies") ? file_of(request, "bodies") : "",
+                               request.value("base_link", ""), request.value("tip_link", ""),
+                               request.value("scale", 1000.0));
+  if (!request.contains("frame")) return {std::move(robot.instrument), std::move(robot.notices)};
+  const Chain& chain = robot.instrument.chain();
+  std::vector<Joint> joints;
+  for (int k = 1; k <= chain.size(); ++k) joints.push_back(chain.joint(k));
+  const auto bodies = robot.instrument.bodies();
+  return {Instrument(Chain(std::move(joints), frame_of(request), chain.flange()),
+                     {bodies.begin(), bodies.end()}),
+          std::move(robot.notices)};
+}
 #else
+[[noreturn]] void refuse_urdf() {
   throw Error(
       "this build reads no URDF: install liburdfdom-dev and liburdfdom-headers-dev, and build it "
       "again");
-#endif
 }
+Chain read_chain_of(const Json&) { refuse_urdf(); }
+ReadInstrument read_robot_of(const Json&) { refuse_urdf(); }
+#endif
 
-Instrument read_instrument(const Json& request) {
+ReadInstrument read_instrument(const Json& request) {
+  if (!request.contains("capsules")) return read_robot_of(request);
+  if (request.contains("bodies")) {
+    throw Error("'capsules' and 'bodies' both describe the bodies: omit one of them");
+  }
   std::vector<Body> bodies;
   const std::vector<double> capsules = numbers(request, "capsules");
   for (std::size_t i = 0; i < capsules.size(); i += 9) {
     const std::span<const double> row = std::span(capsules).subspan(i, 9);
     bodies.push_back({.points = {link_point(row), link_point(row.subspan(4))}, .radius = row[8]});
   }
-  return {read_chain_of(request), std::move(bodies)};
+  return {Instrument(read_chain_of(request), std::move(bodies))};
 }
 
 std::vector<std::string_view> keys_of_instruments() {
-  std::vector<std::string_view> keys{"base_link", "tip_link", "scale", "frame", "index", "solver"};
+  std::vector<std::string_view> keys{"capsules", "bodies", "base_link", "tip_link",
+                                     "scale",    "frame",  "index",     "solver"};
   for (const auto& option : instrument_options) keys.push_back(option.name);
   return keys;
 }
@@ -152,20 +185,23 @@ void open_instrument(Client& client, const Json& request, std::string& out) {
     option.set(settings.options, *option_value(request[option.name], option.kind));
   }
   settings.solver = request.value("solver", settings.solver);
-  Instrument instrument = read_instrument(request);  // before an index is built in vain
+  ReadInstrument read = read_instrument(request);  // before an index is built in vain
   MotionConstraintSettings of_index = client.service.tip;
   of_index.index = request.value("index", of_index.index);
   const auto index = of_index.index == client.service.tip.index
                          ? client.service.index
                          : make_or_load_index(client.service.mesh, of_index);
   client.instrument = {
-      make_instrument_constraint(client.service.mesh, index, std::move(instrument), settings)};
+      make_instrument_constraint(client.service.mesh, index, std::move(read.instrument), settings)};
   const Instrument& opened = instrument_of(client).instrument();
   append_member(out, "ok", true);
   append_member(out, "joints",
                 std::views::iota(1, opened.chain().size() + 1) |
                     std::views::transform([&](int k) { return opened.chain().joint(k).name; }));
   append_member(out, "bodies", opened.bodies().size());
+  if (request.contains("capsules")) return;
+  append_member(out, "body_names", opened.bodies() | std::views::transform(&Body::name));
+  append_member(out, "notices", read.notices);
 }
 
 void joint_step(Client& client, const Json& request, std::string& out) {
@@ -309,12 +345,7 @@ std::span<const Verb> verbs() {
       {"step", {"tip", "desired"}, {"jacobian", "rows", "bounds"}, step},
       {"steps", {"motions"}, {}, steps},
       {"polytope", {"tip", "radius"}, {}, polytope},
-      {"instrument",
-       {"urdf", "capsules"},
-       keys_of_instruments(),
-       open_instrument,
-       "no_instrument",
-       most_work},
+      {"instrument", {"urdf"}, keys_of_instruments(), open_instrument, "no_instrument", most_work},
       {"joint_step", {"q"}, {"linear", "angular", "increment", "weights"}, joint_step},
       {"tool", {"tool"}, {"narrow_phase"}, open_tool, "no_tool", most_work},
       {"guides", {"guides"}, {"of"}, set_guides, "no_guide"},

@@ -143,8 +143,8 @@ std::vector<Field> fields_within(const RequestLimits& limits) {
       of_joints("increment"),
       of_joints("weights"),
       number("mesh")};
-  for (const char* name : {"urdf", "base_link", "tip_link", "tool", "narrow_phase", "of", "file",
-                           "unit", "space", "untagged", "index", "solver"}) {
+  for (const char* name : {"urdf", "bodies", "base_link", "tip_link", "tool", "narrow_phase", "of",
+                           "file", "unit", "space", "untagged", "index", "solver"}) {
     fields.push_back({.name = name, .expected = "a string", .is_text = true});
   }
   fields.push_back({.name = "flip", .expected = "true or false", .is_flag = true});

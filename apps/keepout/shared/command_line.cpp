@@ -18,6 +18,7 @@
 #include "keepout/solvers/registry.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
+#include "shared/robot_file.h"
 
 namespace keepout::app {
 namespace {
@@ -294,6 +295,29 @@ void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings) {
       command, "--narrow-phase", settings.narrow_phase, narrow_phase_names(), narrow_phase_backends,
       "Narrow phase that proposes the planes of --tool; each proposed plane is proved before use")
       ->needs(tool);
+}
+
+CLI::Option* add_robot(CLI::App& command, std::string& robot, std::filesystem::path& bodies,
+                       std::vector<std::string> names, const std::string& help) {
+  const auto check = [known = one_of(names)](std::string& text) -> std::string {
+    if (!is_robot_file(text)) {
+      const std::string problem = known(text);
+      return problem.empty() ? "" : problem + "; or name a URDF file, such as my.urdf";
+    }
+    std::error_code none;
+    return std::filesystem::exists(text, none) ? "" : "there is no file '" + text + "'";
+  };
+  CLI::Option* const option =
+      command.add_option("--robot", robot, help + ": a name, or a URDF file of yours")
+          ->check(CLI::Validator(check, '{' + enumerated(names) + ", FILE.urdf}"));
+  command
+      .add_option("--bodies", bodies,
+                  "Bodies of the robot of a URDF file: docs/robots.md. Default: its collision "
+                  "elements, or capsules that enclose them")
+      ->type_name("FILE.json")
+      ->check(not_empty())
+      ->needs(option);
+  return option;
 }
 
 CLI::Option* add_guides(CLI::App& command, std::vector<std::string>& guides) {

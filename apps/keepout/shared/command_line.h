@@ -170,6 +170,11 @@ void add_activation(CLI::App& command, std::string& activation);
 /// guard as judge. Precondition: add_constraint_options.
 void add_convex_tool(CLI::App& command, MotionConstraintSettings& settings);
 
+/// Adds --robot, which names one of `names` or a URDF file, and --bodies, the bodies of the latter.
+/// Returns the first. `help`: what the command does with the robot.
+CLI::Option* add_robot(CLI::App& command, std::string& robot, std::filesystem::path& bodies,
+                       std::vector<std::string> names, const std::string& help);
+
 /// Adds the guides of a tip as texts, and of links if the command already has the option --robot.
 /// Checks that each text is a guide.
 CLI::Option* add_guides(CLI::App& command, std::vector<std::string>& guides);

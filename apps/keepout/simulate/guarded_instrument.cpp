@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "keepout/factory/make_motion_constraint.h"
@@ -14,24 +15,51 @@
 #include "shared/command_line.h"
 #include "shared/names.h"
 #include "shared/number_text.h"
+#include "shared/robot_file.h"
 #include "simulate/guide_audit.h"
+#include "simulate/measured_instrument.h"
 #include "simulate/simulated_tool.h"
+#include "simulate/tracking_columns.h"
 #include "verify/campaign.h"
 
 namespace keepout::app {
 namespace {
 
-/// The guard of an instrument.
-enum class Mode : std::uint8_t { certified, linearized, tip_only, none };
+/// The guard of an instrument. `measured`: that of a simulated robot, which follows the setpoints
+/// of the run before it.
+enum class Mode : std::uint8_t { certified, linearized, tip_only, none, measured };
 const std::vector<std::string> mode_names{"certified", "linearized", "tip only", "none"};
 
-/// The bodies of the PSM, in the order of the instrument.
-constexpr std::array<const char*, 3> body_names{"shaft", "wrist", "jaw"};
+/// More bodies than this have no columns on a terminal, only in the record.
+constexpr std::size_t most_printed_bodies = 3;
 
-constexpr std::array<const char*, manners.size()> manner_names{
-    "pushing with the jaw", "leaning with the shaft", "rotating the wrist"};
+/// The modes with --physics: the certified step, and the robot that follows it.
+constexpr std::array physical_modes{Mode::certified, Mode::measured};
 
-Columns<RunTally> mode_columns(bool has_guides) {
+std::string manner_name(Manner manner, bool is_file) {
+  switch (manner) {
+    case Manner::push:
+      return is_file ? "pushing with the tool" : "pushing with the jaw";
+    case Manner::lean:
+      return is_file ? "leaning on the surface" : "leaning with the shaft";
+    case Manner::rotate:
+      break;
+  }
+  return is_file ? "rotating the tool" : "rotating the wrist";
+}
+
+/// Returns true if each body begins where the one before ends, and the first one in the port.
+bool are_in_a_row(const Instrument& instrument) {
+  LinkPoint end{0, Vec3::Zero()};
+  for (const Body& body : instrument.bodies()) {
+    const LinkPoint& begin = body.points.front();
+    if (begin.link != end.link || begin.position != end.position) return false;
+    end = body.points.back();
+  }
+  return true;
+}
+
+Columns<RunTally> mode_columns(std::span<const Body> bodies, bool has_guides) {
   Columns<RunTally> columns{
       {"mesh", &RunTally::mesh, "mesh", -12},
       {"speed", &RunTally::speed, "speed", 5},
@@ -42,15 +70,22 @@ Columns<RunTally> mode_columns(bool has_guides) {
       {"below", [](const RunTally& t) { return Json(t.any.below); }, "close", 7},
       {"in_mesh", [](const RunTally& t) { return Json(t.any.in_mesh); }, "in mesh", 7}};
   if (has_guides) columns.push_back({"guides_left", &RunTally::guides_left, "guides", 7});
-  for (std::size_t b = 0; b < body_names.size(); ++b) {
-    const std::string body = body_names[b];
+  const bool is_printed = bodies.size() <= most_printed_bodies;
+  if (!is_printed) {
+    columns.push_back({"", [](const RunTally& t) { return Json(t.any.deepest); }, "deepest", 7,
+                       number_text<"%.2f">});
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::string& body = bodies[b].name;
     const auto of_body = [b](auto figure) {
       return [=](const RunTally& t) { return Json(t.bodies[b].*figure); };
     };
-    columns.push_back({body + "_below", of_body(&BodyTally::below), body + " close", 11});
-    columns.push_back({body + "_in_mesh", of_body(&BodyTally::in_mesh), "in mesh", 7});
     columns.push_back(
-        {body + "_deepest_mm", of_body(&BodyTally::deepest), "deepest", 7, number_text<"%.2f">});
+        {body + "_below", of_body(&BodyTally::below), body + " close", is_printed ? 11 : 0});
+    columns.push_back(
+        {body + "_in_mesh", of_body(&BodyTally::in_mesh), "in mesh", is_printed ? 7 : 0});
+    columns.push_back({body + "_deepest_mm", of_body(&BodyTally::deepest), "deepest",
+                       is_printed ? 7 : 0, number_text<"%.2f">});
   }
   return columns;
 }
@@ -88,41 +123,51 @@ double deepest(const oracle::SafetyOracle& surface, const oracle::Segment& segme
 }
 
 /// Returns the cycles of a stroke in one mode, and the number of the worst cycle.
-Json run_json(const std::string& mode, const std::vector<Cycle>& cycles) {
-  Json places = Json::array(), clearances = Json::array();
-  for (const Cycle& cycle : cycles) {
-    Json& at = places.emplace_back();
-    for (const Vec3& place : cycle.places) {
+Json run_json(const std::string& mode, const std::vector<Cycle>& cycles,
+              const Instrument& instrument) {
+  Json places = Json::array(), begins = Json::array(), clearances = Json::array();
+  const std::size_t bodies = instrument.bodies().size();
+  const auto add = [bodies](Json& list, const std::array<Vec3, Cycle::most_bodies>& ends) {
+    Json& at = list.emplace_back(Json::array());
+    for (const Vec3& place : std::span(ends).first(bodies)) {
       at.push_back(json_of(Vec3((1e3 * place).array().round() / 1e3)));
     }
-    Json& least = clearances.emplace_back();
-    for (const double mm : cycle.clearances) {
+  };
+  const bool has_begins = !are_in_a_row(instrument);
+  for (const Cycle& cycle : cycles) {
+    add(places, cycle.places);
+    if (has_begins) add(begins, cycle.begins);
+    Json& least = clearances.emplace_back(Json::array());
+    for (const double mm : std::span(cycle.clearances).first(bodies)) {
       least.push_back(or_null(std::round(1e6 * mm) / 1e6));
     }
   }
   const auto worst = std::ranges::min_element(cycles, {}, &Cycle::least);
-  return {{"mode", mode},
-          {"worst", worst - cycles.begin()},
-          {"places", std::move(places)},
-          {"clearance_mm", std::move(clearances)}};
+  Json run{{"mode", mode}, {"worst", worst - cycles.begin()}, {"places", std::move(places)}};
+  if (has_begins) run["begins"] = std::move(begins);
+  run["clearance_mm"] = std::move(clearances);
+  return run;
 }
 
 class GuardedInstrument final : public SimulatedTool {
  public:
   explicit GuardedInstrument(const SimulateOptions& options)
       : options_(options),
+        robot_(chosen_robot(options.robot, options.bodies)),
         margin_(options.constraint.options.margin),
-        guides_(guides_of(options.guides, Guided::instrument)) {}
+        guides_(guides_of(options.guides, Guided::instrument)) {
+    if (options.has_physics) measured_.emplace(options.robot, robot_.judged());
+  }
 
   std::shared_ptr<const Mesh> open(const std::filesystem::path& path,
                                    const StopSignal& stop) override {
     const std::string name = path.stem().string();
-    auto opened = unless_stopped(
-        stop, [=, load = options_.load, index = options_.constraint.index, margin = margin_] {
-          const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, load).mesh;
-          require_area(path.string(), *mesh);
-          return std::make_unique<RobotScene>(RobotScene{{name, mesh, index}, margin});
-        });
+    auto opened = unless_stopped(stop, [=, load = options_.load, index = options_.constraint.index,
+                                        margin = margin_, robot = robot_] {
+      const std::shared_ptr<const Mesh> mesh = load_named_mesh(path, load).mesh;
+      require_area(path.string(), *mesh);
+      return std::make_unique<RobotScene>(RobotScene{{name, mesh, index}, margin, robot});
+    });
     if (!opened) return nullptr;
     on_ = *std::move(opened);
     const std::shared_ptr<const Mesh> mesh = on_->scene.mesh();
@@ -133,7 +178,9 @@ class GuardedInstrument final : public SimulatedTool {
     return mesh;
   }
 
-  std::vector<std::string> guards() const override { return mode_names; }
+  std::vector<std::string> guards() const override {
+    return measured_ ? physical_mode_names : mode_names;
+  }
 
   Stroke draw(std::uint64_t number, double speed) override {
     return instrument_stroke(*on_, options_.strokes, number, speed);
@@ -142,10 +189,12 @@ class GuardedInstrument final : public SimulatedTool {
   /// All modes use the same step with different meshes. It has no mesh if only the tip is guarded,
   /// or if there is no guard. Without a mesh it is damped least squares within the joint limits.
   StrokeStart start(const Stroke& stroke, std::size_t guard) override {
-    const auto mode = static_cast<Mode>(guard);
+    const Mode mode = measured_ ? physical_modes[guard] : static_cast<Mode>(guard);
+    is_measured_ = mode == Mode::measured;
     const Scene& scene = on_->scene;
     const Instrument instrument = on_->robot.make(stroke.start.base);
     InstrumentOptions step = options_of({.margin = margin_}, instrument.chain(), stroke.speed);
+    if (measured_) step.period = cycle_seconds;  // the servos run in real time
     if (mode == Mode::linearized) step.certified = CertifiedMotion::linearized;
     joints_.emplace(instrument, std::make_unique<ActiveSet>(), step);
     if (mode != Mode::none) joints_->set_guides(guides_);
@@ -161,6 +210,14 @@ class GuardedInstrument final : public SimulatedTool {
     speed_ = stroke.speed;
     random_ = stroke.random;
     q_ = stroke.start.positions;
+    cycle_ = 0;
+    if (is_measured_) {
+      q_.assign(measured_->first().begin(), measured_->first().end());
+    } else if (measured_) {
+      InstrumentConstraint in_session(instrument, std::make_unique<ActiveSet>(), step);
+      in_session.add_mesh(scene.mesh(), scene.shared_index());
+      measured_->start(std::move(in_session), q_, stroke.speed * fastest_way / cycle_seconds);
+    }
     judge_.emplace(oracle::JudgedScene{.robot = on_->robot.judged(),
                                        .base = stroke.start.base,
                                        .meshes = {{scene.tree()}},
@@ -171,6 +228,22 @@ class GuardedInstrument final : public SimulatedTool {
   }
 
   Cycle follow(const Pose& goal) override {
+    if (is_measured_) {
+      const auto positions = measured_->positions(cycle_);
+      q_.assign(positions.begin(), positions.end());
+      Cycle cycle = judged({});
+      std::ranges::copy(measured_->errors(cycle_++), cycle.errors.begin());
+      return cycle;
+    }
+    if (measured_) {
+      const HapticCycle moved = measured_->follow(goal);
+      q_.assign(measured_->setpoint().begin(), measured_->setpoint().end());
+      Cycle cycle;
+      cycle.outcome = !moved.ok()                  ? Outcome::stopped
+                      : moved.step != Status::free ? Outcome::limited
+                                                   : Outcome::moved_freely;
+      return judged(cycle);
+    }
     ChainState state;
     joints_->instrument().chain().forward_kinematics(q_, state);
     const Pose at = state.flange();
@@ -185,11 +258,17 @@ class GuardedInstrument final : public SimulatedTool {
                     : step.status != Status::free ? Outcome::limited
                                                   : Outcome::moved_freely;
     cycle.guides_inside = guides_inside(step.guides);
+    return judged(cycle);
+  }
+
+  /// Judges the motion of the instrument to its positions.
+  Cycle judged(Cycle cycle) {
     const oracle::RobotVerdict verdict = judge_->judge(q_);
     cycle.is_breach = verdict.limits_broken;
     cycle.is_guide_left = verdict.is_guide_left;
-    for (std::size_t b = 0; b < body_names.size(); ++b) {
+    for (std::size_t b = 0; b < robot_.bodies.size(); ++b) {
       const oracle::Segment axis = judge_->oracle().axis(b);
+      cycle.begins[b] = axis.from;
       cycle.places[b] = axis.to;
       cycle.clearances[b] = std::min(judge_->least()[b], clearance_inside(b, axis));
     }
@@ -201,17 +280,18 @@ class GuardedInstrument final : public SimulatedTool {
   void keep(FollowedStroke followed) override {
     const Stroke& stroke = followed.stroke;
     const auto manner = static_cast<std::size_t>(stroke.manner);
-    Json json{{"manner", manner_names[manner]},
+    Json json{{"manner", manner_name(stroke.manner, is_robot_file(options_.robot))},
               {"speed", stroke.speed},
               {"number", stroke.number},
               {"port", json_of(stroke.start.base.position)},
               {"runs", Json::array()}};
     double told = 0.0;  // shortfall of all guarded modes [mm]
-    for (std::size_t mode = 0; mode < mode_names.size(); ++mode) {
+    const std::vector<std::string> modes = guards();
+    for (std::size_t mode = 0; mode < modes.size(); ++mode) {
       const std::vector<Cycle>& cycles = followed.runs[mode];
       const double least = std::ranges::min_element(cycles, {}, &Cycle::least)->least();
-      if (mode_names[mode] != "none") told += std::max(0.0, margin_ - least);
-      json["runs"].push_back(run_json(mode_names[mode], cycles));
+      if (modes[mode] != "none") told += std::max(0.0, margin_ - least);
+      json["runs"].push_back(run_json(modes[mode], cycles, joints_->instrument()));
     }
     if (told <= told_[manner]) return;
     told_[manner] = told;
@@ -226,7 +306,7 @@ class GuardedInstrument final : public SimulatedTool {
       if (run.stood_still()) {
         still.push_back("'" + run.guard + "' on " + run.mesh + " at speed " + trimmed(run.speed));
       }
-      if (run.guard != mode_names.front()) continue;
+      if (run.guard != guards().front()) continue;
       cycles += run.cycles;
       has_moved |= !run.stood_still();
       broken += run.any.below + run.breaches + run.guides_left;
@@ -236,6 +316,13 @@ class GuardedInstrument final : public SimulatedTool {
     const bool has_guides = !guides_.empty();
     const std::vector<std::string> untested = untested_guides(runs, options_.guides);
     const std::string in_guides = has_guides ? ", and in its guides" : "";
+    const std::string all_bodies = is_robot_file(options_.robot)
+                                       ? "all bodies (" + listed(names(robot_.bodies)) + ")"
+                                       : "shaft, wrist and jaw";
+    Columns<RunTally> columns = mode_columns(robot_.bodies, has_guides);
+    if (measured_) {
+      columns = tracking_columns(std::move(columns), robot_.bodies, joints_->options());
+    }
     Json record = new_record(
         {.kind = "simulate_robot",
          .command = options_.command,
@@ -243,31 +330,35 @@ class GuardedInstrument final : public SimulatedTool {
                     ", against anatomy: the same strokes in each mode",
          .headline =
              std::string("The certified step ") +
-             (broken == 0 ? "kept shaft, wrist and jaw off the anatomy" + in_guides + " in all "
+             (broken == 0 ? "kept " + all_bodies + " off the anatomy" + in_guides + " in all "
                           : "broke its promise in some of ") +
              counted(cycles, "cycle") + "." +
              (still.empty() ? ""
                             : " The instrument stood still in all cycles of " + listed(still) +
                                   ": nothing was tested there.") +
+             (measured_ ? sentence_on_tracking(runs, joints_->options().band) : "") +
              sentence_on_untested(untested),
          .machine = this_machine(),
-         .settings = {{"robot", options_.robot},
-                      {"strokes", grouped(options_.strokes.count)},
-                      {"cycles per stroke", grouped(options_.strokes.cycles)},
-                      {"margin", trimmed(margin_) + " mm"},
-                      {"seed", std::to_string(options_.strokes.seed)},
-                      {"index", options_.constraint.index}}});
+         .settings = {
+             {"robot", options_.robot},
+             {"strokes", grouped(options_.strokes.count)},
+             {"cycles per stroke",
+              options_.strokes.cycles == 0 ? "once in and back" : grouped(options_.strokes.cycles)},
+             {"margin", trimmed(margin_) + " mm"},
+             {"seed", std::to_string(options_.strokes.seed)},
+             {"index", options_.constraint.index}}});
     if (has_guides) record["settings"]["guides"] = listed(options_.guides);
+    if (!options_.bodies.empty()) record["settings"]["bodies"] = options_.bodies.string();
+    if (!options_.notice.empty()) record["account"].push_back(options_.notice);
     record["certified_mm"] = margin_ - joints_->options().band;
-    for (std::size_t b = 0; b < body_names.size(); ++b) {
-      record["bodies"].push_back(
-          {{"name", body_names[b]}, {"radius_mm", joints_->instrument().bodies()[b].radius}});
+    for (const Body& body : robot_.bodies) {
+      record["bodies"].push_back({{"name", body.name}, {"radius_mm", body.radius}});
     }
-    record["rows"] = json_of(mode_columns(has_guides), runs);
+    record["rows"] = json_of(columns, runs);
     record["meshes"] = std::move(meshes_);
     return {.record = std::move(record),
-            .columns = mode_columns(has_guides),
-            .legend = columns_meaning,
+            .columns = columns,
+            .legend = measured_ ? tracking_meaning : columns_meaning,
             .is_broken = broken > 0,
             .is_untested = !has_moved || (has_guides && untested.size() == guides_.size())};
   }
@@ -285,13 +376,17 @@ class GuardedInstrument final : public SimulatedTool {
   }
 
   const SimulateOptions& options_;
+  RobotUnderTest robot_;
   double margin_;  // [mm]
   std::vector<Guide> guides_;
   std::unique_ptr<RobotScene> on_;
   Json meshes_ = Json::array();
   std::array<double, manners.size()> told_ = {};  // of the strokes of the last mesh [mm]
   std::optional<InstrumentConstraint> joints_;
-  std::optional<MotionConstraint> tip_;  // guards the tip alone
+  std::optional<MotionConstraint> tip_;         // guards the tip alone
+  std::optional<MeasuredInstrument> measured_;  // with --physics
+  bool is_measured_ = false;                    // the run follows the measured instrument
+  std::size_t cycle_ = 0;                       // of that run
   std::optional<oracle::RobotJudge> judge_;
   Random random_{0};       // of the judge
   std::vector<double> q_;  // joint positions

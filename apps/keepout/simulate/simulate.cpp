@@ -14,6 +14,7 @@
 #include "shared/names.h"
 #include "shared/number_text.h"
 #include "shared/progress.h"
+#include "shared/robot_file.h"
 #include "shared/stop_signal.h"
 #include "simulate/simulated_tool.h"
 
@@ -90,7 +91,8 @@ void print_next(const SimulateOptions& options, const Json& record, std::ostream
                                            : "\nReport, with tables and settings, no pictures: ")
       << options.files.page->string() << '\n';
   if (is_quiet() || options.called_as.empty()) return;
-  const std::string robot = options.robot.empty() ? "" : " --robot " + options.robot;
+  std::string robot = options.robot.empty() ? "" : " --robot " + shell_word(options.robot);
+  if (!options.bodies.empty()) robot += " --bodies " + shell_word(options.bodies.string());
   const std::filesystem::path name = options.meshes.empty() ? "skull" : options.meshes.front();
   const std::string mesh = mesh_words(name, options.load);
   std::string verified = shell_word(name.string());  // by a command that takes meshes as they are
@@ -121,7 +123,8 @@ int simulate(const SimulateOptions& options, std::ostream& out) {
   const auto tool = has_tip ? make_guarded_tip(options) : options.make_instrument(options);
   std::vector<std::filesystem::path> meshes = options.meshes;
   if (meshes.empty()) meshes = {"skull", "airway", "brain"};
-  OutputFiles outputs = options.files.open(meshes);
+  OutputFiles outputs =
+      options.files.open(meshes, "MESH", robot_inputs(options.robot, options.bodies));
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   const Runs done = run_strokes(*tool, meshes, has_tip ? std::vector{1.0} : options.speeds,
                                 options.strokes.count, stop);

@@ -44,13 +44,16 @@ struct SimulateOptions {
   MotionConstraintSettings constraint;  // its activation is replaced by each rule in turn
   std::vector<std::string> guides;      // texts: guides of the tip, or of the robot's links
   StrokeSettings strokes;
-  double max_step = 0.5;                 // longest increment commanded in a cycle [mm]
-  TimeParts time_parts = {};             // unset in a program that cannot time parts
-  MakeInstrument make_instrument = {};   // unset in a program that simulates a tip only
-  bool is_timing_parts = false;          // run time_parts after the simulation
-  bool is_verbose = false;               // print the tables of these timings
-  std::string robot;                     // whose instrument is driven; empty: a tip
+  double max_step = 0.5;                // longest increment commanded in a cycle [mm]
+  TimeParts time_parts = {};            // unset in a program that cannot time parts
+  MakeInstrument make_instrument = {};  // unset in a program that simulates a tip only
+  bool is_timing_parts = false;         // run time_parts after the simulation
+  bool is_verbose = false;              // print the tables of these timings
+  std::string robot;             // whose instrument is driven, see chosen_robot; empty: a tip
+  std::filesystem::path bodies;  // of the robot of a URDF file
+  std::string notice;            // a sentence that the page must show
   std::vector<double> speeds{1.0, 5.0};  // of a robot, in multiples of 0.5 mm and 0.02 rad a cycle
+  bool has_physics = false;              // simulate the robot's masses and servos as well
   std::string called_as = "keepout";     // for the suggestions at the end; empty: no suggestions
   std::string command;                   // the command that repeats the simulation
 };

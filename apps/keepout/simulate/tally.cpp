@@ -5,11 +5,13 @@
 
 namespace keepout::app {
 
-void BodyTally::add(double clearance, double required) {
+void BodyTally::add(double clearance, double required, double from_setpoint) {
   // A clearance that is NaN proves nothing, so it counts against the guard.
   below += clearance >= required ? 0 : 1;
   in_mesh += clearance >= 0.0 ? 0 : 1;
   deepest = std::max(deepest, -clearance);
+  least = std::min(least, clearance);
+  error = std::max(error, from_setpoint);
 }
 
 void RunTally::add(const std::vector<Cycle>& stroke, const StrokeStart& start) {
@@ -22,7 +24,9 @@ void RunTally::add(const std::vector<Cycle>& stroke, const StrokeStart& start) {
     farthest_out = std::max(farthest_out, cycle.guide_excess);
     guides_inside |= cycle.guides_inside;
     any.add(cycle.least(), required);
-    for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].add(cycle.clearances[b], required);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      bodies[b].add(cycle.clearances[b], required, cycle.errors[b]);
+    }
     least = std::min(least, cycle.least());
     times_us.push_back(static_cast<double>(cycle.step_us));
   }

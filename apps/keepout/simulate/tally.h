@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "keepout/geometry/shapes.h"
+#include "keepout/robot/instrument.h"
 #include "keepout/step/guide.h"
 #include "shared/timing.h"
 
@@ -24,15 +25,25 @@ enum class Outcome : std::uint8_t {
   stopped        // no motion, or less than a nanometer of a tip
 };
 
-/// The result of one control cycle of a simulated stroke. A tip is one body; an instrument has
-/// shaft, wrist and jaw.
+/// The result of one control cycle of a simulated stroke. A tip is one body; an instrument has one
+/// or more.
 struct Cycle {
   static constexpr double far = std::numeric_limits<double>::infinity();
+  static constexpr std::size_t most_bodies = Instrument::most_bodies;
+  /// Returns the clearances of bodies that are far away, or do not exist.
+  static constexpr std::array<double, most_bodies> all_far() {
+    std::array<double, most_bodies> clearances{};
+    clearances.fill(far);
+    return clearances;
+  }
 
-  std::array<Vec3, 3> places;  // the ends of the bodies [mm]
+  std::array<Vec3, most_bodies> places;  // the ends of the bodies [mm]
+  std::array<Vec3, most_bodies> begins;  // the other ends of the bodies of an instrument [mm]
   /// The least distance of each body to the surface, measured independently: negative inside, never
   /// negative for a tip beside an open surface, infinite beyond the margin of an instrument. [mm]
-  std::array<double, 3> clearances{far, far, far};
+  std::array<double, most_bodies> clearances = all_far();
+  /// The largest distance of each body of a measured instrument from its setpoint. [mm]
+  std::array<double, most_bodies> errors{};
   float step_us = 0.0F;  // time of a tip's step; 0 without a guard [µs]
   Outcome outcome = Outcome::moved_freely;
   bool is_breach =
@@ -58,11 +69,13 @@ struct StrokeStart {
 
 /// The cycles in which a body was too close.
 struct BodyTally {
-  std::size_t below = 0;    // closer than required
-  std::size_t in_mesh = 0;  // of these: cycles in which the body reached into the mesh
-  double deepest = 0.0;     // of these: the greatest depth [mm]
+  std::size_t below = 0;      // closer than required
+  std::size_t in_mesh = 0;    // of these: cycles in which the body reached into the mesh
+  double deepest = 0.0;       // of these: the greatest depth [mm]
+  double least = Cycle::far;  // smallest clearance; infinite beyond the margin [mm]
+  double error = 0.0;         // largest distance from the setpoint [mm]
 
-  void add(double clearance, double required);
+  void add(double clearance, double required, double from_setpoint = 0.0);
 };
 
 /// The results of all strokes on a mesh, at one speed, under one guard.
@@ -80,7 +93,7 @@ struct RunTally {
   std::size_t strokes_breached = 0;          // with a cycle inside, or with a breach
   std::size_t starts_too_close = 0;          // strokes that began closer than required
   BodyTally any = {};                        // all bodies together
-  std::array<BodyTally, 3> bodies = {};
+  std::array<BodyTally, Cycle::most_bodies> bodies = {};
   double least = Cycle::far;  // smallest clearance [mm]
   std::vector<double> times_us = {};
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -51,7 +52,8 @@ struct Shard {
 /// tips. The same seed, steps and meshes give the same motions for every number of shards.
 struct Campaign {
   // For instruments, for each mesh and each of its row_kinds():
-  std::string robot = {};  // of robots_under_test(); empty: a robot is drawn for each start
+  std::string robot = {};             // see chosen_robot; empty: a robot is drawn for each start
+  std::filesystem::path bodies = {};  // of the robot of a URDF file
   std::vector<std::string> scenarios = {};  // of scenarios(); empty: the usual ones
   std::uint64_t cycles = 200'000;
   std::vector<double> speeds{1.0, 5.0};  // multiples of the operator's motion at speed 1

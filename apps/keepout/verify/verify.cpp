@@ -14,6 +14,7 @@
 #include "shared/names.h"
 #include "shared/output_file.h"
 #include "shared/progress.h"
+#include "shared/robot_file.h"
 #include "shared/stop_signal.h"
 #include "verify/result.h"
 
@@ -99,8 +100,8 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
                      "Mesh files in mm, or sample meshes; default: all sample meshes");
   Campaign& campaign = options;
   CLI::Option* named =
-      command.add_option("--robot", campaign.robot, "Attack a whole instrument, in joint space")
-          ->check(one_of(names(robots_under_test())));
+      add_robot(command, campaign.robot, campaign.bodies, names(robots_under_test()),
+                "Attack a whole instrument, in joint space");
   CLI::Option* chosen =
       command.add_option("--scenario", campaign.scenarios, "Kinds of attack, also in joint space")
           ->check(one_of(names(app::scenarios())))
@@ -169,6 +170,7 @@ int verify(const VerifyOptions& options, std::ostream& out) {
   std::vector<NamedPath> inputs;
   for (const auto& mesh : options.meshes) inputs.push_back({"MESH", file_of_mesh(mesh)});
   for (const auto& file : options.merge) inputs.push_back({"--merge", file});
+  for (const NamedPath& file : robot_inputs(options.robot, options.bodies)) inputs.push_back(file);
   OutputFiles outputs(inputs,
                       {{"--out", options.files.page}, {"--json", options.files.kept_json()}});
   const CampaignResult result =

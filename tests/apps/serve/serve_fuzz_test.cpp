@@ -340,8 +340,16 @@ std::string_view useful_value(std::string_view key) {
   static const std::string file =
       '"' + folder.write("wall.off", "OFF\n3 1 0\n-9 -9 0\n9 -9 0\n0 9 0\n3 0 1 2\n").string() +
       '"';
+  static const std::string bodies =
+      '"' +
+      folder
+          .write("bodies.json", R"({"bodies":[{"name":"jaw","radius_mm":1,"points":[
+                 {"link":"wrist_yaw_link","xyz_mm":[0,0,0]},{"link":"tip","xyz_mm":[0,0,0]}]}]})")
+          .string() +
+      '"';
   static const std::map<std::string_view, std::string_view> values{
       {"file", file},
+      {"bodies", bodies},
       {"urdf", "\"" KEEPOUT_ROBOTS "/psm.urdf\""},
       {"capsules", "[[5,9.1,0,0,6,0,10.2,0,1]]"},
       {"base_link", "\"\""},

@@ -49,7 +49,8 @@ Missed missed(const RobotSetup& setup, const oracle::JudgedRobot& robot,
               std::span<const double> from, std::span<const double> to, const Twist& desired) {
   const auto before = oracle::place(robot, setup.start.base, from);
   const auto after = oracle::place(robot, setup.start.base, to);
-  const Vec3 way = axis_of(robot.bodies.back(), after).to - axis_of(robot.bodies.back(), before).to;
+  const Vec3& flange = setup.robot.flange.position;
+  const Vec3 way = after.back().at(flange) - before.back().at(flange);
   const Mat3 turned = (after.back().axes * before.back().axes.transpose()).cast<double>();
   const Eigen::AngleAxisd turn(turned);
   const double weight = setup.options.orientation_weight;
@@ -251,7 +252,8 @@ class RobotAttempt {
 
 class RobotAttack final : public Attack {
  public:
-  RobotAttack(const Campaign& campaign, const Arena& arena, const Campaign::RowKind& kind,
+  RobotAttack(const Campaign& campaign, std::shared_ptr<const RobotUnderTest> robot,
+              const Arena& arena, const Campaign::RowKind& kind,
               std::shared_ptr<std::shared_ptr<Scene>> loaded)
       : Attack({.mesh = arena.mesh,
                 .scenario = std::string(kind.scenario->name),
@@ -259,7 +261,7 @@ class RobotAttack final : public Attack {
         campaign_(campaign),
         arena_(arena),
         scenario_(*kind.scenario),
-        robot_(campaign.robot.empty() ? nullptr : &robot_named(campaign.robot)),
+        robot_(std::move(robot)),
         is_drawn_(!arena.load || robot_ == nullptr || scenario_.carrier == Carrier::slides),
         loaded_(std::move(loaded)) {}
 
@@ -282,7 +284,7 @@ class RobotAttack final : public Attack {
     for (int misses = 0; !is_done(); row.is_out_of_starts = ++misses >= most_misses) {
       Random of_seed(campaign_.seed + 1000 * number);
       random_ = Random(of_seed.bits() ^ draws_++);
-      auto setup = draw_setup(scenario_, robot_, row.speed, random_, draw_mesh, options);
+      auto setup = draw_setup(scenario_, robot_.get(), row.speed, random_, draw_mesh, options);
       if (!setup) continue;
       setup->is_drawn = is_drawn_;
       ++row.starts;
@@ -301,8 +303,8 @@ class RobotAttack final : public Attack {
   const Campaign& campaign_;
   const Arena& arena_;
   const Scenario& scenario_;
-  const RobotUnderTest* robot_;  // null: drawn for each start
-  bool is_drawn_;                // mesh or robot change with each setup
+  std::shared_ptr<const RobotUnderTest> robot_;  // null: drawn for each start
+  bool is_drawn_;                                // mesh or robot change with each setup
   std::shared_ptr<std::shared_ptr<Scene>>
       loaded_;  // shared by all rows of the mesh; null until the first one
   std::uint64_t draws_ = 0;
@@ -324,11 +326,15 @@ InstrumentOptions options_of(const Campaign& campaign, const Chain& chain, doubl
 }
 
 Attacks attacks_on_instruments(const Campaign& campaign, std::span<const Arena> arenas) {
+  std::shared_ptr<const RobotUnderTest> robot;
+  if (!campaign.robot.empty()) {
+    robot = std::make_shared<RobotUnderTest>(chosen_robot(campaign.robot, campaign.bodies));
+  }
   Attacks attacks;
   for (const Arena& arena : arenas) {
     const auto loaded = std::make_shared<std::shared_ptr<Scene>>();
     for (const Campaign::RowKind& kind : campaign.row_kinds()) {
-      attacks.push_back(std::make_unique<RobotAttack>(campaign, arena, kind, loaded));
+      attacks.push_back(std::make_unique<RobotAttack>(campaign, robot, arena, kind, loaded));
     }
   }
   return attacks;

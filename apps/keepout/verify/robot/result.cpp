@@ -173,6 +173,7 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
                     {"margin", trimmed(campaign.margin) + " mm"},
                     {"seed", std::to_string(campaign.seed)},
                     {"index", campaign.index}}});
+  if (!campaign.bodies.empty()) record["settings"]["bodies"] = campaign.bodies.string();
   record["robot"] = robot;
   record["rows"] = std::move(rows);
   record["total"] = std::move(total);

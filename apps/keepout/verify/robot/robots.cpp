@@ -11,6 +11,11 @@
 #include "keepout/error.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/robot/denavit_hartenberg.h"
+#include "shared/progress.h"
+#include "shared/robot_file.h"
+#if KEEPOUT_HAS_URDF
+#include "keepout/urdf/read_robot.h"
+#endif
 
 namespace keepout::app {
 namespace {
@@ -65,16 +70,56 @@ std::vector<Joint> all_joints(const Chain& chain) {
   return joints;
 }
 
-RobotUnderTest known_robot(std::string_view name, std::string_view description,
-                           const Instrument& instrument, oracle::JudgedRobot model,
-                           std::vector<RobotUnderTest::Range> starts) {
-  return {name,
-          description,
+RobotUnderTest known_robot(std::string name, std::string description, const Instrument& instrument,
+                           oracle::JudgedRobot model, std::vector<RobotUnderTest::Range> starts) {
+  return {std::move(name),
+          std::move(description),
           all_joints(instrument.chain()),
           instrument.chain().flange(),
           {instrument.bodies().begin(), instrument.bodies().end()},
           std::move(model),
           std::move(starts)};
+}
+
+#if KEEPOUT_HAS_URDF
+constexpr double widest_start = 1.0;  // [rad]
+
+/// Returns the start range of a joint.
+RobotUnderTest::Range start_of(const Joint& joint) {
+  const JointLimits& limits = joint.limits;
+  if (!std::isfinite(limits.upper - limits.lower)) return {-widest_start, widest_start};
+  const double middle = 0.5 * (limits.lower + limits.upper);
+  double half = 0.3 * (limits.upper - limits.lower);
+  if (joint.kind == JointKind::revolute) half = std::min(half, widest_start);
+  return {middle - half, middle + half};
+}
+#endif
+
+/// Returns the robot of a URDF file. The judge's kinematics are its own, and its data are those of
+/// the chain, because the robot has no table.
+RobotUnderTest robot_of_files([[maybe_unused]] const std::string& urdf,
+                              [[maybe_unused]] const std::filesystem::path& bodies) {
+#if KEEPOUT_HAS_URDF
+  const UrdfRobot read = read_robot(urdf, bodies);
+  for (const std::string& notice : read.notices) warn_on_stderr(notice);
+  RobotUnderTest robot = known_robot(urdf, "", read.instrument, {}, {});
+  for (const Joint& joint : robot.joints) {
+    robot.model.table.push_back(
+        {.slides = joint.kind == JointKind::prismatic, .before = joint.origin, .axis = joint.axis});
+    robot.starts.push_back(start_of(joint));
+  }
+  for (const Body& body : robot.bodies) {
+    oracle::JudgedBody& judged = robot.model.bodies.emplace_back();
+    judged.radius = body.radius;
+    for (const LinkPoint& point : body.points)
+      judged.points.push_back({point.link, point.position});
+  }
+  return robot;
+#else
+  throw Error("--robot: " + urdf +
+              ": this build reads no URDF: install liburdfdom-dev and liburdfdom-headers-dev, and "
+              "build it again");
+#endif
 }
 
 JointLimits turning(double range) {
@@ -140,6 +185,18 @@ const RobotUnderTest& robot_named(const std::string& name) {
   const auto found = std::ranges::find(robots, name, &RobotUnderTest::name);
   if (found == robots.end()) throw Error("there is no robot '" + name + "'");
   return *found;
+}
+
+bool RobotUnderTest::has_port() const noexcept {
+  const std::vector<LinkPoint>& shaft = bodies.front().points;
+  return shaft.size() == 2 && shaft.front().link == 0 && shaft.back().link > 0;
+}
+
+RobotUnderTest chosen_robot(const std::string& robot, const std::filesystem::path& bodies) {
+  if (is_robot_file(robot)) return robot_of_files(robot, bodies);
+  if (bodies.empty()) return robot_named(robot);
+  throw Error("--bodies: the robot '" + robot +
+              "' has its own bodies: name a URDF file as --robot");
 }
 
 RobotUnderTest drawn_robot(Random& random) {

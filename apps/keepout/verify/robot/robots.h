@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,8 +18,8 @@ struct RobotUnderTest {
   struct Range {
     double low, high;
   };
-  std::string_view name;
-  std::string_view description;
+  std::string name;
+  std::string description;
   std::vector<Joint> joints = {};
   Pose flange = {};
   std::vector<Body> bodies = {};
@@ -28,11 +29,19 @@ struct RobotUnderTest {
   /// Returns the instrument on a base.
   Instrument make(const Pose& base) const { return {Chain(joints, base, flange), bodies}; }
   const oracle::JudgedRobot& judged() const noexcept { return model; }
+  /// Returns true if the first body is a shaft that passes through a port of the base.
+  bool has_port() const noexcept;
 };
 std::span<const RobotUnderTest> robots_under_test();
 
 /// Returns the robot of this name. Throws Error if it does not exist.
 const RobotUnderTest& robot_named(const std::string& name);
+
+/// Returns the robot of this name, or that of a URDF file: see read_robot. Its tool is its last
+/// body, and the end of the tool is the last point of that body. Joints start in the middle six
+/// tenths of their range, at most 1 rad to each side. Prints notices on stderr. Throws Error, also
+/// if this build reads no URDF, or if the robot of a name has a file of bodies.
+RobotUnderTest chosen_robot(const std::string& robot, const std::filesystem::path& bodies);
 
 /// Draws a chain of 3 to 7 joints, with any twists and with offsets up to 60 mm. It has one to
 /// three bodies: balls, capsules and blades, some of radius 0.

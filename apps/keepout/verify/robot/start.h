@@ -36,7 +36,7 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
 struct RobotScene {
   Scene scene;
   double margin;  // [mm]
-  const RobotUnderTest& robot = robots_under_test().front();
+  RobotUnderTest robot = robots_under_test().front();
 
   /// Draws a start farther from the mesh than `margins` margins; empty if no start is found.
   std::optional<RobotStart> start(Random& random, double margins = 1.0) {

@@ -4,49 +4,48 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Counterexample, Vec3 } from "../engine/keepout.ts";
 import { Capsule } from "../page/capsule.ts";
 import { colorOf } from "../page/color_of.ts";
+import { NearTriangles } from "../page/nearest.ts";
+import { type Contact, Magnifier } from "./magnifier.ts";
 import { colors } from "./markers.ts";
 import { set } from "./page.ts";
 import { Panes } from "./panes.ts";
 import type { FromWorker } from "./protocol.ts";
-import { crossingMark } from "./second_tool.ts";
 import type { SideHead } from "./side_head.ts";
 import { crossing, type Triangles } from "./wall.ts";
 
 type Shown = Extract<FromWorker, { kind: "counterexamples" }>;
-type Trial = Shown["examples"][number];
+type End = Shown["examples"][number]["ends"][number];
 
 /** Why the rule of Li et al. (2020) fails on each counterexample (docs/activation.md). */
 const reasons: Readonly<Record<string, string>> = {
-  CE2_boundary:
-    "The tip is just beside the rim of an open surface. The edge that it is nearest to has no " +
-    "neighbor, so none of the conditions of Li et al. holds. Their rule adds no plane, and the motion goes through. " +
-    "The surface is red from behind: drag to turn the view.",
+  CE2_boundary: "Beside the rim, Li et al.’s rule adds no plane, and the tool goes through.",
   CE5_closed_octahedron:
-    "The nearest point of the triangle ahead lies on a ridge. Li et al.’s rule leaves the triangle to its " +
-    "neighbor there. The neighbor’s plane does not cover it: the tool ends inside, which is red.",
+    "Li et al.’s rule adds no plane for the triangle ahead, and the tool ends inside the solid.",
   CE6c_larger_saddle:
-    "The commanded motion is free, and the certified rule returns it unchanged. Li et al.’s rule adds the " +
-    "plane of a triangle that is not in the way. The motion along that plane meets another triangle. The surface is red from behind.",
+    "The hand’s motion is free, but a plane of Li et al.’s rule turns the tool into the surface.",
 };
-/** The colors of a counterexample's triangles on the free side and on the forbidden side. */
-const faces = { free: colors.bone, forbidden: "#8f4a4e" } as const;
+/** The colors of a triangle on its two sides, and of its edges; the forbidden side is that of the section. */
+const look = { free: colors.bone, section: [0.55, 0.19, 0.17], edge: [0.2, 0.09, 0.05] } as const;
 
-/** The radius of the ball, as a fraction of the length that the view shows. */
-const ball = 0.03;
+/** The variables of the page's style with the colors of both tools. */
+const tools = ["--rule-paper", "--rule-certified"] as const;
+/** The height of the view by the length of the motion that the hand asks for; the radius of a ball by that height. */
+const [shown, ball] = [1.7, 0.018];
 
-/** Duration of the motion, of the approach of the view to its end, and of the rest after both. [ms] */
+/** Duration of the motion, and of the rest after it. [ms] */
 const way = 2000;
-const approach = 1200;
-const rest = 2800;
+const rest = 4000;
 
 /**
  * Plays counterexamples in the two panes of a container: in the first one under the rule of Li et al. (2020), in the
- * second one under the certified rule. One camera sees both; a drag turns it.
+ * second one under the certified rule. One camera sees both; a drag turns it. At the end, a section through each tool
+ * shows on which side of the surface it is, in both panes with the same magnification.
  */
 export class CounterexampleView {
   isOpen = false;
   private readonly panes: Panes;
   private readonly camera = new three.PerspectiveCamera(30, 1, 0.01, 1000);
+  private readonly magnifiers = tools.map((tool) => new Magnifier(tool));
   private renderer: three.WebGLRenderer | null = null;
   private controls: OrbitControls | null = null;
   private stages: Stage[] = [];
@@ -60,6 +59,10 @@ export class CounterexampleView {
   ) {
     this.panes = new Panes(container);
     this.panes.count = 2;
+    this.magnifiers.forEach((magnifier, i) => {
+      magnifier.show(look, 0);
+      container.querySelectorAll(".side")[i]?.append(magnifier.element);
+    });
   }
 
   open(shown: Shown): void {
@@ -73,6 +76,7 @@ export class CounterexampleView {
   close(): void {
     this.isOpen = false;
     if (this.renderer) this.renderer.domElement.hidden = true;
+    for (const { element } of this.magnifiers) element.hidden = true;
   }
 
   pause(isPaused: boolean): void {
@@ -84,53 +88,37 @@ export class CounterexampleView {
     const trial = this.shown?.examples.find(({ example }) => example.name === name);
     if (trial === undefined || this.shown === null) return;
     const { example, ends } = trial;
-    this.stages = ends.map(({ place }, i) => {
-      const color = colorOf(i === 0 ? "--rule-paper" : "--rule-certified");
-      return new Stage(example, place, color);
-    });
-    this.stages.forEach((stage, i) => {
-      const { clearance } = ends[i] as Trial["ends"][number];
-      const isIn = stage.crossedAt !== null;
-      const words = isIn ? "goes through the surface" : "stays out";
-      this.heads[i]?.show(words, isIn ? "stopped" : "free", clearance, isIn, 3);
-    });
+    const gap = Math.max(...ends.map(({ clearance }) => Math.abs(clearance)));
+    this.stages = ends.map((end, i) => new Stage(example, end, colorOf(tools[i] as string), gap));
     const asked = Math.hypot(...example.desired).toFixed(2);
     set(
       "sides-words",
-      `${reasons[name] ?? ""} One step: the hand asks for ${asked} mm (dashed), the margin is ` +
-        `${this.shown.margin} mm. Then the view comes close to the end. The tool is a point, in the middle of the ball, ` +
-        "which is pale where the surface hides it. The red disc marks where it goes through.",
+      `${reasons[name] ?? ""} The hand asks for ${asked} mm (dashed), and Certified keeps ` +
+        `the margin of ${this.shown.margin} mm. Red in the section is the forbidden side.`,
     );
-    const [first] = this.stages;
-    if (first !== undefined) this.aim(example, first, ends);
+    this.aim(example);
     this.clock = { at: performance.now(), played: 0 };
   }
 
-  /** Looks at the place where the motion crosses a triangle, from a side, with the free side above. */
-  private aim(
-    { tip, desired }: Counterexample,
-    { crossedAt, normal }: Stage,
-    ends: Trial["ends"],
-  ): void {
-    const target = vector(crossedAt ?? tip);
-    const { place: end } = ends[0] as Trial["ends"][number];
+  /** Looks at the motion that the hand asks for from a side, with the free side above. */
+  private aim({ tip, desired }: Counterexample): void {
+    const [first, second] = this.stages as [Stage, Stage];
     const { camera } = this;
+    const asked = vector(desired);
+    const target = vector(tip).addScaledVector(asked, 0.5);
+    const { normal } = first.contact;
     camera.up.copy(normal);
-    const side = vector(end).sub(vector(tip)).cross(normal).normalize();
-    const length = Math.max(5 * vector(end).distanceTo(target), 0.35 * vector(desired).length());
-    this.stages.forEach((stage, i) => {
-      stage.fit(target, length, (ends[i] as Trial["ends"][number]).clearance);
-    });
+    const side = asked.clone().cross(normal).normalize();
+    const height = shown * asked.length();
     const from = (sign: number) =>
       side
         .clone()
         .multiplyScalar(sign)
         .addScaledVector(normal, 0.4)
-        .setLength(2 * length)
+        .setLength(2 * height)
         .add(target);
     // From the side at which no triangle hides the tool of the certified rule.
-    const isSeen = (sign: number) => this.stages[1]?.isHiddenFrom(from(sign)) === false;
-    camera.position.copy(from([1, -1].find(isSeen) ?? 1));
+    camera.position.copy(from([1, -1].find((sign) => !second.isHiddenFrom(from(sign))) ?? 1));
     const renderer = this.prepare();
     this.controls?.dispose(); // they keep the first direction that is up
     this.controls = new OrbitControls(camera, renderer.domElement);
@@ -149,16 +137,15 @@ export class CounterexampleView {
   }
 
   private play(): void {
-    if (!this.isOpen) return;
+    const { controls, isOpen } = this;
+    if (!isOpen || controls === null) return;
     const renderer = this.prepare();
     const now = performance.now();
     if (!this.isPaused) this.clock.played += now - this.clock.at;
     this.clock.at = now;
     const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    const played = isStill ? way + approach : this.clock.played % (way + approach + rest);
-    const shareOf = (begin: number, duration: number) =>
-      three.MathUtils.smoothstep(played, begin, begin + duration);
-    const [share, nearness] = [shareOf(0, way), shareOf(way, approach)];
+    const played = isStill ? way : this.clock.played % (way + rest);
+    const share = three.MathUtils.smoothstep(played, 0, way);
     const { clientWidth, clientHeight } = this.container;
     renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     renderer.setSize(clientWidth, clientHeight);
@@ -166,154 +153,103 @@ export class CounterexampleView {
       const area = [x, clientHeight - y - height, width, height] as const;
       renderer.setViewport(...area);
       renderer.setScissor(...area);
-      const stage = this.stages[i];
-      if (stage === undefined) return;
-      const view = this.viewOf(stage, nearness, width / height);
-      stage.arrange(share, stage.closest ** nearness, view);
-      renderer.render(stage.scene, view);
+      const [stage, magnifier] = [this.stages[i], this.magnifiers[i]];
+      if (stage === undefined || magnifier === undefined) return;
+      // Beside the section, and below the head.
+      this.camera.setViewOffset(width, height, -0.12 * width, -0.05 * height, width, height);
+      stage.arrange(share, this.heads[i]);
+      renderer.render(stage.scene, this.camera);
+      magnifier.element.hidden = share < 1;
+      if (share < 1) return;
+      const { contact, near } = stage;
+      const pixel =
+        (2 * controls.getDistance() * Math.tan((0.5 * this.camera.fov * Math.PI) / 180)) / height;
+      magnifier.draw(contact, near, this.camera, pixel);
     });
     requestAnimationFrame(() => this.play());
-  }
-
-  /**
-   * Returns the camera of a stage. `nearness`: 0 for the camera of the controls, 1 for the last view. The last view is
-   * close to the end of the motion, and along the surface. It shows a section of a closed solid.
-   */
-  private viewOf(stage: Stage, nearness: number, aspect: number): three.PerspectiveCamera {
-    const target = this.controls?.target ?? new three.Vector3();
-    const scale = stage.closest ** nearness;
-    const view = this.camera.clone();
-    const away = this.camera.position.clone().sub(target);
-    away.addScaledVector(view.up, -0.85 * nearness * away.dot(view.up)).multiplyScalar(scale);
-    const middle = target.clone().lerp(stage.last, nearness);
-    view.position.copy(middle).add(away);
-    view.lookAt(middle);
-    view.near *= scale;
-    // The section begins just before the tool.
-    const cut = away.length() - 1.5 * scale * stage.radius;
-    if (stage.isClosed) view.near = three.MathUtils.lerp(view.near, cut, nearness);
-    view.aspect = aspect;
-    view.updateProjectionMatrix();
-    return view;
   }
 }
 
 /** One counterexample under one rule. */
 class Stage {
   readonly scene = new three.Scene();
-  /** The place where the motion of the tip crosses a triangle, or null. */
-  readonly crossedAt: Vec3 | null;
-  /** The normal of that triangle, into the free side. */
-  readonly normal = new three.Vector3(0, 0, 1);
-  /** True if each edge has a triangle on both sides. */
-  readonly isClosed: boolean;
+  readonly near: NearTriangles;
+  /** The end of the motion beside the surface; its clearance is below 0 if the motion went through. */
+  readonly contact: Contact;
   private readonly surface: Triangles;
   private readonly tip = new Capsule();
-  private readonly lights = new three.Group();
-  /** The length that the view shows at last, as a fraction of that at first. */
-  closest = 1;
-  /** The radius of the ball at first. [mm] */
-  radius = 0;
-  private readonly mark = crossingMark();
-  /** The fraction of the motion that precedes the view. */
-  private start = 0;
+  private readonly radius: number;
 
+  /** `gap`: the largest clearance that the section shows. [mm] */
   constructor(
-    example: Counterexample,
-    private readonly end: Vec3,
+    { tip, desired, vertices, triangles }: Counterexample,
+    { place, clearance }: End,
     tool: string,
-    private readonly begin = example.tip,
+    gap: number,
+    private readonly begin = vector(tip),
   ) {
-    const from = vector(begin);
-    const wanted = from.clone().add(vector(example.desired));
-    const corners = example.triangles.flat();
-    const vertices = example.vertices.flat();
-    this.surface = { vertices, corners };
-    const edges = example.triangles.flatMap(([a, b, c]) => [
-      [a, b],
-      [b, c],
-      [c, a],
-    ]);
-    const directed = new Set(edges.map(([from, to]) => `${from} ${to}`));
-    this.isClosed = edges.every(([from, to]) => directed.has(`${to} ${from}`));
-    this.crossedAt = crossing(this.surface, begin, end);
-    const crossed = example.triangles.find((one) =>
-      crossing({ vertices, corners: one }, begin, end),
-    );
-    if (crossed !== undefined) {
-      const [a, b, c] = crossed.map((corner) => vector(example.vertices[corner] as Vec3));
-      new three.Triangle(a, b, c).getNormal(this.normal);
-    }
+    const [end, wanted] = [vector(place), begin.clone().add(vector(desired))];
+    this.surface = { vertices: vertices.flat(), corners: triangles.flat() };
+    const positions = Float32Array.from(this.surface.vertices);
+    const corners = Uint32Array.from(this.surface.corners);
+    this.near = new NearTriangles(positions, corners);
+    const sign = crossing(this.surface, tip, place) === null ? 1 : -1;
+    const point = this.near.nearest(end)?.point ?? end;
+    this.contact = {
+      point,
+      normal: end.clone().sub(point).multiplyScalar(sign).normalize(),
+      body: { from: end, to: end, radius: 0.08 * gap },
+      clearance: sign * Math.abs(clearance),
+      margin: 0,
+      isGuarded: false,
+      isHeld: false,
+      widest: gap,
+    };
 
-    const geometry = new three.BufferGeometry().setFromPoints(example.vertices.map(vector));
-    geometry.setIndex(corners);
-    const flat = geometry.toNonIndexed();
-    flat.computeVertexNormals();
-    // Seen from the forbidden side, a triangle has another color.
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
+    geometry.setIndex(new three.BufferAttribute(corners, 1));
     for (const [color, side] of [
-      [faces.free, three.FrontSide],
-      [faces.forbidden, three.BackSide],
+      [new three.Color(look.free), three.FrontSide],
+      [new three.Color().setRGB(...look.section), three.BackSide],
     ] as const) {
-      this.scene.add(new three.Mesh(flat, new three.MeshLambertMaterial({ color, side })));
+      const material = new three.MeshBasicMaterial({ color, side });
+      this.scene.add(new three.Mesh(geometry, material));
     }
-    const rims = new three.LineBasicMaterial({ color: "#5d5142" });
-    this.scene.add(new three.LineSegments(new three.WireframeGeometry(flat), rims));
+    const rims = new three.LineBasicMaterial({ color: new three.Color().setRGB(...look.edge) });
+    this.scene.add(new three.LineSegments(new three.WireframeGeometry(geometry), rims));
 
-    const dashSize = 0.02 * from.distanceTo(wanted);
+    const dashSize = 0.02 * begin.distanceTo(wanted);
     const dash = { dashSize, gapSize: 0.7 * dashSize };
-    this.addLine(from, wanted, new three.LineDashedMaterial({ color: colors.hand, ...dash }));
-    this.addLine(from, vector(end), new three.LineBasicMaterial({ color: tool }));
+    this.addLine(wanted, new three.LineDashedMaterial({ color: colors.hand, ...dash }));
+    this.addLine(end, new three.LineBasicMaterial({ color: tool }));
+    this.radius = ball * shown * begin.distanceTo(wanted);
     this.tip.paint(tool);
     this.scene.add(...this.tip.parts);
-    if (this.crossedAt !== null) {
-      this.mark.position.copy(vector(this.crossedAt));
-      this.scene.add(this.mark);
-    }
-    const key = new three.DirectionalLight("#ffffff", 1.9);
-    key.position.set(-1.6, 1, 0.3);
-    this.lights.add(key, new three.HemisphereLight("#ffffff", "#b5a99a", 1.6));
-    this.scene.add(this.lights);
-  }
-
-  /** The end of the motion. */
-  get last(): three.Vector3 {
-    return vector(this.end);
   }
 
   /** True if a triangle hides the end of the motion from a place. */
   isHiddenFrom(place: three.Vector3): boolean {
-    return crossing(this.surface, place.toArray(), this.end) !== null;
+    return crossing(this.surface, place.toArray(), this.contact.body.to.toArray()) !== null;
   }
 
-  /**
-   * Fits the tool to a view that shows `length` around a target, and begins the motion within it. At last the view
-   * shows a ball that is smaller than the clearance of its middle.
-   */
-  fit(target: three.Vector3, length: number, clearance: number): void {
-    this.radius = ball * length;
-    this.closest = Math.min(1, (0.5 * Math.abs(clearance)) / this.radius);
-    const [from, to] = [vector(this.begin), vector(this.end)];
-    for (this.start = 0; this.start < 0.9; this.start += 0.02) {
-      if (from.clone().lerp(to, this.start).distanceTo(target) <= 0.42 * length) return;
-    }
+  /** Shows the motion at the fraction `share`; the head has the result at the end. */
+  arrange(share: number, head: SideHead | undefined): void {
+    const { body, clearance } = this.contact;
+    const place = this.begin.clone().lerp(body.to, share);
+    this.tip.place(place, place, this.radius);
+    const isIn = clearance < 0;
+    if (share < 1) head?.show("moving", "unguarded", Number.NaN);
+    else if (isIn) head?.show("goes through the surface", "stopped", clearance, true, 3);
+    else head?.show("stays out", "free", clearance, false, 3);
   }
 
-  /** Shows the motion at the fraction `share`, in a view scaled by `scale`. The lights are fixed to the view. */
-  arrange(share: number, scale: number, camera: three.Camera): void {
-    const fraction = this.start + share * (1 - this.start);
-    const place = vector(this.begin).lerp(vector(this.end), fraction);
-    this.tip.place(place, place, scale * this.radius);
-    this.mark.scale.setScalar(0.6 * scale * this.radius);
-    this.lights.quaternion.copy(camera.quaternion);
-  }
-
-  /** Draws a line, faintly where a triangle hides it. */
+  /** Draws a line from the begin of the motion, faintly where a triangle hides it. */
   private addLine(
-    from: three.Vector3,
     to: three.Vector3,
     material: three.LineBasicMaterial | three.LineDashedMaterial,
   ): void {
-    const geometry = new three.BufferGeometry().setFromPoints([from, to]);
+    const geometry = new three.BufferGeometry().setFromPoints([this.begin, to]);
     const hidden = material.clone();
     hidden.depthTest = false;
     hidden.transparent = true;

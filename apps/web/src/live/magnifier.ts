@@ -19,6 +19,8 @@ export interface Contact {
   readonly isGuarded: boolean;
   /** True if the surface limits the motion. */
   readonly isHeld: boolean;
+  /** For a point beside a surface that may be open: the clearance that fills the picture, at any magnification. [mm] */
+  readonly widest?: number;
 }
 
 /** The largest magnification of the view. */
@@ -49,7 +51,8 @@ export class Magnifier {
   /** The text and colors of the present picture. */
   private drawn = "";
 
-  constructor() {
+  /** `tool`: the variable of the page's style with the color of the tool. */
+  constructor(private readonly tool = "--tool") {
     const legend = make("span", { class: "bands" });
     for (const color of clearanceColors) {
       const band = make("i");
@@ -67,7 +70,7 @@ export class Magnifier {
   }
 
   /** Takes the colors of the page, and those of a tissue. `range`: of the legend. [mm] */
-  show(tissue: Tissue, range: number): void {
+  show(tissue: Pick<Tissue, "section" | "edge">, range: number): void {
     const css = (color: readonly [number, number, number]) =>
       `#${new three.Color().setRGB(...color).getHexString()}`;
     this.solid = css(tissue.section);
@@ -80,7 +83,7 @@ export class Magnifier {
   }
 
   paint(): void {
-    const names = ["--ink", "--tool", "--plane", "--alarm", "--solid"];
+    const names = ["--ink", this.tool, "--plane", "--alarm", "--solid"];
     this.drawn = "";
     this.colors = Object.fromEntries(names.map((name) => [name, colorOf(name)]));
   }
@@ -89,27 +92,31 @@ export class Magnifier {
   draw(contact: Contact, near: NearTriangles, camera: three.Camera, pixel: number): void {
     this.element.hidden = false;
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    const { point, normal, clearance, margin, isHeld, isGuarded } = contact;
+    const { point, normal, clearance, margin, isHeld, isGuarded, widest } = contact;
     const view = [camera.matrixWorld.elements, point.toArray(), normal.toArray(), pixel];
     const now = [view, clearance, margin, isHeld, isGuarded, width, height].join();
     if (width === 0 || height === 0 || now === this.drawn) return;
     this.drawn = now;
     const factor = Math.min(
-      most,
-      (widestGap * width * pixel) / Math.max(Math.abs(clearance), 1e-9),
+      widest ? Infinity : most,
+      (widestGap * width * pixel) / Math.max(widest ?? Math.abs(clearance), 1e-9),
       (widestMargin * width * pixel) / Math.max(margin, 1e-9),
     );
     const times = factor < 1.95 ? factor.toFixed(1) : factor.toFixed(0);
-    const kept = isGuarded && margin > 0 ? `, margin ${millimetres(margin)}` : "";
+    const margins = isGuarded && margin > 0 ? `, margin ${millimetres(margin)}` : "";
     // The section of a body that is deeper than the section is wide is smaller than the view.
     set(this.times, factor < 1 ? "section" : `${times}×`);
-    set(this.kept, kept);
+    set(this.kept, widest ? ", end of the motion" : margins);
     const scale = factor / pixel;
     const middle = point.clone().addScaledVector(normal, 0.5 * clearance);
     const [right, up] = axesOf(contact, camera);
     const flat = (place: three.Vector3): [number, number] => {
       const way = place.clone().sub(middle);
-      return [0.5 * width + scale * way.dot(right), 0.5 * height - scale * way.dot(up)];
+      // Beside it, a clearance with more decimals has place.
+      return [
+        (widest ? 0.35 : 0.5) * width + scale * way.dot(right),
+        0.5 * height - scale * way.dot(up),
+      ];
     };
 
     const density = Math.min(devicePixelRatio, 2);
@@ -119,7 +126,10 @@ export class Magnifier {
     pen.scale(density, density);
     const reach = (0.7 * (width + height)) / scale;
     const pieces = cut(near, middle, [right, up], reach, flat);
+    pen.save();
+    if (widest) pen.clip(behind(pieces, width + height));
     this.drawSolid(pen, pieces, width, height);
+    pen.restore();
     this.drawTool(pen, contact, flat, scale);
     this.drawGap(pen, contact, flat, [width, height]);
   }
@@ -176,11 +186,11 @@ export class Magnifier {
   /** Draws the tool, and around it the shell of its margin. */
   private drawTool(
     pen: CanvasRenderingContext2D,
-    { body, margin, isGuarded }: Contact,
+    { body, margin, isGuarded, widest }: Contact,
     flat: (place: three.Vector3) => [number, number],
     scale: number,
   ): void {
-    const { "--tool": color = "" } = this.colors;
+    const { [this.tool]: color = "", "--solid": ground = "" } = this.colors;
     const outline = (radius: number) => {
       const [[ax, ay], [bx, by]] = [flat(body.from), flat(body.to)];
       const along = Math.atan2(by - ay, bx - ax);
@@ -204,12 +214,15 @@ export class Magnifier {
     outline(body.radius);
     pen.fill();
     pen.globalAlpha = 1;
+    if (!widest) return;
+    pen.strokeStyle = ground;
+    pen.stroke();
   }
 
   /** Draws the tangent plane, and the clearance between tool and surface. */
   private drawGap(
     pen: CanvasRenderingContext2D,
-    { point, normal, clearance, isHeld }: Contact,
+    { point, normal, clearance, isHeld, widest }: Contact,
     flat: (place: three.Vector3) => [number, number],
     [width, height]: readonly [number, number],
   ): void {
@@ -230,25 +243,27 @@ export class Magnifier {
     pen.strokeStyle = isHeld ? plane : ink;
     pen.globalAlpha = isHeld ? 1 : 0.4;
     pen.lineWidth = isHeld ? 2 : 1;
-    pen.stroke();
+    if (!widest) pen.stroke();
     pen.globalAlpha = 1;
 
     pen.beginPath();
-    for (const [a, b] of [
+    const ends = [
       [x, y],
       [u, v],
-    ] as const) {
+    ] as const;
+    // A point needs no mark besides its dot.
+    for (const [a, b] of widest ? ends.slice(0, 1) : ends) {
       pen.moveTo(a - 5 * ny, b + 5 * nx);
       pen.lineTo(a + 5 * ny, b - 5 * nx);
     }
     pen.moveTo(x, y);
     pen.lineTo(u, v);
-    pen.strokeStyle = clearance < 0 ? alarm : ink;
+    pen.strokeStyle = clearance < 0 && !widest ? alarm : ink;
     pen.lineWidth = 1.6;
     pen.stroke();
 
     // Beside the gap, along the plane.
-    const text = millimetres(clearance);
+    const text = millimetres(clearance, widest ? 3 : 2);
     pen.font = this.font;
     const long = pen.measureText(text).width + 10;
     const side = 14 + 0.5 * (Math.abs(ny) * long + Math.abs(nx) * 18);
@@ -322,6 +337,22 @@ function cut(
     pieces.push([...a, ...b, normal.dot(right), -normal.dot(up)]);
   });
   return pieces;
+}
+
+/** Returns the pieces and what is behind them: a surface has no side beyond its rim. */
+function behind(pieces: readonly Piece[], far: number): Path2D {
+  const path = new Path2D();
+  for (const [ax, ay, bx, by, nx, ny] of pieces) {
+    const [u, v] = unit(nx, ny);
+    // All in the same sense of rotation, so that two of them do not cancel each other.
+    const isTurned = (bx - ax) * v > (by - ay) * u;
+    const [px, py, qx, qy] = isTurned ? [bx, by, ax, ay] : [ax, ay, bx, by];
+    path.moveTo(px + u, py + v);
+    path.lineTo(qx + u, qy + v);
+    path.lineTo(qx - far * u, qy - far * v);
+    path.lineTo(px - far * u, py - far * v);
+  }
+  return path;
 }
 
 /** True if the piece that is nearest to a point of the picture faces away from it. */

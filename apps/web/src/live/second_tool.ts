@@ -53,7 +53,7 @@ export class SecondTool {
 }
 
 /** Returns a red ball that marks where a motion went through a surface; visible through it. */
-export function crossingMark(): three.Mesh {
+function crossingMark(): three.Mesh {
   const mark = new three.Mesh(
     new three.SphereGeometry(1, 24, 12),
     new three.MeshBasicMaterial({ color: colors.hand, depthTest: false, transparent: true }),

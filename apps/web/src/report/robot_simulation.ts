@@ -18,6 +18,8 @@ interface Run {
   readonly mode: string;
   readonly worst: number;
   readonly places: readonly (readonly Place[])[];
+  /** The other ends of the bodies, if a body does not begin where the one before ends. */
+  readonly begins?: readonly (readonly Place[])[];
   readonly clearance_mm: readonly (readonly (number | null)[])[];
 }
 interface Stroke {
@@ -100,6 +102,12 @@ function figures(record: RobotSimulationRecord): HTMLElement {
         ...harm("deepest", `/${name}_deepest_mm`),
         content: (row: string) => depthOf(`${row}/${name}_deepest_mm`, radius_mm),
       },
+      ...(valueAt(`/rows/0/${name}_error_mm`) === undefined
+        ? []
+        : [
+            { heading: "least", from: `/${name}_least_mm`, format: millimetres },
+            { heading: "from setpoint", from: `/${name}_error_mm`, format: millimetres },
+          ]),
     ]),
   ];
   return tableSection(
@@ -128,7 +136,11 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
   const range = make(
     "select",
     { "aria-label": "view" },
-    make("option", { value: "whole" }, "the whole anatomy and the port"),
+    make(
+      "option",
+      { value: "whole" },
+      `the whole anatomy and the ${hasPort(mesh.strokes[0]) ? "port" : "base"}`,
+    ),
     make("option", { value: "tip" }, "the tip"),
   );
   const content = make("div");
@@ -158,12 +170,18 @@ async function meshSection(record: RobotSimulationRecord, number: number): Promi
       range,
       ". ",
       make("b", {}, "Red"),
-      " is the body that the mesh reaches into farthest. A pale part is hidden by the surface. The gray ball is the port; the shaft above it is not guarded.",
+      " is the body that the mesh reaches into farthest. A pale part is hidden by the surface. ",
+      hasPort(mesh.strokes[0])
+        ? "The gray ball is the port; the shaft above it is not guarded."
+        : "The gray ball is the origin of the base.",
     ),
     content,
     hint(runs.length),
   );
 }
+
+/** True if the first body begins in a port, and each other one where the body before it ends. */
+const hasPort = (stroke: Stroke | undefined): boolean => stroke?.runs[0]?.begins === undefined;
 
 /** Returns the ends of the instrument's bodies in a cycle: the port, and the end of each body. */
 const ends = ({ port }: Stroke, run: Run, cycle: number, { placed }: Anatomy): three.Vector3[] =>
@@ -193,15 +211,16 @@ function strokeView(
       const places = ends(stroke, run, cycle, anatomy);
       layer.bodies = bodies.map(({ radius_mm }, body): Body => {
         const isDeepest = least < 0 && body === nearest;
+        const begin = run.begins?.[cycle]?.[body];
         return {
-          from: places[body] as three.Vector3,
+          from: begin ? anatomy.placed(begin) : (places[body] as three.Vector3),
           to: places[body + 1] as three.Vector3,
           radius: radius_mm,
           color: isDeepest ? "--alarm" : ruleColor(run.mode),
           hidden: isDeepest ? 0.6 : 0.2,
         };
       });
-      layer.bodies = [...layer.bodies, ...portMarks(places)];
+      layer.bodies = [...layer.bodies, ...portMarks(places, hasPort(stroke))];
       const at = `${from}/runs/${number}/clearance_mm/${cycle}/${nearest}`;
       const how = (mm: number) => (mm < 0 ? deep(mm) : millimetres(mm));
       if (Number.isFinite(least)) {
@@ -227,15 +246,14 @@ function strokeView(
 /** The length of the drawn shaft above the port, and the radii of both marks. [mm] */
 const [abovePort, shaftRadius, portRadius] = [45, 4, 7];
 
-/** Returns the marks of the port, and the shaft above it. */
-function portMarks([port, wrist]: readonly three.Vector3[]): Body[] {
+/** Returns the marks of the port, and the shaft above it; without a port only the mark of the base. */
+function portMarks([port, wrist]: readonly three.Vector3[], isPort: boolean): Body[] {
   if (port === undefined || wrist === undefined) return [];
-  const up = port.clone().sub(wrist).setLength(abovePort).add(port);
   const gray = { color: "--soft", hidden: 0.1 };
-  return [
-    { from: port, to: port, radius: portRadius, ...gray },
-    { from: port, to: up, radius: shaftRadius, ...gray },
-  ];
+  const mark = { from: port, to: port, radius: portRadius, ...gray };
+  if (!isPort) return [mark];
+  const up = port.clone().sub(wrist).setLength(abovePort).add(port);
+  return [mark, { from: port, to: up, radius: shaftRadius, ...gray }];
 }
 
 /** Views the whole anatomy with the port, from the front, turned to the side of the tip. */

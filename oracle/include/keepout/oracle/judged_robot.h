@@ -13,12 +13,17 @@ namespace keepout::oracle {
 /// A row of a Denavit-Hartenberg table in Craig's convention: a rotation about x, a displacement
 /// along x, a rotation about z, a displacement along z. The joint turns about z or slides along z.
 /// The frame after the row is that of its link.
+///
+/// A row of a robot that has no table has the fixed transform `before` instead, and its joint turns
+/// about `axis` or slides along it.
 struct TableRow {
   bool slides = false;        // the position is added to d, and not to theta
   double a = 0.0;             // along x [length]
   double alpha_quarters = 0;  // about x, in right angles
   double d = 0.0;             // along z [length]
   double theta_quarters = 0;  // about z, in right angles
+  Pose before = {};           // precedes all of this
+  Vec3 axis = Vec3::UnitZ();  // of the joint, unit
 };
 
 /// A point that a link carries.
