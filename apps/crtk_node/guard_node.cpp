@@ -25,6 +25,8 @@ GuardNode::GuardNode(const Settings& settings, const Scene& scene, Transport& tr
       transport_(transport),
       session_(make_session(settings, scene)),
       drives_joints_(!settings.robot.empty()) {
+  if (drives_joints_) joint_names_ = joint_names(settings);
+  for (const std::string& name : joint_names_) names_.first[names_.count++] = name;
   const auto of_robot = [&](const char* command, Kind kind) {
     return transport.subscribe(settings.of_robot(command), kind);
   };
@@ -90,7 +92,13 @@ void GuardNode::receive_pose(int topic, const Message& message) {
   }
 }
 
+/// Returns true if a message states other joints than those of the chain, or in another order.
+bool GuardNode::has_other_joints(const Names& names) const {
+  return names.count != 0 && (names.count != names_.count || names.first != names_.first);
+}
+
 void GuardNode::receive_joints(int topic, const Message& message) {
+  if (has_other_joints(message.names)) return session_.refuse(CycleStatus::wrong_command);
   const MessageHeader header{message.stamp, message.frame};
   if (topic == measured_js_) {
     session_.on_measured_js(span_of(message.positions), header);
@@ -134,6 +142,7 @@ void GuardNode::send_setpoint(double now) {
     const std::span<const double> positions = session_.setpoint_jp();
     transport_.send(command_, {.stamp = now,
                                .frame = settings_.frame,
+                               .names = names_,
                                .positions = {positions.data(), positions.size()}});
   } else {
     transport_.send(command_, message_of(*session_.setpoint_cp(), now, settings_.frame));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "drawing.h"
 #include "keepout/control/crtk_session.h"
@@ -21,6 +22,9 @@ class GuardNode final : public Node {
   /// Subscribes and announces. `transport` must outlive the node. Throws Error.
   GuardNode(const Settings& settings, const Scene& scene, Transport& transport);
 
+  GuardNode(const GuardNode&) = delete;
+  GuardNode& operator=(const GuardNode&) = delete;
+
   void receive(int topic, const Message& message) override;
   void cycle(double now) override;
   std::string summary() const override;
@@ -28,6 +32,7 @@ class GuardNode final : public Node {
  private:
   void receive_pose(int topic, const Message& message);
   void receive_joints(int topic, const Message& message);
+  bool has_other_joints(const Names& names) const;
   void send_setpoint(double now);
   void send_to_teleoperation(double now);
   void report(double now);
@@ -36,6 +41,8 @@ class GuardNode final : public Node {
   Transport& transport_;
   CrtkSession session_;
   bool drives_joints_;
+  std::vector<std::string> joint_names_;  // of the chain
+  Names names_;                           // joint_names_
   // Subscriptions.
   int measured_cp_, measured_js_, setpoint_cp_, setpoint_js_, operating_state_;
   int servo_cp_, servo_jp_, servo_jv_, engage_;

@@ -14,10 +14,10 @@
 #include "keepout/fixtures/robots.h"
 #include "shared/named_mesh.h"
 #include "shared/names.h"
-
-#if __has_include("keepout/urdf/read_robot.h")
+#include "shared/progress.h"
+#include "shared/robot_file.h"
+#if KEEPOUT_HAS_URDF
 #include "keepout/urdf/read_robot.h"
-#define KEEPOUT_READS_ROBOTS 1
 #endif
 
 namespace keepout::crtk {
@@ -82,16 +82,21 @@ Registration read_registration(const Settings& settings) {
 Instrument instrument_of(const Settings& settings) {
   if (settings.robot == "psm") return psm();
   if (settings.robot == "seven_joint_arm") return seven_joint_arm();
-#if KEEPOUT_READS_ROBOTS
-  const Instrument instrument = read_robot(settings.robot, settings.bodies).instrument;
-  if (instrument.chain().base().position != Vec3::Zero() ||
-      instrument.chain().base().rotation != Mat3::Identity()) {
-    throw Error(settings.bodies.string() +
-                ": omit the pose of the base: the registration states where the anatomy is");
+  if (!app::is_robot_file(settings.robot)) {
+    throw Error("--robot must be psm, seven_joint_arm or a URDF file, not " +
+                app::in_quotes(settings.robot));
   }
-  return instrument;
+#if KEEPOUT_HAS_URDF
+  const UrdfRobot read = read_robot(settings.robot, settings.bodies);
+  for (const std::string& notice : read.notices) app::warn_on_stderr(notice);
+  const Pose& base = read.instrument.chain().base();
+  if (base.position != Vec3::Zero() || base.rotation != Mat3::Identity()) {
+    throw Error(settings.bodies.string() +
+                ": remove 'base_pose': the registration states where the anatomy is");
+  }
+  return read.instrument;
 #else
-  throw Error("--robot must be psm or seven_joint_arm, not " + app::in_quotes(settings.robot));
+  throw Error("this build reads no URDF: it needs liburdfdom-dev and liburdfdom-headers-dev");
 #endif
 }
 
@@ -158,6 +163,14 @@ MotionConstraint make_tip_guard(const Settings& settings, const Scene& scene) {
   return make_motion_constraint(
       scene.mesh, scene.index,
       {.options = {.tool_radius = settings.tool_radius, .margin = settings.margin}});
+}
+
+std::vector<std::string> joint_names(const Settings& settings) {
+  const Instrument instrument = instrument_of(settings);
+  const Chain& chain = instrument.chain();
+  std::vector<std::string> names;
+  for (int k = 1; k <= chain.size(); ++k) names.push_back(chain.joint(k).name);
+  return names;
 }
 
 CrtkSession make_session(const Settings& settings, const Scene& scene) {

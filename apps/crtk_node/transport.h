@@ -30,6 +30,12 @@ struct Numbers {
   std::size_t size = 0;
 };
 
+/// The names of a message's joints, which the message does not own.
+struct Names {
+  std::array<std::string_view, 8> first = {};  // the first ones: no chain has more joints
+  std::size_t count = 0;                       // of all; 0: not stated
+};
+
 /// The values of a message, for all kinds: each kind uses the members that its comment names. Views
 /// are valid until the function that receives them returns. Lengths are in meters.
 struct Message {
@@ -37,6 +43,7 @@ struct Message {
   std::string_view frame = {};          // all but flag and text
   std::array<double, 3> vector = {};    // pose: position; wrench: force [N]
   std::array<double, 4> rotation = {};  // pose: quaternion x, y, z, w
+  Names names = {};                     // joints
   Numbers positions = {};               // joints [rad or m]
   Numbers velocities = {};              // joints [rad/s or m/s]
   std::string_view text = {};           // state: its name; text

@@ -81,6 +81,10 @@ Message values_of(Kind kind, const void* sample) {
     case Kind::joints: {
       const auto& message = *static_cast<const JointState*>(sample);
       set(message.header, values);
+      values.names.count = message.name._length;
+      for (std::size_t k = 0; k < std::min(values.names.count, values.names.first.size()); ++k) {
+        values.names.first[k] = message.name._buffer[k];
+      }
       values.positions = numbers_of(message.position);
       values.velocities = numbers_of(message.velocity);
       break;
@@ -141,6 +145,10 @@ void write(dds_entity_t writer, Kind kind, const Message& values) {
     case Kind::joints: {
       JointState message{};
       set(values, message.header);
+      char names[std::tuple_size_v<decltype(values.names.first)>][256];
+      for (std::size_t k = 0; k < values.names.count; ++k) copy(values.names.first[k], names[k]);
+      const auto count = static_cast<std::uint32_t>(values.names.count);
+      message.name = {count, count, names, false};
       message.position = sequence_of(values.positions);
       message.velocity = sequence_of(values.velocities);
       return send(message);

@@ -46,6 +46,9 @@ Message values_of(const geometry_msgs::PoseStamped& message) {
 
 Message values_of(const sensor_msgs::JointState& message) {
   Message values = stamped(message);
+  values.names.count = message.name.size();
+  const std::size_t known = std::min(message.name.size(), values.names.first.size());
+  std::copy_n(message.name.begin(), known, values.names.first.begin());
   values.positions = numbers_of(message.position);
   values.velocities = numbers_of(message.velocity);
   return values;
@@ -94,6 +97,8 @@ geometry_msgs::PoseStamped pose_of(const Message& values) {
 
 sensor_msgs::JointState joints_of(const Message& values) {
   auto message = with_header<sensor_msgs::JointState>(values);
+  const auto& names = values.names.first;
+  message.name.assign(names.begin(), names.begin() + values.names.count);
   message.position.assign(values.positions.data, values.positions.data + values.positions.size);
   message.velocity.assign(values.velocities.data, values.velocities.data + values.velocities.size);
   return message;

@@ -41,9 +41,10 @@ WireHeader header_at(double stamp, std::string of = frame) {
           std::move(of)};
 }
 
-/// Returns a domain that other tests, which run at the same time, do not use.
+/// Returns a domain that other tests, which run at the same time, do not use. The ports of domains
+/// above 101 are among those that the system gives to any process.
 std::uint32_t own_domain() {
-  static const std::uint32_t domain = 20 + static_cast<std::uint32_t>(::getpid()) % 200;
+  static const std::uint32_t domain = 20 + static_cast<std::uint32_t>(::getpid()) % 80;
   return domain;
 }
 
@@ -67,6 +68,7 @@ std::string cube_at(const Vec3& middle) {
 class DdsNode : public testing::Test {
  protected:
   DdsNode() : matrix_(Eigen::Matrix4d::Identity()), registration_(registered()) {}
+  ~DdsNode() override { peer_.reset(); }  // its threads write into the members
 
   Registration registered() {
     const double angle = 0.5;
@@ -121,6 +123,7 @@ class DdsNode : public testing::Test {
     peer_->read<WireJoints>("rt/PSM1/servo_jp", [this](const WireJoints& joints) {
       const std::lock_guard lock(mutex_);
       if (joints_.empty() || joints_.back() != joints.position) joints_.push_back(joints.position);
+      joint_names_ = joints.name;
       ++received_;
     });
     peer_->read<WirePose>("rt/keepout/PSM1/measured_cp", [this](const WirePose& pose) {
@@ -254,6 +257,7 @@ class DdsNode : public testing::Test {
   std::array<double, 3> seen_ = {};  // the last measured position
   std::vector<WirePose> poses_;
   std::vector<std::vector<double>> joints_;
+  std::vector<std::string> joint_names_;
   int received_ = 0;
   std::string reason_, state_;
 };
@@ -351,6 +355,21 @@ TEST_F(DdsNode, JointSetpointsAreBitwiseThoseOfADirectConstraint) {
   EXPECT_EQ(next, joints_.size()) << "a setpoint is not one of the direct constraint";
   EXPECT_GT(next, 50U) << reason_;
   EXPECT_GT(held, 0U);
+}
+
+TEST_F(DdsNode, JointsInAnotherOrderAreRefused) {
+  write_files(Vec3(0, 0, 1000));
+  start({"--robot=psm"});
+  robot_joints_.position = {0.1, -0.2, 0.10, 0.3, 0.2, -0.1};
+  robot_joints_.name = {"yaw", "pitch", "insertion", "roll", "wrist_pitch", "wrist_yaw"};
+  engage();
+  EXPECT_EQ(joint_names_, robot_joints_.name);
+  joint_goal_ = robot_joints_;
+  EXPECT_TRUE(play([&] { return reason_.starts_with("guarded:"); })) << reason_;
+  std::swap(joint_goal_->name[0], joint_goal_->name[1]);
+  EXPECT_TRUE(play([&] { return reason_.starts_with("wrong_command:"); })) << reason_;
+  joint_goal_->name.clear();  // not stated
+  EXPECT_TRUE(play([&] { return reason_.starts_with("guarded:"); })) << reason_;
 }
 
 TEST_F(DdsNode, StandsStillWithAReasonForEveryWrongMessage) {
@@ -465,6 +484,10 @@ TEST_F(DdsNode, EndsWithAMessageForSettingsThatItCannotUse) {
   ends({"--guard=PSM1"}, "--guard must differ");
   ends({"--hand=a b"}, "--hand must be a name");
   ends({"--robot=scara"}, "--robot must be psm");
+#if KEEPOUT_HAS_URDF
+  const std::string arm = KEEPOUT_ROBOTS "/six_joint_arm";
+  ends({"--robot=" + arm + ".urdf", "--bodies=" + arm + ".json"}, "remove 'base_pose'");
+#endif
   write_files(Vec3::Zero(), ",\"doubt\":\"a scale of 1000\"");
   ends({}, "do not trust this registration: a scale of 1000");
   write_files(Vec3::Zero(), ",\"margin\":2.5");

@@ -4,6 +4,7 @@
 import json
 import math
 import os
+import shutil
 import socket
 import subprocess
 import threading
@@ -24,6 +25,9 @@ try:
     import rostopic
 except ImportError as error:
     pytest.skip(f"needs python3-rospy and more: {error}", allow_module_level=True)
+
+if shutil.which("rosmaster") is None:
+    pytest.skip("there is no rosmaster: needs python3-rosmaster", allow_module_level=True)
 
 import keepout
 
