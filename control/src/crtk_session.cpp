@@ -13,7 +13,30 @@ namespace {
 
 constexpr std::array<std::string_view, 4> state_names{"DISABLED", "ENABLED", "PAUSED", "FAULT"};
 
-CrtkOptions checked(CrtkOptions options) {
+/// Throws Error for a length beyond any robot, as a default in mm for a mesh in meters.
+void require_plausible(const CrtkOptions& options, const Registration& registration) {
+  if (registration.mesh_unit() != LengthUnit::metre) return;
+  const auto require = [](std::string_view name, double value, double most) {
+    if (value <= most) return;
+    throw Error("CRTK session: " + std::string(name) + ": " + std::to_string(value) +
+                " with a mesh in meters: expected at most " + std::to_string(most) +
+                "; the defaults are for a mesh in mm");
+  };
+  require("top_speed [m/s]", options.haptic.top_speed, 10.0);
+  require("farthest [m]", options.haptic.farthest, 1.0);
+  require("farthest_lag [m]", options.farthest_lag, 1.0);
+  require("farthest_start [m]", options.farthest_start, 10.0);
+}
+
+MotionConstraint of_ball(MotionConstraint guard) {
+  if (!guard.guards_a_tool()) return guard;
+  throw Error(
+      "CRTK session: the constraint guards a convex tool, which would not turn with the robot; "
+      "use a ball (tool_radius), or the session of an instrument");
+}
+
+CrtkOptions checked(CrtkOptions options, const Registration& registration) {
+  require_plausible(options, registration);
   constexpr double infinity = std::numeric_limits<double>::infinity();
   require_number("CRTK session: motion_scale", options.motion_scale, above_zero(1e3));
   if (!is_rotation(options.hand_from_robot)) {
@@ -42,15 +65,15 @@ std::optional<OperatingState> operating_state_of(std::string_view name) noexcept
 
 CrtkSession::CrtkSession(MotionConstraint guard, const Registration& registration,
                          const CrtkOptions& options)
-    : proxy_(std::in_place_type<HapticProxy>, std::move(guard), options.haptic),
+    : proxy_(std::in_place_type<HapticProxy>, of_ball(std::move(guard)), options.haptic),
       registration_(registration),
-      options_(checked(options)) {}
+      options_(checked(options, registration)) {}
 
 CrtkSession::CrtkSession(InstrumentConstraint guard, const Registration& registration,
                          const CrtkOptions& options)
     : proxy_(std::in_place_type<InstrumentProxy>, std::move(guard), options.haptic),
       registration_(registration),
-      options_(checked(options)) {
+      options_(checked(options, registration)) {
   set_registration(registration);
 }
 
@@ -60,28 +83,32 @@ void CrtkSession::on_operating_state(OperatingState state, bool is_homed) noexce
 }
 
 void CrtkSession::on_measured_cp(const Pose& pose, const MessageHeader& header) noexcept {
-  if (tip() == nullptr || !is_accepted(pose, header)) return;
+  if (tip() == nullptr) return;
+  measured_stamp_ = never;
+  if (!is_accepted(pose, header)) return;
   measured_ = pose;
   measured_stamp_ = header.stamp;
 }
 
 void CrtkSession::on_measured_js(std::span<const double> positions,
                                  const MessageHeader& header) noexcept {
-  if (instrument() == nullptr || !take(positions, measured_joints_)) return;
+  if (instrument() == nullptr) return;
+  measured_stamp_ = never;
+  if (!take(positions, measured_joints_)) return;
   measured_ = scaled(instrument()->flange_at(all(measured_joints_)), 1.0 / registration_.scale());
   measured_stamp_ = header.stamp;
 }
 
 void CrtkSession::on_setpoint_cp(const Pose& pose, const MessageHeader& header) noexcept {
-  if (tip() == nullptr || !is_accepted(pose, header)) return;
+  if (tip() == nullptr) return;
+  start_stamp_ = is_accepted(pose, header) ? header.stamp : never;
   start_ = pose;
-  start_stamp_ = header.stamp;
 }
 
 void CrtkSession::on_setpoint_js(std::span<const double> positions,
                                  const MessageHeader& header) noexcept {
-  if (instrument() == nullptr || !take(positions, start_joints_)) return;
-  start_stamp_ = header.stamp;
+  if (instrument() == nullptr) return;
+  start_stamp_ = take(positions, start_joints_) ? header.stamp : never;
 }
 
 void CrtkSession::on_servo_cp(const Pose& goal, const MessageHeader& header) noexcept {
@@ -130,14 +157,16 @@ bool CrtkSession::take(std::span<const double> numbers, Positions& joints) noexc
     refuse(CycleStatus::wrong_command);
     return false;
   }
-  if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); })) {
+  Positions scaled{};
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const bool slides = chain.joint(static_cast<int>(k) + 1).kind == JointKind::prismatic;
+    scaled[k] = slides ? registration_.scale() * numbers[k] : numbers[k];
+  }
+  if (!std::ranges::all_of(scaled, [](double number) { return std::isfinite(number); })) {
     refuse(CycleStatus::invalid_pose);
     return false;
   }
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const bool slides = chain.joint(static_cast<int>(k) + 1).kind == JointKind::prismatic;
-    joints[k] = slides ? registration_.scale() * numbers[k] : numbers[k];
-  }
+  joints = scaled;
   return true;
 }
 
@@ -155,7 +184,8 @@ Vec3 CrtkSession::position_of(const Pose& pose) const noexcept {
 }
 
 bool CrtkSession::is_ready() const noexcept {
-  return !options_.needs_feedback || (robot_state_ == OperatingState::enabled && is_homed_);
+  if (!robot_state_) return !options_.needs_feedback;
+  return robot_state_ == OperatingState::enabled && is_homed_;
 }
 
 bool CrtkSession::is_fresh(double stamp, double now) const noexcept {
@@ -170,7 +200,10 @@ CycleStatus CrtkSession::engage(double now) noexcept {
   if (!is_ready()) return cycle_.status = CycleStatus::not_ready;
   if (is_contested_) return cycle_.status = CycleStatus::contested;
   if (!is_ok(refusal)) return cycle_.status = refusal;
-  if (!is_fresh(start_stamp_, now)) return cycle_.status = CycleStatus::unmeasured;
+  // An older message says where the robot was before it followed the last setpoint.
+  if (!is_fresh(start_stamp_, now) || start_stamp_ < sent_) {
+    return cycle_.status = CycleStatus::unmeasured;
+  }
   if (instrument() != nullptr) {
     start_ = scaled(instrument()->flange_at(all(start_joints_)), 1.0 / registration_.scale());
   }
@@ -204,6 +237,7 @@ void CrtkSession::release() noexcept {
 
 void CrtkSession::set_registration(const Registration& registration) noexcept {
   release();
+  measured_stamp_ = start_stamp_ = goal_stamp_ = never;
   registration_ = registration;
   if (auto* const moved = std::get_if<InstrumentProxy>(&proxy_)) {
     moved->place(registration.mesh_in_robot());
@@ -212,8 +246,8 @@ void CrtkSession::set_registration(const Registration& registration) noexcept {
 
 void CrtkSession::set_mesh(std::shared_ptr<const Mesh> mesh,
                            std::shared_ptr<const SpatialIndex> index) {
-  release();
   std::visit([&](auto& proxy) { proxy.follow(std::move(mesh), std::move(index)); }, proxy_);
+  release();
 }
 
 CycleStatus CrtkSession::tick(double now) noexcept {
@@ -223,6 +257,7 @@ CycleStatus CrtkSession::tick(double now) noexcept {
     return cycle_.status = CycleStatus::not_ready;
   }
   if (!engaged()) return cycle_.status = CycleStatus::not_engaged;
+  sent_ = now;
   if (is_contested_) return finish(stand(CycleStatus::contested));
   if (!is_ok(refusal)) return finish(stand(refusal));
   if (!is_fresh(goal_stamp_, now)) return finish(stand(CycleStatus::stale));
@@ -299,9 +334,10 @@ std::span<const double> CrtkSession::setpoint_jp() const noexcept {
 }
 
 OperatingState CrtkSession::operating_state() const noexcept {
-  if (!is_ready())
-    return robot_state_ == OperatingState::enabled ? OperatingState::paused : robot_state_;
-  return engaged() ? OperatingState::enabled : OperatingState::paused;
+  const OperatingState robot = robot_state_.value_or(
+      options_.needs_feedback ? OperatingState::disabled : OperatingState::enabled);
+  if (robot != OperatingState::enabled) return robot;
+  return engaged() && is_ready() ? OperatingState::enabled : OperatingState::paused;
 }
 
 const EnergyReport& CrtkSession::energy() const noexcept {

@@ -9,18 +9,19 @@ namespace {
 /// Name and reason of each CycleStatus, in its order.
 constexpr std::array<std::array<std::string_view, 2>, 13> outcomes{{
     {"guarded", "the proxy followed as far as the mesh allows"},
-    {"not_engaged", "not engaged; call engage() with the position of the robot's tip"},
+    {"not_engaged", "not engaged; call engage()"},
     {"invalid_pose",
-     "a pose is not finite, or not a rotation; check the message that it came from"},
+     "a number is not finite, or a matrix is not a rotation; check the message that it came from"},
     {"too_far", "the goal is too far from the proxy; check its unit, or engage anew after a jump"},
-    {"stale", "no goal came for too long; check the connection and the rate of the sender"},
+    {"stale", "no recent goal; check the connection, the rate and the clock of the sender"},
     {"lagging", "the robot is too far from the setpoint; wait for it, or check what blocks it"},
     {"far_from_mesh",
      "the tip is implausibly far from the mesh; check the registration and its units"},
     {"stopped", "the engine refused the step; see its status"},
     {"not_ready", "the robot is not enabled and homed; enable and home it, then engage"},
     {"unmeasured",
-     "no measured state of the robot came for too long; check its connection and its rate"},
+     "no recent state of the robot: its setpoint at engage(), later its measured state; check its "
+     "connection, rate and clock"},
     {"other_frame",
      "a message is in another frame than the registration; convert it, or register that frame"},
     {"contested", "somebody else commands the robot; stop that program, or do not start this one"},

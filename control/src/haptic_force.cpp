@@ -102,8 +102,10 @@ void HapticForce::fade(const Vec3& hand) noexcept {
 void HapticForce::fade() noexcept {
   const double before = share_;
   change_share(0.0);
-  held_.spring *= before > 0.0 ? share_ / before : 0.0;
-  held_.brake = Vec3::Zero();
+  const double left = before > 0.0 ? share_ / before : 0.0;
+  // Without the brake at once, the total force could rise.
+  held_.spring *= left;
+  held_.brake *= left;
   energy_.book_blind(share_ * spring_.stored(stretch_));
   seen_ = false;
 }

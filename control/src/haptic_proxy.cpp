@@ -27,7 +27,7 @@ HapticProxy::HapticProxy(MotionConstraint guard, const HapticOptions& options)
   StepOptions slowed = guard_.options();
   slowed.recovery = std::min(slowed.recovery, longest_);
   guard_.set_options(slowed);
-  guard_.set_guides(options.guides);
+  if (!options.guides.empty()) guard_.set_guides(options.guides);
 }
 
 CycleStatus HapticProxy::engage(const Vec3& tip) noexcept {
@@ -46,8 +46,8 @@ void HapticProxy::release() noexcept {
 
 void HapticProxy::follow(std::shared_ptr<const Mesh> mesh,
                          std::shared_ptr<const SpatialIndex> index) {
-  release();
   guard_.follow(std::move(mesh), std::move(index));
+  release();
 }
 
 HapticCycle HapticProxy::cycle(const Vec3& hand) noexcept {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "keepout/error.h"
@@ -19,6 +20,14 @@ const HapticOptions& checked(const HapticOptions& options, const InstrumentConst
   }
   if (options.period != guard.options().period) {
     throw Error("instrument proxy: period: expected that of the instrument's options");
+  }
+  const Chain& chain = guard.instrument().chain();
+  for (int k = 1; k <= chain.size(); ++k) {
+    const JointLimits& limits = chain.joint(k).limits;
+    if (std::isfinite(std::min(limits.velocity, limits.increment))) continue;
+    throw Error("instrument proxy: joint '" + chain.joint(k).name + "' (" + std::to_string(k) +
+                ") has no limit of its velocity or increment: a goal that jumps would move it at "
+                "once");
   }
   return options;
 }
@@ -38,7 +47,11 @@ Vec3 rotation_between(const Mat3& from, const Mat3& to) noexcept {
 }  // namespace
 
 InstrumentProxy::InstrumentProxy(InstrumentConstraint guard, const HapticOptions& options)
-    : guard_(std::move(guard)), options_(checked(options, guard_)), force_(options_) {}
+    : guard_(std::move(guard)), options_(checked(options, guard_)), force_(options_) {
+  InstrumentOptions slowed = guard_.options();
+  slowed.recovery = std::min(slowed.recovery, options.top_speed * options.period);
+  guard_.set_options(slowed);
+}
 
 CycleStatus InstrumentProxy::engage(std::span<const double> q) noexcept {
   release();
@@ -63,8 +76,8 @@ void InstrumentProxy::place(const Pose& pose) noexcept {
 
 void InstrumentProxy::follow(std::shared_ptr<const Mesh> mesh,
                              std::shared_ptr<const SpatialIndex> index) {
-  release();
   guard_.follow(std::move(mesh), std::move(index));
+  release();
 }
 
 HapticCycle InstrumentProxy::cycle(const Pose& goal) noexcept {

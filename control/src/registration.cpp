@@ -126,7 +126,7 @@ Registration Registration::mesh_from_robot(const Eigen::Matrix4d& matrix,
                 " m long, and no robot is so far from what it works on; is its unit " +
                 (units.transform == LengthUnit::metre ? "millimeters?" : "micrometers?"));
   }
-  return {rotation, translation * (transform / mesh), robot / mesh};
+  return {rotation, translation * (transform / mesh), robot / mesh, units.mesh};
 }
 
 Registration Registration::robot_from_mesh(const Eigen::Matrix4d& matrix,

@@ -6,6 +6,7 @@ record, a dot, and the name that the function yields.
 """
 
 import math
+import re
 
 MEASURED_BY = {}
 
@@ -124,12 +125,13 @@ def tracking(record, bodies):
     setpoint = [row for row in record["rows"] if row["mode"] == "setpoint"]
     for what in ("cycles", "below"):
         yield what, f"{total(setpoint, what):,}"
-    yield "in_mesh", f"{total(measured, 'in_mesh'):,}"
+    for margin, rows in grouped(measured, "margin_mm").items():
+        yield f"in_mesh.{margin:g}", f"{total(rows, 'in_mesh'):,}"
     # The certified clearance minus the smallest measured one.
     lost = [row["margin_mm"] - (row[f"{body}_asks_mm"] - row[f"{body}_error_mm"]) - row[f"{body}_least_mm"]
             for row in measured for body in bodies if row[f"{body}_least_mm"] is not None]
     yield "lost_mm", rounded_up(max(lost, default=None))
-    yield "strokes", record["settings"]["strokes"]
+    yield "strokes", re.search(r"--strokes (\d+)", record["command"])[1]
 
 
 @of_kind("simulate_robot")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -59,12 +60,29 @@ std::span<const double> joints_of(const Doubles& array) {
   return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
+/// Refuses a message if its mailbox throws: the next tick stands still.
+class RefusedUnlessTaken {
+ public:
+  explicit RefusedUnlessTaken(CrtkSession& session) noexcept : session_(session) {}
+  RefusedUnlessTaken(const RefusedUnlessTaken&) = delete;
+  RefusedUnlessTaken& operator=(const RefusedUnlessTaken&) = delete;
+  ~RefusedUnlessTaken() {
+    if (std::uncaught_exceptions() > before_) session_.refuse(CycleStatus::invalid_pose);
+  }
+
+ private:
+  CrtkSession& session_;
+  int before_ = std::uncaught_exceptions();
+};
+
 /// Adds a mailbox for poses.
 template <auto receive, class Type>
 void bind_pose(Type& type, const char* name, const char* doc) {
   type.def(
       name,
       [](Session& self, const py::object& pose, double stamp, const std::string& frame) {
+        const RefusedUnlessTaken refused(self.session);
+        if (pose.is_none()) refuse("pose", "a homogeneous matrix (4, 4)", "None");
         (self.session.*receive)(pose_of(pose, "pose"), {stamp, frame});
       },
       py::arg("pose"), py::arg("stamp"), py::arg("frame") = "", doc);
@@ -76,6 +94,7 @@ void bind_joints(Type& type, const char* name, const char* doc) {
   type.def(
       name,
       [](Session& self, const py::object& joints, double stamp) {
+        const RefusedUnlessTaken refused(self.session);
         (self.session.*receive)(joints_of(doubles(joints, {"joints", {any}, "(n,)"})), {stamp});
       },
       py::arg("joints"), py::arg("stamp"), doc);
@@ -91,7 +110,7 @@ once each period, and send setpoint_cp or setpoint_jp to the robot.
     session.on_measured_cp(pose, now); session.on_servo_cp(goal, now)
     session.tick(now)                                # 'guarded', or the cause of no motion
 
-A message that is refused makes the next tick stand still with its cause. A session has a constraint
+A message that is refused, or raises Error, makes the next tick stand still with its cause. A session has a constraint
 of its own, like that of the guard when the session was made.
 
 guard: a MotionConstraint, for a tip, or an InstrumentGuard. For an instrument, the chain's world is
@@ -114,12 +133,15 @@ void bind_mailboxes(py::class_<Session>& type) {
       "on_operating_state",
       [](Session& self, const std::string& state, bool is_homed) {
         const std::optional<OperatingState> known = operating_state_of(state);
+        if (!known) self.session.on_operating_state(OperatingState::fault, false);
         if (!known)
           refuse("state", "'DISABLED', 'ENABLED', 'PAUSED' or 'FAULT'", "'" + state + "'");
         self.session.on_operating_state(*known, is_homed);
       },
-      py::arg("state"), py::arg("is_homed"),
-      "Receives the robot's state: 'DISABLED', 'ENABLED', 'PAUSED' or 'FAULT'.");
+      py::arg("state"), py::arg("is_homed").noconvert(),
+      "Receives the robot's state: 'DISABLED', 'ENABLED', 'PAUSED' or 'FAULT'. Any other is taken "
+      "as\n"
+      "'FAULT', and raises Error.");
   bind_pose<&CrtkSession::on_measured_cp>(
       type, "on_measured_cp",
       "Receives the measured pose (4, 4) of the tool; only a session of a tip uses it. stamp: by\n"
@@ -142,7 +164,7 @@ void bind_mailboxes(py::class_<Session>& type) {
       "Receives velocities (n,) of the joints [per second]; only for an instrument.");
   type.def(
       "on_contest", [](Session& self, bool is_contested) { self.session.on_contest(is_contested); },
-      py::arg("is_contested"),
+      py::arg("is_contested").noconvert(),
       "Sets whether somebody else commands the robot. While True, the tool stands still.");
 }
 

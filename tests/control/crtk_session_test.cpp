@@ -290,6 +290,65 @@ TEST_F(Crtk, ARefusedMessageStopsTheRobotAlsoIfAGoodOneFollows) {
   EXPECT_EQ(loop.servo_cp(pose_at(above)), CycleStatus::guarded) << "once only";
 }
 
+TEST_F(Crtk, ARefusedSetpointIsNotWhereItEngages) {
+  Loop loop;
+  loop.report(pose_at(above));
+  loop.session.on_setpoint_cp({{test::nan, 0, 0}, tilted}, {loop.now});
+  loop.session.release();
+  EXPECT_EQ(loop.session.engage(loop.now), CycleStatus::unmeasured);
+}
+
+TEST_F(Crtk, ASetpointFromBeforeTheLastOneSentIsNotWhereItEngages) {
+  Loop loop = engaged();
+  loop.session.on_setpoint_cp(pose_at(above), {loop.now});
+  loop.press(top + 1.0, 15);
+  loop.session.release();
+  EXPECT_EQ(loop.session.engage(loop.now), CycleStatus::unmeasured) << "the robot has moved on";
+  EXPECT_EQ(loop.engage(pose_at({3, 4, top + 2.0})), CycleStatus::guarded);
+}
+
+TEST_F(Crtk, AStateThatIsReportedCountsWithoutFeedbackToo) {
+  Loop loop({.needs_feedback = false});
+  loop.session.on_setpoint_cp(pose_at(above), {loop.now});
+  EXPECT_EQ(loop.session.engage(loop.now), CycleStatus::guarded);
+  EXPECT_EQ(loop.session.operating_state(), OperatingState::enabled);
+  loop.session.on_operating_state(OperatingState::fault, true);
+  EXPECT_EQ(loop.session.operating_state(), OperatingState::fault);
+  EXPECT_EQ(loop.servo_cp(pose_at(above)), CycleStatus::not_ready);
+}
+
+TEST_F(Crtk, TheGuidesOfTheConstraintStay) {
+  MotionConstraint guard = guard_of(cube());
+  guard.set_guides({Guide::point("corridor", Region::slab(above, Vec3::UnitX(), 1.0))});
+  Loop loop;
+  loop.session = {std::move(guard), registration(), {}};
+  loop.engage(pose_at(above));
+  for (int i = 1; i <= 200; ++i) loop.servo_cp(pose_at(above + 0.02 * i * Vec3::UnitX()));
+  const Vec3 sent = registration().point_to_mesh(loop.session.setpoint_cp()->position);
+  EXPECT_NEAR(sent.x(), above.x() + 1.0, 0.01);
+}
+
+TEST_F(Crtk, AConvexToolIsRefusedForItWouldNotTurn) {
+  const auto with_tool = [] {
+    CrtkSession(guard_of(cube(), {.options = {.tool_radius = 0.0, .margin = kept},
+                                  .tool = ConvexTool::capsule({0, 0, 0}, {0, 0, 9}, 1)}),
+                registration(), {});
+  };
+  EXPECT_NE(error_of(with_tool).find("would not turn"), std::string::npos);
+}
+
+TEST_F(Crtk, DefaultsForMillimetersAreRefusedForAMeshInMeters) {
+  const auto in_meters = Registration::mesh_from_robot(
+      Eigen::Matrix4d::Identity(),
+      {.transform = LengthUnit::metre, .robot = LengthUnit::metre, .mesh = LengthUnit::metre});
+  EXPECT_NE(error_of([&] { CrtkSession(guard_of(cube()), in_meters, {}); }).find("top_speed [m/s]"),
+            std::string::npos);
+  CrtkSession(guard_of(cube()), in_meters,
+              {.haptic = {.spring = {.stiffness = 1000.0}, .top_speed = 0.2, .farthest = 0.05},
+               .farthest_lag = 0.005,
+               .farthest_start = 1.0});
+}
+
 TEST_F(Crtk, AContestedRobotStandsStill) {
   Loop loop = engaged();
   loop.session.on_contest(true);
@@ -319,7 +378,9 @@ TEST_F(Crtk, AnotherMeshIsFollowedAfterRelease) {
   loop.press(top - 1.0);
   const Vec3 held(3, 4, top + 1.0 + kept);
   EXPECT_LT((loop.session.setpoint_cp()->position - pose_at(held).position).norm(), accuracy);
+  const Pose before = *loop.session.setpoint_cp();
   EXPECT_THROW(loop.session.set_mesh(cube(), std::make_shared<WideBvh>(higher)), Error);
+  EXPECT_EQ(loop.session.setpoint_cp()->position, before.position) << "nothing has changed";
 }
 
 TEST_F(Crtk, ARobotIsKeptInTheGuides) {

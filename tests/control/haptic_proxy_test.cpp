@@ -328,6 +328,23 @@ TEST(HapticProxy, OfASlowLoopAndAStiffSpringThePassivityControllerTakesTheEnergy
   expect_balance(braked);
 }
 
+TEST(HapticProxy, AFailedCycleWithoutTheHandLeavesNoMoreForceThanBefore) {
+  const Vec3 surface(3, 4, top + kept);
+  double most_braked = 0.0;
+  for (int cycles = 2; cycles < 200; ++cycles) {
+    HapticProxy proxy(guard_of(cube()), {.largest_brake = 0.02});
+    proxy.engage(surface + Vec3(0, 0, 1));
+    double before = 0.0;
+    for (int i = 0; i < cycles; ++i) {
+      const Vec3 hand = surface + Vec3(0, 0, 3.0 * std::cos(0.26 * i) - 1.5);
+      before = proxy.cycle(hand).force.norm();
+    }
+    most_braked = std::max(most_braked, proxy.energy().braked);
+    EXPECT_LE(proxy.stand(CycleStatus::contested).force.norm(), before) << cycles;
+  }
+  EXPECT_GT(most_braked, 0.0);
+}
+
 TEST(HapticProxy, WhateverOptionsAreTakenForceAndEnergyAreFiniteAndTheForceIsBounded) {
   Random random(3);
   for (int options = 0; options < 256; ++options) {

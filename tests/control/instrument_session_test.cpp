@@ -249,8 +249,9 @@ TEST(InstrumentSession, StandsStillForWhatIsWrong) {
 
 TEST(InstrumentSession, WaitsForABodyThatLagsThoughTheFlangeDoesNot) {
   // The flange is on the axis of the only joint; the body is 30 mm beside it.
-  const Instrument lever(Chain({Joint{}}, {Vec3(0, 0, 150), Mat3::Identity()}),
-                         {{.points = {{1, Vec3(30, 0, 0)}}, .radius = 1.0}});
+  const Instrument lever(
+      Chain({Joint{.limits = {.velocity = 1.0}}}, {Vec3(0, 0, 150), Mat3::Identity()}),
+      {{.points = {{1, Vec3(30, 0, 0)}}, .radius = 1.0}});
   CrtkSession session(guard_of(cube(), lever, {.period = period}), registration(),
                       {.farthest_lag = 2.0});
   session.on_operating_state(OperatingState::enabled, true);
@@ -271,6 +272,42 @@ TEST(InstrumentSession, WithoutAMeshHasOnlyTheLimitsOfItsJoints) {
   session.on_setpoint_js(Loop::in_meters(start), {0.0});
   ASSERT_EQ(session.engage(0.0), CycleStatus::guarded);
   EXPECT_EQ(session.tick(0.001), CycleStatus::guarded);
+}
+
+TEST(InstrumentSession, ForgetsMessagesInTheUnitOfAnotherRegistration) {
+  Loop loop;
+  loop.session.on_operating_state(OperatingState::enabled, true);
+  loop.session.on_setpoint_js(Loop::in_meters(start), {loop.now});
+  loop.session.set_registration(Registration::mesh_from_robot(Eigen::Matrix4d::Identity(),
+                                                              {.transform = LengthUnit::millimetre,
+                                                               .robot = LengthUnit::millimetre,
+                                                               .mesh = LengthUnit::millimetre}));
+  EXPECT_EQ(loop.session.engage(loop.now), CycleStatus::unmeasured);
+  loop.session.on_setpoint_js(start, {loop.now});
+  EXPECT_EQ(loop.session.engage(loop.now), CycleStatus::guarded);
+  EXPECT_EQ(loop.session.setpoint_jp()[2], 30.0);
+}
+
+TEST(InstrumentSession, RecoversNoFasterThanTheTopSpeed) {
+  Loop loop({.haptic = {.top_speed = 5.0}});
+  Judge judge(loop.instrument);
+  std::vector<double> close = start;
+  double low = 10.0, high = 200.0;  // of the insertion, for a clearance of 0.1 mm
+  for (int i = 0; i < 60; ++i) {
+    close[2] = 0.5 * (low + high);
+    (judge.clearance(Loop::in_meters(close)) > 0.1 ? low : high) = close[2];
+  }
+  ASSERT_EQ(loop.engage(close), CycleStatus::guarded);
+  Vec3 before = loop.session.setpoint_cp()->position;
+  int recovering = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Pose goal{before - Vec3(0, 0, 0.001), loop.session.setpoint_cp()->rotation};
+    ASSERT_EQ(loop.servo_cp(goal), CycleStatus::guarded);
+    recovering += loop.session.cycle().step == Status::recovering ? 1 : 0;
+    EXPECT_LE(1000.0 * (loop.session.setpoint_cp()->position - before).norm(), 0.005 * 1.1);
+    before = loop.session.setpoint_cp()->position;
+  }
+  EXPECT_GT(recovering, 5);
 }
 
 TEST(InstrumentSession, StandsStillUntilAfterEachRefusal) {
@@ -296,6 +333,13 @@ TEST(InstrumentSession, SaysWhatIsWrongWithItsParts) {
       error_of([&] { CrtkSession(loop.guard(), registration(), {.haptic = {.guides = {guide}}}); }),
       "instrument proxy: guides: expected none; give them to "
       "InstrumentConstraint::set_guides");
+  const Instrument free(Chain({Joint{.name = "turn"}}),
+                        {{.points = {{1, Vec3(0, 0, 200)}}, .radius = 1.0}});
+  EXPECT_EQ(error_of([&] {
+              CrtkSession(guard_of(cube(), free, {.period = period}), registration(), {});
+            }),
+            "instrument proxy: joint 'turn' (1) has no limit of its velocity or increment: a goal "
+            "that jumps would move it at once");
 }
 
 }  // namespace

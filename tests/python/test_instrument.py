@@ -208,6 +208,9 @@ def test_a_robot_is_read_with_the_bodies_of_a_file_or_with_its_shapes(tmp_path):
     chain = keepout.read_chain(urdf, base="base_link", tip="tip")
     q = np.array([0.1, -0.7, 1.4, 0.2, -0.8, 0.3])
     np.testing.assert_allclose(arm.chain.forward_kinematics(q), at(0, 0, 200) @ chain.forward_kinematics(q), atol=1e-9)
+    # The place of the tip as a separate program computes it from the numbers in the file, with Rodrigues' formula.
+    tip = arm.chain.forward_kinematics([0, -0.7, 1.4, 0, -0.87, 0])[:3, 3]
+    np.testing.assert_allclose(tip, [0.468452940, 90.768517853, 200 + 891.884147131], atol=1e-8)
     with pytest.warns(UserWarning, match="link 'wrist_1' has no collision element"):
         shapes = keepout.read_robot(urdf, base="base_link", tip="tip")
     assert [body.name for body in shapes.bodies][-2:] == ["holder", "bit"]

@@ -121,5 +121,26 @@ def test_arguments_that_fit_nothing_are_named(guard, mesh):
     session = keepout.CrtkSession(guard, np.eye(4))
     with pytest.raises(keepout.Error, match="state.*'ENABLED'.*'on'"):
         session.on_operating_state("on", True)
-    with pytest.raises(keepout.Error, match="pose"):
-        session.on_servo_cp([1, 2, 3], 0.0)
+    for value in ([1, 2, 3], None):
+        with pytest.raises(keepout.Error, match="pose"):
+            session.on_servo_cp(value, 0.0)
+    with pytest.raises(TypeError):
+        session.on_contest(None)
+    with pytest.raises(keepout.Error, match="top_speed"):
+        keepout.CrtkSession(guard, np.eye(4), mesh_unit="m")
+
+
+def test_a_message_that_raises_stops_the_tool(guard):
+    session = engaged(guard, pose_of((0, 0, 12.0)))
+    session.on_measured_cp(pose_of((0, 0, 12.0)), 0.001)
+    for send in (
+        lambda: session.on_servo_cp(np.eye(3), 0.001),
+        lambda: session.on_servo_jp("six", 0.001),
+        lambda: session.on_measured_cp(None, 0.001),
+    ):
+        with pytest.raises(keepout.Error):
+            send()
+        assert session.tick(0.001) == "invalid_pose"
+    with pytest.raises(keepout.Error, match="state"):
+        session.on_operating_state("UNKNOWN", True)
+    assert session.tick(0.002) == "not_ready" and session.operating_state == "FAULT"

@@ -52,6 +52,7 @@ struct CrtkOptions {
   std::string frame = {};          // of the robot's poses; empty: any
   /// True if the robot must report that it is enabled and homed, and must be measured. False for a
   /// robot without feedback: it then follows unobserved.
+  /// A state that it does report counts in any case.
   bool needs_feedback = true;
 };
 
@@ -76,14 +77,16 @@ struct CrtkOptions {
 /// orientation is passed on unchanged, so the shaft may rotate freely. The ball must contain all
 /// parts that rotate. A session of an instrument constrains all its bodies.
 ///
-/// Not thread-safe: transports call it from one thread. After construction no function allocates,
-/// locks or throws.
+/// Not thread-safe: transports call it from one thread. Except set_mesh(), no function allocates,
+/// locks or throws. The source of a move may only be destroyed or assigned to.
 class CrtkSession {
  public:
-  /// Makes the session of a tip. Throws Error for an option out of range.
+  /// Makes the session of a tip. Throws Error for an option out of range, and for the constraint of
+  /// a convex tool, which would not turn with the robot.
   CrtkSession(MotionConstraint guard, const Registration& registration, const CrtkOptions& options);
   /// Makes the session of an instrument. The chain's world is the robot's frame, in the unit of the
-  /// mesh: all meshes are placed at their registered pose. Throws Error for an option out of range.
+  /// mesh: all meshes are placed at their registered pose. Throws Error for an option out of range,
+  /// and for a joint without a limit of its velocity or increment.
   CrtkSession(InstrumentConstraint guard, const Registration& registration,
               const CrtkOptions& options);
 
@@ -110,18 +113,19 @@ class CrtkSession {
   void refuse(CycleStatus why) noexcept;
 
   /// Engages at the robot's own setpoint, so that the robot does not jump. Returns guarded. On
-  /// failure it does not engage, and returns the cause. `now`: the time [s].
+  /// failure it does not engage, and returns the cause. The message of that setpoint must not be
+  /// older than the last setpoint that the session has sent. `now`: the time [s].
   CycleStatus engage(double now) noexcept;
 
   /// Releases, for example when the clutch is pressed. There is then no setpoint and no force.
   void release() noexcept;
 
   /// Releases, and replaces the registration, for example after the camera has moved. The index is
-  /// not rebuilt.
+  /// not rebuilt. Messages that have arrived before are forgotten.
   void set_registration(const Registration& registration) noexcept;
 
-  /// Releases, and continues with another mesh of the tip's constraint, or the first mesh of the
-  /// instrument's. Throws Error, and changes nothing, if the index is for another mesh. Allocates.
+  /// Continues with another mesh of the tip's constraint, or the first mesh of the instrument's,
+  /// and releases. Throws Error, and changes nothing, if the index is for another mesh. Allocates.
   void set_mesh(std::shared_ptr<const Mesh> mesh, std::shared_ptr<const SpatialIndex> index);
 
   /// Runs one cycle towards the last goal. Call it once each period. A robot that is no longer
@@ -144,7 +148,8 @@ class CrtkSession {
 
   /// Returns true if the session is engaged.
   bool engaged() const noexcept { return setpoint_.has_value(); }
-  /// Returns the result of the last cycle, in the frame of the mesh.
+  /// Returns the result of the last cycle: in the frame of the mesh for a tip, and in the robot's
+  /// frame and the unit of the mesh for an instrument.
   const HapticCycle& cycle() const noexcept { return cycle_; }
   /// Returns one line on the last cycle and what to do about it; a string literal.
   std::string_view reason() const noexcept { return cycle_.reason(); }
@@ -191,7 +196,7 @@ class CrtkSession {
   CrtkOptions options_;
   // The mailboxes. Stamps begin in the infinite past; joints are in the unit of the mesh.
   static constexpr double never = -std::numeric_limits<double>::infinity();
-  OperatingState robot_state_ = OperatingState::disabled;
+  std::optional<OperatingState> robot_state_;
   bool is_homed_ = false;
   bool is_contested_ = false;
   CycleStatus refusal_ = CycleStatus::guarded;  // guarded: nothing was refused since the last tick
@@ -201,6 +206,7 @@ class CrtkSession {
   Pose start_;  // the robot's own setpoint
   Positions start_joints_ = {};
   double start_stamp_ = never;
+  double sent_ = never;              // when the session has last sent a setpoint [s]
   Command command_ = Command::pose;  // the kind of the last goal
   Pose goal_;
   Positions goal_joints_ = {};  // positions, or velocities

@@ -119,8 +119,10 @@ struct HapticOptions {
   double farthest = 50.0;    // from proxy to hand; farther goals are rejected [length], > 0
   /// The time in which the force fades out when cycles fail, and returns afterwards [s], >= period
   double fade = 0.05;
-  double largest_brake = 0.0;      // of the passivity controller [N s / length]; 0: only observes
-  std::vector<Guide> guides = {};  // of a tip, in the frame of the mesh: Guide::point
+  double largest_brake = 0.0;  // of the passivity controller [N s / length]; 0: only observes
+  /// Guides of a tip, in the frame of the mesh: Guide::point. They replace the guides of the motion
+  /// constraint. An empty list leaves them.
+  std::vector<Guide> guides = {};
 };
 
 /// Throws Error, which names the option, if an option is out of range.

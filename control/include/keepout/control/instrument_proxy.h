@@ -21,8 +21,9 @@ namespace keepout {
 /// moves.
 class InstrumentProxy {
  public:
-  /// Makes a proxy. Throws Error for an option out of range, for guides in the options, and unless
-  /// the period is that of the guard.
+  /// Makes a proxy. The recovery of the guard is limited to top_speed * period. Throws Error for an
+  /// option out of range, for guides in the options, and unless the period is that of the guard.
+  /// Also throws Error for a joint without a limit of its velocity or increment.
   InstrumentProxy(InstrumentConstraint guard, const HapticOptions& options);
 
   /// Sets proxy and hand to a configuration q (n): see HapticProxy::engage. Returns invalid_pose

@@ -96,14 +96,18 @@ class Registration {
 
   /// Returns the robot's unit divided by the mesh's unit: 1000 for meters and millimeters.
   double scale() const noexcept { return scale_; }
+  /// Returns the unit of the mesh.
+  LengthUnit mesh_unit() const noexcept { return mesh_unit_; }
 
  private:
-  Registration(const Mat3& rotation, const Vec3& translation, double scale) noexcept
-      : rotation_(rotation), translation_(translation), scale_(scale) {}
+  Registration(const Mat3& rotation, const Vec3& translation, double scale,
+               LengthUnit mesh_unit) noexcept
+      : rotation_(rotation), translation_(translation), scale_(scale), mesh_unit_(mesh_unit) {}
 
   Mat3 rotation_;     // from the robot's axes to those of the mesh
   Vec3 translation_;  // the robot's origin [length]
   double scale_;      // [length / unit of the robot]
+  LengthUnit mesh_unit_;
 };
 
 }  // namespace keepout

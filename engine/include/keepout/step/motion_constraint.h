@@ -149,6 +149,9 @@ class MotionConstraint {
   /// faster search of the index.
   bool makes_queries() const noexcept { return rule_->makes_queries(); }
 
+  /// Returns true if the rule guards a convex tool, which has the axes of the mesh.
+  bool guards_a_tool() const noexcept { return rule_->guards_a_tool(); }
+
   /// Returns the options.
   const StepOptions& options() const noexcept { return options_; }
 
