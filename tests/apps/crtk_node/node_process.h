@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@ class NodeProcess {
   NodeProcess(std::vector<std::string> arguments, std::filesystem::path output)
       : output_(std::move(output)), child_(::fork()) {
     if (child_ != 0) return;
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that crashes leaves no node behind
     const int file = ::open(output_.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
     ::dup2(file, STDOUT_FILENO);
     ::dup2(file, STDERR_FILENO);
