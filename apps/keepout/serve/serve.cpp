@@ -291,8 +291,9 @@ step      tip, desired: the motion that the tip may execute instead of the desir
           With rows and bounds: rows . u >= bounds holds for the increment u.
 steps     motions, an array of [px,py,pz,dx,dy,dz]: as many steps, answered as "steps".
 polytope  tip, radius: normals and offsets of the free space around it, normal . d >= offset.
-instrument  urdf, a file, and bodies, a file (docs/robots.md), or capsules, arrays of
-          [link,x,y,z,link,x,y,z,radius], or neither: opens an instrument for this client.
+instrument  urdf, a file, and bodies, a file, or capsules, arrays of
+          [link,x,y,z,link,x,y,z,radius], or neither: opens an instrument for this client. Files:
+          docs/robots.md
           Its options: index, solver, )" +
          enumerated(names(instrument_options)) + R"(.
 joint_step  q, and linear and angular of the flange, or an increment: the increment of the joints.
