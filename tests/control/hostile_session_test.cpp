@@ -184,6 +184,17 @@ class HostileLoop {
   bool has_engaged_ = false;
 };
 
+/// Fails unless the loop was at the surface often, and has seen each outcome that messages cause.
+void expect_every_outcome(HostileLoop& loop) {
+  EXPECT_GT(loop.limited, 200);
+  for (const auto status :
+       {CycleStatus::guarded, CycleStatus::not_engaged, CycleStatus::stale,
+        CycleStatus::invalid_pose, CycleStatus::not_ready, CycleStatus::unmeasured,
+        CycleStatus::other_frame, CycleStatus::contested, CycleStatus::wrong_command}) {
+    EXPECT_GT(loop.seen[status], 0) << name(status);
+  }
+}
+
 TEST(HostileSession, OfATipKeepsItOutWhateverArrives) {
   HostileLoop loop(CrtkSession(guard_of(cube()), registration(), options()),
                    {registration().point_to_robot({3, 4, top + 5.0}), Mat3::Identity()}, {}, 1);
@@ -193,13 +204,7 @@ TEST(HostileSession, OfATipKeepsItOutWhateverArrives) {
     const double distance = (tip.cwiseAbs().array() - top).max(0.0).matrix().norm();
     return distance >= kept - 1e-9;
   });
-  EXPECT_GT(loop.limited, 200);
-  for (const auto status :
-       {CycleStatus::guarded, CycleStatus::not_engaged, CycleStatus::stale,
-        CycleStatus::invalid_pose, CycleStatus::not_ready, CycleStatus::unmeasured,
-        CycleStatus::other_frame, CycleStatus::contested, CycleStatus::wrong_command}) {
-    EXPECT_GT(loop.seen[status], 0) << name(status);
-  }
+  expect_every_outcome(loop);
 }
 
 TEST(HostileSession, OfAnInstrumentKeepsEveryBodyOutWhateverArrives) {
@@ -221,13 +226,7 @@ TEST(HostileSession, OfAnInstrumentKeepsEveryBodyOutWhateverArrives) {
     judge.move_to(q);
     return judge.clearance(1e3) >= 0.198 - 1e-8;
   });
-  EXPECT_GT(loop.limited, 200);
-  for (const auto status :
-       {CycleStatus::guarded, CycleStatus::not_engaged, CycleStatus::stale,
-        CycleStatus::invalid_pose, CycleStatus::not_ready, CycleStatus::unmeasured,
-        CycleStatus::other_frame, CycleStatus::contested, CycleStatus::wrong_command}) {
-    EXPECT_GT(loop.seen[status], 0) << name(status);
-  }
+  expect_every_outcome(loop);
 }
 
 }  // namespace
