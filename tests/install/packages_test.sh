@@ -15,7 +15,7 @@ for package in "$work"/packages/*.deb; do
   done
   count=$((count + 1))
 done
-nodes=$(find "$work/packages" -name 'keepout-*-node_*.deb' | wc -l)  # of transports that were found
+nodes=$(find "$work/packages" -maxdepth 1 -name 'keepout-*-node_*.deb' | wc -l)  # of transports that were found
 [ $((count - nodes)) -eq 5 ] || fail "$count packages, $nodes of them nodes, instead of 5 and nodes"
 # Debian's policy and bash expect these files, under the names of the programs.
 for package in keepout keepout-bench; do
