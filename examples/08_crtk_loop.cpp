@@ -18,7 +18,7 @@ struct Robot {
     session.on_measured_cp(pose, {now});
     session.on_setpoint_cp(pose, {now});
   }
-  void servo_cp(const keepout::Pose& setpoint) {      // publish: /PSM1/servo_cp
+  void servo_cp(const keepout::Pose& setpoint) {  // publish: /PSM1/servo_cp
     pose.position += 0.3 * (setpoint.position - pose.position);
     pose.rotation = setpoint.rotation;
   }
