@@ -182,7 +182,7 @@ void GuardNode::report(double now) {
   }
   status_ = CycleStatus::guarded;
   if (drawing_ && session_.engaged()) {
-    drawing_->draw(session_.cycle().proxy, goal_);
+    drawing_->draw(session_.cycle().proxy, session_.registration().point_to_mesh(goal_));
   }
 }
 

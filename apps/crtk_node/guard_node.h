@@ -52,7 +52,7 @@ class GuardNode final : public Node {
   std::optional<Drawing> drawing_;  // of a tip
 
   bool is_asked_ = false;                      // to engage in the next cycle
-  Vec3 goal_ = Vec3::Zero();                   // the last goal of the teleoperation [m]
+  Vec3 goal_ = Vec3::Zero();                   // of the teleoperation, in the robot's frame [m]
   CycleStatus status_ = CycleStatus::guarded;  // the last failure since a reason was sent
   std::string_view reason_ = {};               // its reason
   std::string_view sent_reason_ = {};          // the reason that was sent

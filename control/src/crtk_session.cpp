@@ -200,8 +200,10 @@ CycleStatus CrtkSession::engage(double now) noexcept {
   if (!is_ready()) return cycle_.status = CycleStatus::not_ready;
   if (is_contested_) return cycle_.status = CycleStatus::contested;
   if (!is_ok(refusal)) return cycle_.status = refusal;
-  // An older message says where the robot was before it followed the last setpoint.
-  if (!is_fresh(start_stamp_, now) || start_stamp_ < sent_) {
+  // An older message says where the robot was before it followed the last setpoint. Unless the
+  // clock was set back since.
+  const bool is_older = start_stamp_ < sent_ && sent_ <= now;
+  if (!is_fresh(start_stamp_, now) || is_older) {
     return cycle_.status = CycleStatus::unmeasured;
   }
   if (instrument() != nullptr) {

@@ -307,6 +307,14 @@ TEST_F(Crtk, ASetpointFromBeforeTheLastOneSentIsNotWhereItEngages) {
   EXPECT_EQ(loop.engage(pose_at({3, 4, top + 2.0})), CycleStatus::guarded);
 }
 
+TEST_F(Crtk, EngagesAgainAfterTheClockWasSetBack) {
+  Loop loop = engaged();
+  loop.press(top + 1.0, 15);
+  loop.session.release();
+  loop.now -= 60.0;
+  EXPECT_EQ(loop.engage(pose_at({3, 4, top + 2.0})), CycleStatus::guarded);
+}
+
 TEST_F(Crtk, AStateThatIsReportedCountsWithoutFeedbackToo) {
   Loop loop({.needs_feedback = false});
   loop.session.on_setpoint_cp(pose_at(above), {loop.now});

@@ -88,7 +88,7 @@ void Server::send_triangles(const Moment& moment) {
   triangles_due_ = moment.now + triangles_period;
   active_.clear();
   if (session_.engaged()) {
-    const HapticOptions haptic;
+    const HapticOptions& haptic = session_.tip()->options();
     const Ball reach{session_.cycle().proxy, required_clearance(options_.constraint.options) +
                                                  haptic.top_speed / options_.rate};
     near_.clear();

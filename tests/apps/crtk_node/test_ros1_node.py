@@ -305,8 +305,11 @@ def test_rviz_gets_the_mesh_and_the_triangles_and_planes_that_limit_the_tip(robo
     robot.engage()
     robot.goal = lambda: robot.at(to_robot((3, 2, 15)))
     assert robot.play(lambda: "mesh" in shapes and "planes" in shapes and shapes["planes"].points), shapes.keys()
-    robot.release()
     mesh, triangles, planes = shapes["mesh"], shapes["triangles"], shapes["planes"]
+    # Nothing limits a tip that is at its goal, a millimeter higher.
+    robot.goal = lambda: robot.at(to_robot((3, 2, 24)))
+    assert robot.play(lambda: not shapes["planes"].points)
+    robot.release()
     assert (mesh.type, len(mesh.points)) == (Marker.TRIANGLE_LIST, 36)
     assert {m.header.frame_id for m in shapes.values()} == {"PSM1_base"}
     assert all(abs(p.z - to_robot((0, 0, 20))[2]) < 1e-12 for p in triangles.points) and triangles.points
