@@ -231,18 +231,14 @@ class GuardedInstrument final : public SimulatedTool {
     if (is_measured_) {
       const auto positions = measured_->positions(cycle_);
       q_.assign(positions.begin(), positions.end());
-      Cycle cycle = judged({});
+      Cycle cycle = judged(Outcome::moved_freely);
       std::ranges::copy(measured_->errors(cycle_++), cycle.errors.begin());
       return cycle;
     }
     if (measured_) {
       const HapticCycle moved = measured_->follow(goal);
       q_.assign(measured_->setpoint().begin(), measured_->setpoint().end());
-      Cycle cycle;
-      cycle.outcome = !moved.ok()                  ? Outcome::stopped
-                      : moved.step != Status::free ? Outcome::limited
-                                                   : Outcome::moved_freely;
-      return judged(cycle);
+      return judged(outcome_of(moved.ok(), moved.step));
     }
     ChainState state;
     joints_->instrument().chain().forward_kinematics(q_, state);
@@ -253,16 +249,15 @@ class GuardedInstrument final : public SimulatedTool {
     if (tip_) asked.linear = tip_->step({.tip = at.position, .desired = asked.linear}).motion;
     const InstrumentStep step = joints_->step(q_, asked);
     for (std::size_t k = 0; step.ok() && k < q_.size(); ++k) q_[k] += step.increment[k];
-    Cycle cycle;
-    cycle.outcome = !step.ok()                    ? Outcome::stopped
-                    : step.status != Status::free ? Outcome::limited
-                                                  : Outcome::moved_freely;
+    Cycle cycle = judged(outcome_of(step.ok(), step.status));
     cycle.guides_inside = guides_inside(step.guides);
-    return judged(cycle);
+    return cycle;
   }
 
   /// Judges the motion of the instrument to its positions.
-  Cycle judged(Cycle cycle) {
+  Cycle judged(Outcome outcome) {
+    Cycle cycle;
+    cycle.outcome = outcome;
     const oracle::RobotVerdict verdict = judge_->judge(q_);
     cycle.is_breach = verdict.limits_broken;
     cycle.is_guide_left = verdict.is_guide_left;

@@ -62,9 +62,7 @@ class GuardedTip final : public SimulatedTool {
       const Step step = constraint_->step({.tip = tip_, .desired = motion}, times);
       // A motion of less than a nanometer, when more was commanded, counts as none.
       const bool is_still = step.motion.norm() < 1e-6 && motion.norm() > 1e-3;
-      cycle.outcome = !step.ok() || is_still        ? Outcome::stopped
-                      : step.status != Status::free ? Outcome::limited
-                                                    : Outcome::moved_freely;
+      cycle.outcome = outcome_of(step.ok() && !is_still, step.status);
       cycle.guides_inside = guides_inside(step.guides);
       cycle.step_us = static_cast<float>(1e-3 * static_cast<double>(times.total()));
       motion = step.motion;

@@ -13,6 +13,7 @@
 
 #include "keepout/geometry/shapes.h"
 #include "keepout/robot/instrument.h"
+#include "keepout/status.h"
 #include "keepout/step/guide.h"
 #include "shared/timing.h"
 
@@ -24,6 +25,12 @@ enum class Outcome : std::uint8_t {
   limited,       // a part of the motion was allowed
   stopped        // no motion, or less than a nanometer of a tip
 };
+
+/// Returns the outcome of a step with a status. `has_moved`: false if the tool stood still.
+constexpr Outcome outcome_of(bool has_moved, Status status) {
+  if (!has_moved) return Outcome::stopped;
+  return status == Status::free ? Outcome::moved_freely : Outcome::limited;
+}
 
 /// The result of one control cycle of a simulated stroke. A tip is one body; an instrument has one
 /// or more.
