@@ -20,7 +20,8 @@ Drawing::Drawing(MotionConstraint guard, const Registration& registration, const
       frame_(frame),
       transport_(transport),
       mesh_topic_(transport.advertise(topic + "/mesh", Kind::shape, true)),
-      topic_(transport.advertise(topic + "/limits", Kind::shape)) {
+      topic_(transport.advertise(topic + "/limits", Kind::shape)),
+      box_([this](const Motion& motion) { draw(motion); }) {
   const Mesh& mesh = guard_.mesh();
   Shape shape{.name = "mesh", .color = {0.9F, 0.85F, 0.75F, 0.6F}};
   shape.points.reserve(3 * mesh.triangle_count());
@@ -35,7 +36,8 @@ void Drawing::add(Shape& shape, const Vec3& point) const {
   shape.points.push_back({at.x(), at.y(), at.z()});
 }
 
-void Drawing::draw(const Vec3& tip, const Vec3& goal) {
+void Drawing::draw(const Motion& motion) {
+  const auto& [tip, goal] = motion;
   if (!transport_.is_read(topic_)) return;
   Shape triangles{.name = "triangles", .color = {0.9F, 0.1F, 0.1F, 1.0F}};
   Shape planes{.form = Shape::Form::lines, .name = "planes", .color = {0.1F, 0.3F, 0.9F, 1.0F}};

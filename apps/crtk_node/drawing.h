@@ -6,23 +6,31 @@
 
 #include "keepout/control/registration.h"
 #include "keepout/step/motion_constraint.h"
+#include "postbox.h"
 #include "transport.h"
 
 namespace keepout::crtk {
 
-/// Draws the mesh, and the triangles and planes that limit a tip. It has a motion constraint of its
-/// own, so that it does not touch that of the session. Allocates: a cycle draws rarely.
+/// Draws the mesh, and the triangles and planes that limit a tip, in a thread of its own with a
+/// motion constraint of its own: the cycle of the session neither waits nor allocates.
 class Drawing {
  public:
   /// Draws the mesh. `guard`: like that of the session.
   Drawing(MotionConstraint guard, const Registration& registration, const std::string& frame,
           const std::string& topic, Transport& transport);
 
-  /// Draws the triangles and planes that limit the motion of the tip to a goal, in the frame of the
-  /// mesh [mm]. Does nothing if no process reads the topic.
-  void draw(const Vec3& tip, const Vec3& goal);
+  /// Lets the thread draw the triangles and planes that limit the motion of the tip to a goal, in
+  /// the frame of the mesh [mm]. It draws only if a process reads the topic. Never waits.
+  void draw(const Vec3& tip, const Vec3& goal) {
+    box_.post([&](Motion& motion) { motion = {tip, goal}; });
+  }
 
  private:
+  struct Motion {
+    Vec3 tip = Vec3::Zero(), goal = Vec3::Zero();
+  };
+
+  void draw(const Motion& motion);
   void add(Shape& shape, const Vec3& point) const;
 
   MotionConstraint guard_;
@@ -31,6 +39,7 @@ class Drawing {
   Transport& transport_;
   int mesh_topic_;
   int topic_;
+  Postbox<Motion, 2> box_;
 };
 
 }  // namespace keepout::crtk

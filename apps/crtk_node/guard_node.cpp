@@ -151,11 +151,9 @@ void GuardNode::send_setpoint(double now) {
 
 void GuardNode::send_to_teleoperation(double now) {
   const OperatingState state = session_.operating_state();
-  if (state != sent_state_) {
-    transport_.send(state_out_,
-                    {.stamp = now,
-                     .text = name(state),
-                     .flag = state == OperatingState::enabled || state == OperatingState::paused});
+  const bool is_homed = state == OperatingState::enabled || state == OperatingState::paused;
+  if (state != sent_state_ &&
+      transport_.send(state_out_, {.stamp = now, .text = name(state), .flag = is_homed})) {
     sent_state_ = state;
   }
   if (const auto& measured = session_.measured_cp()) {
@@ -177,8 +175,7 @@ void GuardNode::report(double now) {
   if (reason_ != sent_reason_) {
     std::string text(name(status_));
     text.append(": ").append(reason_);
-    transport_.send(reason_out_, {.text = text});
-    sent_reason_ = reason_;
+    if (transport_.send(reason_out_, {.text = text})) sent_reason_ = reason_;
   }
   status_ = CycleStatus::guarded;
   if (drawing_ && session_.engaged()) {

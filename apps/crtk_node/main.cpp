@@ -10,6 +10,7 @@
 #include "guard_node.h"
 #include "keepout/error.h"
 #include "loop.h"
+#include "queued_transport.h"
 #include "settings.h"
 #include "simulated_robot.h"
 
@@ -38,7 +39,7 @@ int run(int argc, char** argv) {
     // Help needs no middleware.
     const bool is_help = std::ranges::any_of(
         arguments, [](const std::string& word) { return word == "--help" || word == "-h"; });
-    if (!is_help) transport = connect(arguments, names);
+    if (!is_help) transport = std::make_unique<QueuedTransport>(connect(arguments, names));
     std::ranges::reverse(arguments);  // as CLI11 takes them
     app.parse(arguments);
   } catch (const CLI::ParseError& error) {

@@ -68,7 +68,7 @@ class Inbox {
   virtual void receive(int topic, const Message& message) = 0;
 };
 
-/// A middleware with topics. All functions are called by one thread. None waits for a peer.
+/// A middleware with topics. After the topics are known, one thread receives and others may send.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -79,10 +79,12 @@ class Transport {
   /// message. Throws std::runtime_error.
   virtual int advertise(const std::string& topic, Kind kind, bool is_kept = false) = 0;
 
-  /// Passes on the messages that have arrived, at most ten of each topic.
-  virtual void deliver(Inbox& inbox) = 0;
-  /// Sends a message. A slow reader loses messages.
-  virtual void send(int topic, const Message& message) = 0;
+  /// Passes on the messages that have arrived, at most ten of each topic. If there is none, waits
+  /// for one, at most `wait` seconds.
+  virtual void deliver(Inbox& inbox, double wait = 0.0) = 0;
+  /// Sends a message, without waiting for a reader: a slow reader loses messages. Returns false if
+  /// the message was dropped here.
+  virtual bool send(int topic, const Message& message) = 0;
   /// Sends a shape, if the middleware has shapes.
   virtual void show(int, const std::string& /*frame*/, const Shape&) {}
 

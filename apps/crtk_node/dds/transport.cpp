@@ -129,12 +129,13 @@ dds_sequence_double sequence_of(const Numbers& numbers) {
   return {count, count, const_cast<double*>(numbers.data), false};  // only read
 }
 
-/// Writes a Message as one of the kind.
-void write(dds_entity_t writer, Kind kind, const Message& values) {
+/// Writes a Message as one of the kind. Returns false if the message was dropped.
+bool write(dds_entity_t writer, Kind kind, const Message& values) {
   const auto& v = values.vector;
   const auto& q = values.rotation;
-  // A full queue drops the message: the next one comes in a period.
-  const auto send = [&](const auto& message) { dds_write(writer, &message); };
+  const auto send = [&](const auto& message) {
+    return dds_write(writer, &message) == DDS_RETCODE_OK;
+  };
   switch (kind) {
     case Kind::pose: {
       PoseStamped message{};
@@ -174,8 +175,9 @@ void write(dds_entity_t writer, Kind kind, const Message& values) {
       return send(message);
     }
     case Kind::shape:
-      return;
+      break;
   }
+  return false;
 }
 
 dds_entity_t checked(dds_entity_t entity, const std::string& what) {
@@ -193,6 +195,7 @@ class DdsTransport final : public Transport {
     participant_ = checked(
         dds_create_participant(domain, nullptr, nullptr),
         "cannot join domain " + std::to_string(domain) + ": see CYCLONEDDS_URI and ROS_DOMAIN_ID");
+    arrivals_ = checked(dds_create_waitset(participant_), "cannot wait for messages");
   }
   ~DdsTransport() override {
     dds_delete(participant_);
@@ -214,7 +217,10 @@ class DdsTransport final : public Transport {
       const dds_entity_t reader =
           dds_create_reader(participant_, topic_of(topic, kind), qos, nullptr);
       dds_delete_qos(qos);
-      return checked(reader, "cannot read " + topic);
+      checked(reader, "cannot read " + topic);
+      checked(dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS), "cannot watch " + topic);
+      checked(dds_waitset_attach(arrivals_, reader, 0), "cannot wait for " + topic);
+      return reader;
     };
     Subscribed subscribed{kind, read(DDS_DURABILITY_VOLATILE), 0};
     // A publisher that keeps its last state sends it only to a reader that requests it, and such a
@@ -242,16 +248,19 @@ class DdsTransport final : public Transport {
     return static_cast<int>(announced_.size()) - 1;
   }
 
-  void deliver(Inbox& inbox) override {
+  void deliver(Inbox& inbox, double wait) override {
+    if (wait > 0.0) {
+      dds_waitset_wait(arrivals_, nullptr, 0, static_cast<dds_duration_t>(1e9 * wait));
+    }
     for (std::size_t k = 0; k < subscribed_.size(); ++k) {
       take(subscribed_[k].reader, static_cast<int>(k), inbox);
       if (subscribed_[k].kept > 0) take(subscribed_[k].kept, static_cast<int>(k), inbox);
     }
   }
 
-  void send(int topic, const Message& values) override {
+  bool send(int topic, const Message& values) override {
     const Announced& announced = announced_[static_cast<std::size_t>(topic)];
-    write(announced.writer, announced.kind, values);
+    return write(announced.writer, announced.kind, values);
   }
 
   int publishers(int subscription) override {
@@ -298,6 +307,7 @@ class DdsTransport final : public Transport {
 
   dds_entity_t domain_ = 0;
   dds_entity_t participant_ = 0;
+  dds_entity_t arrivals_ = 0;  // waits for messages
   std::vector<Subscribed> subscribed_;
   std::vector<Announced> announced_;
 };

@@ -189,29 +189,36 @@ class Ros1Transport final : public Transport {
     return static_cast<int>(announced_.size()) - 1;
   }
 
-  void deliver(Inbox& inbox) override {
+  void deliver(Inbox& inbox, double wait) override {
     inbox_ = &inbox;
-    queue_.callAvailable();
+    queue_.callAvailable(ros::WallDuration(wait));
   }
 
-  void send(int topic, const Message& values) override {
+  bool send(int topic, const Message& values) override {
     const auto& [publisher, kind] = announced_[static_cast<std::size_t>(topic)];
     switch (kind) {
       case Kind::pose:
-        return publisher.publish(pose_of(values));
+        publisher.publish(pose_of(values));
+        return true;
       case Kind::joints:
-        return publisher.publish(joints_of(values));
+        publisher.publish(joints_of(values));
+        return true;
       case Kind::wrench:
-        return publisher.publish(wrench_of(values));
+        publisher.publish(wrench_of(values));
+        return true;
       case Kind::state:
-        return publisher.publish(state_of(values));
+        publisher.publish(state_of(values));
+        return true;
       case Kind::flag:
-        return publisher.publish(flag_of(values));
+        publisher.publish(flag_of(values));
+        return true;
       case Kind::text:
-        return publisher.publish(text_of(values));
+        publisher.publish(text_of(values));
+        return true;
       case Kind::shape:
-        return;
+        break;
     }
+    return false;
   }
 
   void show(int topic, const std::string& frame, const Shape& shape) override {

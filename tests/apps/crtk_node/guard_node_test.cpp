@@ -31,16 +31,17 @@ class ScriptedTransport final : public Transport {
     announced.push_back(topic);
     return static_cast<int>(announced.size()) - 1;
   }
-  void deliver(Inbox& inbox) override {
+  void deliver(Inbox& inbox, double) override {
     for (const auto& [topic, message] : queue) inbox.receive(topic, message);
     queue.clear();
   }
-  void send(int topic, const Message& message) override {
+  bool send(int topic, const Message& message) override {
     const std::string& name = announced[static_cast<std::size_t>(topic)];
     if (name == "/PSM1/servo_cp") setpoint = message;
     if (name == "/PSM1/servo_jp") {
       joints.assign(message.positions.data, message.positions.data + message.positions.size);
     }
+    return true;
   }
   int publishers(int) override { return others; }
   bool is_read(int) override { return false; }
