@@ -24,9 +24,10 @@ GuardNode::GuardNode(const Settings& settings, const Scene& scene, Transport& tr
     : settings_(settings),
       transport_(transport),
       session_(make_session(settings, scene)),
-      drives_joints_(!settings.robot.empty()) {
-  if (drives_joints_) joint_names_ = joint_names(settings);
-  for (const std::string& name : joint_names_) names_.first[names_.count++] = name;
+      drives_joints_(session_.instrument() != nullptr) {
+  for (int k = 1; drives_joints_ && k <= session_.instrument()->chain().size(); ++k) {
+    names_.first[names_.count++] = session_.instrument()->chain().joint(k).name;
+  }
   const auto of_robot = [&](const char* command, Kind kind) {
     return transport.subscribe(settings.of_robot(command), kind);
   };

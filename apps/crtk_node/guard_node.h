@@ -41,8 +41,7 @@ class GuardNode final : public Node {
   Transport& transport_;
   CrtkSession session_;
   bool drives_joints_;
-  std::vector<std::string> joint_names_;  // of the chain
-  Names names_;                           // joint_names_
+  Names names_;  // of the joints of the session's chain
   // Subscriptions.
   int measured_cp_, measured_js_, setpoint_cp_, setpoint_js_, operating_state_;
   int servo_cp_, servo_jp_, servo_jv_, engage_;

@@ -165,14 +165,6 @@ MotionConstraint make_tip_guard(const Settings& settings, const Scene& scene) {
       {.options = {.tool_radius = settings.tool_radius, .margin = settings.margin}});
 }
 
-std::vector<std::string> joint_names(const Settings& settings) {
-  const Instrument instrument = instrument_of(settings);
-  const Chain& chain = instrument.chain();
-  std::vector<std::string> names;
-  for (int k = 1; k <= chain.size(); ++k) names.push_back(chain.joint(k).name);
-  return names;
-}
-
 CrtkSession make_session(const Settings& settings, const Scene& scene) {
   const CrtkOptions options{.haptic = {.period = settings.period,
                                        .top_speed = settings.top_speed,

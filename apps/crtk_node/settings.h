@@ -65,9 +65,6 @@ Scene load_scene(const Settings& settings);
 /// Makes the motion constraint of a tip. Throws Error.
 MotionConstraint make_tip_guard(const Settings& settings, const Scene& scene);
 
-/// Returns the names of the joints of the instrument that the settings name. Throws Error.
-std::vector<std::string> joint_names(const Settings& settings);
-
 /// Makes the session of a tip, or of the instrument that the settings name. Throws Error.
 CrtkSession make_session(const Settings& settings, const Scene& scene);
 

@@ -28,6 +28,11 @@ void require_plausible(const CrtkOptions& options, const Registration& registrat
   require("farthest_start [m]", options.farthest_start, 10.0);
 }
 
+/// Returns a pose of the robot's frame in another unit.
+Pose in_unit(const Pose& pose, double scale) noexcept {
+  return {scale * pose.position, pose.rotation};
+}
+
 MotionConstraint of_ball(MotionConstraint guard) {
   if (!guard.guards_a_tool()) return guard;
   throw Error(
@@ -95,7 +100,7 @@ void CrtkSession::on_measured_js(std::span<const double> positions,
   if (instrument() == nullptr) return;
   measured_stamp_ = never;
   if (!take(positions, measured_joints_)) return;
-  measured_ = scaled(instrument()->flange_at(all(measured_joints_)), 1.0 / registration_.scale());
+  measured_ = in_unit(instrument()->flange_at(all(measured_joints_)), 1.0 / registration_.scale());
   measured_stamp_ = header.stamp;
 }
 
@@ -152,16 +157,12 @@ bool CrtkSession::is_accepted(const Pose& pose, const MessageHeader& header) noe
 }
 
 bool CrtkSession::take(std::span<const double> numbers, Positions& joints) noexcept {
-  const Chain& chain = instrument()->chain();
-  if (numbers.size() != static_cast<std::size_t>(chain.size())) {
+  if (numbers.size() != static_cast<std::size_t>(instrument()->chain().size())) {
     refuse(CycleStatus::wrong_command);
     return false;
   }
   Positions scaled{};
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const bool slides = chain.joint(static_cast<int>(k) + 1).kind == JointKind::prismatic;
-    scaled[k] = slides ? registration_.scale() * numbers[k] : numbers[k];
-  }
+  for (std::size_t k = 0; k < numbers.size(); ++k) scaled[k] = scale_of(k) * numbers[k];
   if (!std::ranges::all_of(scaled, [](double number) { return std::isfinite(number); })) {
     refuse(CycleStatus::invalid_pose);
     return false;
@@ -174,8 +175,10 @@ std::span<const double> CrtkSession::all(const Positions& joints) const noexcept
   return {joints.data(), static_cast<std::size_t>(instrument()->chain().size())};
 }
 
-Pose CrtkSession::scaled(const Pose& pose, double scale) const noexcept {
-  return {scale * pose.position, pose.rotation};
+double CrtkSession::scale_of(std::size_t joint) const noexcept {
+  const bool slides =
+      instrument()->chain().joint(static_cast<int>(joint) + 1).kind == JointKind::prismatic;
+  return slides ? registration_.scale() : 1.0;
 }
 
 Vec3 CrtkSession::position_of(const Pose& pose) const noexcept {
@@ -207,7 +210,7 @@ CycleStatus CrtkSession::engage(double now) noexcept {
     return cycle_.status = CycleStatus::unmeasured;
   }
   if (instrument() != nullptr) {
-    start_ = scaled(instrument()->flange_at(all(start_joints_)), 1.0 / registration_.scale());
+    start_ = in_unit(instrument()->flange_at(all(start_joints_)), 1.0 / registration_.scale());
   }
   const Vec3 position = registration_.point_to_mesh(start_.position);
   const Mesh* mesh = first_mesh();
@@ -289,7 +292,7 @@ HapticCycle CrtkSession::move() noexcept {
   auto& moved = std::get<InstrumentProxy>(proxy_);
   switch (command_) {
     case Command::pose:
-      return moved.cycle(scaled(goal_, registration_.scale()));
+      return moved.cycle(in_unit(goal_, registration_.scale()));
     case Command::positions:
       return moved.cycle(all(goal_joints_));
     case Command::velocities:
@@ -320,10 +323,9 @@ CycleStatus CrtkSession::finish(const HapticCycle& cycle) noexcept {
     if (cycle.ok()) setpoint_ = Pose{registration_.point_to_robot(cycle.proxy), goal_.rotation};
   } else if (cycle.ok()) {
     const InstrumentProxy& moved = *instrument();
-    setpoint_ = scaled(moved.flange(), 1.0 / registration_.scale());
+    setpoint_ = in_unit(moved.flange(), 1.0 / registration_.scale());
     for (std::size_t k = 0; k < moved.positions().size(); ++k) {
-      const bool slides = moved.chain().joint(static_cast<int>(k) + 1).kind == JointKind::prismatic;
-      setpoint_joints_[k] = moved.positions()[k] / (slides ? registration_.scale() : 1.0);
+      setpoint_joints_[k] = moved.positions()[k] / scale_of(k);
     }
   }
   wrench_.force = options_.motion_scale * (options_.hand_from_robot * force);

@@ -179,8 +179,8 @@ class CrtkSession {
   void receive_joints(std::span<const double> numbers, double stamp, Command command) noexcept;
   /// Returns the positions (n) that the session stores in `joints`.
   std::span<const double> all(const Positions& joints) const noexcept;
-  /// Returns a pose of the robot's frame in its unit, in the unit of the mesh.
-  Pose scaled(const Pose& pose, double scale) const noexcept;
+  /// Returns the number of mesh units in the robot's unit of a joint: 1 if it is an angle.
+  double scale_of(std::size_t joint) const noexcept;
   /// Returns the position of the tool of a pose, in the frame of the proxy.
   Vec3 position_of(const Pose& pose) const noexcept;
   /// Returns the distance from the setpoint to the measured robot. [length]
