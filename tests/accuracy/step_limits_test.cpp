@@ -32,7 +32,7 @@ struct Question {
 Question random_question(const Vec3& tip, Random& random) {
   Question q;
   q.tip = tip;
-  q.desired = random.uniform(0.0, 2.0) * random.direction();
+  q.desired = random.uniform(0.0, 2.5) * random.direction();  // beyond the radius, too
   if (random.below(4) == 0) {
     q.jacobian.emplace();
     for (int c = 0; c < 3; ++c) q.jacobian->col(c) = random.uniform(0.3, 2.0) * random.direction();
