@@ -11,8 +11,8 @@
 
 namespace keepout::crtk {
 
-/// Draws the mesh, and the triangles and planes that limit a tip, in a thread of its own with a
-/// motion constraint of its own: the cycle of the session neither waits nor allocates.
+/// Draws the mesh, and the triangles and planes that limit a tip. It has a thread and a motion
+/// constraint of its own, so the cycle of the session neither waits nor allocates.
 class Drawing {
  public:
   /// Draws the mesh. `guard`: like that of the session.

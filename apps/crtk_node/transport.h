@@ -79,8 +79,8 @@ class Transport {
   /// message. Throws std::runtime_error.
   virtual int advertise(const std::string& topic, Kind kind, bool is_kept = false) = 0;
 
-  /// Passes on the messages that have arrived, at most ten of each topic. If there is none, waits
-  /// for one, at most `wait` seconds.
+  /// Passes on the messages that have arrived, at most ten of each topic. `wait`: how long to wait
+  /// for the first message [s].
   virtual void deliver(Inbox& inbox, double wait = 0.0) = 0;
   /// Sends a message, without waiting for a reader: a slow reader loses messages. Returns false if
   /// the message was dropped here.
