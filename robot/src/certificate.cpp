@@ -2,6 +2,7 @@
 #include "certificate.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -51,12 +52,11 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
     const bool owes = due_plus_rounding_ < demand_;
     if (owes && displacement == 0.0) continue;
     owes_ = owes_ || owes;
-    const Gap at_end = gap_at(PointMotion::last_knot, *triangle.corners);
-    const bool gains_too_little =
-        owes && at_end.distance < triangle.at_start.distance + due_gain * tolerance_;
-    const int knot = gains_too_little ? 0
-                                      : proved_until(triangle, 0, triangle.at_start,
-                                                     PointMotion::last_knot, at_end);
+    Place start{.knot = 0, .is_known = true, .gap = triangle.at_start};
+    Place end{.knot = PointMotion::last_knot};
+    const bool gains_too_little = owes && gap_at(end, *triangle.corners).distance <
+                                              triangle.at_start.distance + due_gain * tolerance_;
+    const int knot = gains_too_little ? 0 : proved_until(triangle, start, end);
     if (budget_.is_spent()) return {0, nullptr};
     if (knot > latest_ || knot == PointMotion::last_knot) continue;
     if (knot == latest_ && first.triangle != nullptr && first.triangle->id < triangle.id) continue;
@@ -66,10 +66,13 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
   return first;
 }
 
-Gap Certificate::gap_at(int knot, const Triangle& corners) noexcept {
+const Gap& Certificate::gap_at(Place& place, const Triangle& corners) noexcept {
+  if (place.is_known) return place.gap;
   budget_.spend(work_of_gap(points_.size()));
   CorePositions core;
-  return gap(motion_.core_at(body_, knot, core), corners);
+  place.gap = gap(motion_.core_at(body_, place.knot, core), corners);
+  place.is_known = true;
+  return place.gap;
 }
 
 /// Returns the least height of the body's core along a normal on a sub-interval of the motion.
@@ -108,32 +111,54 @@ bool Certificate::is_covered(const NearTriangle& triangle) const noexcept {
   });
 }
 
-/// Returns the last knot up to which the sub-interval from lo to hi is proved.
-int Certificate::proved_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
-                              const Gap& at_hi) noexcept {
-  if (lo > latest_ || budget_.is_spent()) return lo;
-  const Vec3* from = motion_.points_in_mesh(lo);
-  const Vec3* to = motion_.points_in_mesh(hi);
-  const double span = static_cast<double>(hi - lo) / PointMotion::last_knot;
+/// Tries to prove the sub-interval by the gap at lo, and at hi if that is known.
+bool Certificate::is_proved_from(const NearTriangle& triangle, Place& lo,
+                                 const Place& hi) noexcept {
+  const auto separates_at = [&](const Gap& gap) {
+    return gap.distance > 0.0 && separates(gap.normal, triangle, lo.knot, hi.knot);
+  };
+  if (hi.is_known && separates_at(hi.gap)) return true;
+  const Gap& at_lo = gap_at(lo, *triangle.corners);
+  const Vec3* from = motion_.points_in_mesh(lo.knot);
+  const Vec3* to = motion_.points_in_mesh(hi.knot);
+  const double span = static_cast<double>(hi.knot - lo.knot) / PointMotion::last_knot;
   double reach = 0.0;
   for (const std::uint8_t p : points_) {
     reach = std::max(reach, (to[p] - from[p]).norm() + motion_.bend(p) * span * span / 8.0);
   }
   // This proof uses no plane, so it demands the 2 tolerances for rounding in full.
-  if (at_lo.distance - reach >= radius_ + due_plus_rounding_) return hi;
-  if (at_lo.distance > 0.0 && separates(at_lo.normal, triangle, lo, hi)) return hi;
-  if (at_lo.distance > 0.0 && at_hi.distance > 0.0) {
-    if (separates(at_hi.normal, triangle, lo, hi)) return hi;
-    const Vec3 sum = at_lo.normal + at_hi.normal;
-    const double length = sum.norm();
-    if (length > 1e-3 && separates(sum / length, triangle, lo, hi)) return hi;
+  return at_lo.distance - reach >= radius_ + due_plus_rounding_ || separates_at(at_lo);
+}
+
+/// Like is_proved_from(), which has failed, but by the gap at hi, and by a plane between those of
+/// both ends.
+bool Certificate::is_proved_to(const NearTriangle& triangle, const Place& lo, Place& hi) noexcept {
+  const bool was_tried = hi.is_known;
+  const Gap& at_hi = gap_at(hi, *triangle.corners);
+  if (!(lo.gap.distance > 0.0 && at_hi.distance > 0.0)) return false;
+  if (!was_tried && separates(at_hi.normal, triangle, lo.knot, hi.knot)) return true;
+  const Vec3 sum = lo.gap.normal + at_hi.normal;
+  const double length = sum.norm();
+  return length > 1e-3 && separates(sum / length, triangle, lo.knot, hi.knot);
+}
+
+/// Returns the last knot up to which the sub-interval from lo to hi is proved.
+int Certificate::proved_until(const NearTriangle& triangle, Place& lo, Place& hi) noexcept {
+  if (lo.knot > latest_ || budget_.is_spent()) return lo.knot;
+  if (is_proved_from(triangle, lo, hi)) return hi.knot;
+  Place middle{.knot = (lo.knot + hi.knot) / 2};
+  // If another triangle ends the proof earlier, only the sub-interval before its knot matters.
+  if (hi.knot - lo.knot == PointMotion::last_knot && latest_ < middle.knot) {
+    Place until{.knot = static_cast<int>(std::bit_ceil(static_cast<unsigned>(latest_) + 1U))};
+    if (is_proved_from(triangle, lo, until) || is_proved_to(triangle, lo, until)) {
+      return until.knot;
+    }
   }
-  if (hi - lo == 1) return lo;
-  const int middle = (lo + hi) / 2;
-  const Gap at_middle = gap_at(middle, *triangle.corners);
-  const int first = proved_until(triangle, lo, at_lo, middle, at_middle);
-  if (first < middle) return first;
-  return proved_until(triangle, middle, at_middle, hi, at_hi);
+  if (is_proved_to(triangle, lo, hi)) return hi.knot;
+  if (hi.knot - lo.knot == 1) return lo.knot;
+  const int first = proved_until(triangle, lo, middle);
+  if (first < middle.knot) return first;
+  return proved_until(triangle, middle, hi);
 }
 
 }  // namespace keepout

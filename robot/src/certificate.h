@@ -54,12 +54,21 @@ class Certificate {
   };
   static constexpr std::size_t most_planes = 12;
 
-  Gap gap_at(int knot, const Triangle& corners) noexcept;
+  /// A knot, and the gap between the body and the current triangle there. Computed when it is first
+  /// needed.
+  struct Place {
+    int knot;
+    bool is_known = false;
+    Gap gap = {};
+  };
+
+  const Gap& gap_at(Place& place, const Triangle& corners) noexcept;
   double least_height(const Vec3& normal, int lo, int hi) noexcept;
   bool separates(const Vec3& normal, const NearTriangle& triangle, int lo, int hi) noexcept;
   bool is_covered(const NearTriangle& triangle) const noexcept;
-  int proved_until(const NearTriangle& triangle, int lo, const Gap& at_lo, int hi,
-                   const Gap& at_hi) noexcept;
+  bool is_proved_from(const NearTriangle& triangle, Place& lo, const Place& hi) noexcept;
+  bool is_proved_to(const NearTriangle& triangle, const Place& lo, Place& hi) noexcept;
+  int proved_until(const NearTriangle& triangle, Place& lo, Place& hi) noexcept;
 
   std::size_t body_;
   std::span<const std::uint8_t> points_;

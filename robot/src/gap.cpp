@@ -17,6 +17,24 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // The squares of shorter vectors have few digits, so their direction is unknown.
 constexpr double least_length2 = 1e-280;
 
+/// Returns the triangle with its corners in lexicographic order, as closest_point_of_ordered()
+/// takes them.
+Triangle in_order(const Triangle& triangle) noexcept {
+  const auto before = [](const Vec3& a, const Vec3& b) {
+    const int in_plane = int{a.y() < b.y()} | (int{a.y() == b.y()} & int{a.z() < b.z()});
+    return int{a.x() < b.x()} | (int{a.x() == b.x()} & in_plane);
+  };
+  // Without branches: the place of a corner is the number of corners before it.
+  const int one_before_zero = before(triangle[1], triangle[0]);
+  const int two_before_zero = before(triangle[2], triangle[0]);
+  const int two_before_one = before(triangle[2], triangle[1]);
+  Triangle ordered;
+  ordered[static_cast<std::size_t>(one_before_zero + two_before_zero)] = triangle[0];
+  ordered[static_cast<std::size_t>(1 - one_before_zero + two_before_one)] = triangle[1];
+  ordered[static_cast<std::size_t>(2 - two_before_zero - two_before_one)] = triangle[2];
+  return ordered;
+}
+
 /// The best pair of points found so far, and the directions that may prove its distance.
 struct Candidate {
   double distance2 = infinity;
@@ -25,9 +43,9 @@ struct Candidate {
   Vec3 sharper = Vec3::Zero();  // a more accurate direction, from the features; zero if unknown
 };
 
-void consider_end(const Vec3& end, const Triangle& triangle, const Vec3& face,
+void consider_end(const Vec3& end, const Triangle& ordered, const Vec3& face,
                   Candidate& best) noexcept {
-  const ClosestPoint closest = closest_point(triangle, end);
+  const ClosestPoint closest = closest_point_of_ordered(ordered, end);
   const double distance2 = closest.distance * closest.distance;
   if (!(distance2 < best.distance2)) return;
   best = {distance2, end, -closest.offset, Vec3::Zero()};
@@ -113,11 +131,12 @@ Gap gap(std::span<const Vec3> core, const Triangle& triangle) noexcept {
   const Vec3& a = core.front();
   const Vec3& b = core.back();
   const Vec3 face = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+  const Triangle ordered = in_order(triangle);
   Candidate nearest;
-  consider_end(a, triangle, face, nearest);
+  consider_end(a, ordered, face, nearest);
   if (core.size() == 2) {
     if (goes_through(a, b, triangle, face)) return {};
-    consider_end(b, triangle, face, nearest);
+    consider_end(b, ordered, face, nearest);
     const Vec3 along = b - a;
     const double length2 = along.squaredNorm();
     for (std::size_t e = 0; e < 3; ++e) {

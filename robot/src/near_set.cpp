@@ -46,6 +46,7 @@ NearSet::NearSet(std::size_t capacity, double beyond) : capacity_(capacity), bey
   ids_.reserve(capacity);
   corners_.reserve(capacity);
   blocks_.resize(capacity / NearBlock::lanes + 1);
+  found_.reserve(capacity);
   listed_.reserve(capacity);
   listed_in_.reserve(capacity);
   core_.reserve(Instrument::most_points_of_a_body);
@@ -117,7 +118,7 @@ void NearSet::start_listing(std::span<const Vec3> core) noexcept {
 
 std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) noexcept {
   if (distance > listed_below_ && !ids_.empty()) {
-    const auto old_count = static_cast<std::ptrdiff_t>(listed_.size());
+    found_.clear();
     const NearScreen screen = screen_within(distance);
     budget.spend(1 + ids_.size() / (4 * NearBlock::lanes));
     for (std::size_t first = 0; first < ids_.size(); first += NearBlock::lanes) {
@@ -130,16 +131,18 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
                                          height_along(normals_[i], now_, corners_[i]));
         if (!(at_least < distance)) continue;
         listed_in_[i] = listing_;
-        listed_.push_back(
-            {.id = ids_[i], .at_least = at_least, .corners = &corners_[i], .normal = &normals_[i]});
+        found_.push_back({at_least, ids_[i], static_cast<std::uint32_t>(i)});
       }
     }
-    budget.spend(listed_.size() - static_cast<std::size_t>(old_count));
+    budget.spend(found_.size());
     // All triangles listed before are nearer than these.
-    std::sort(listed_.begin() + old_count, listed_.end(),
-              [](const NearTriangle& x, const NearTriangle& y) {
-                return x.at_least < y.at_least || (x.at_least == y.at_least && x.id < y.id);
-              });
+    std::sort(found_.begin(), found_.end());
+    for (const Found& one : found_) {
+      listed_.push_back({.id = one.id,
+                         .at_least = one.at_least,
+                         .corners = &corners_[one.number],
+                         .normal = &normals_[one.number]});
+    }
     listed_below_ = distance;
   }
   const auto end =

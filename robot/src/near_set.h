@@ -78,6 +78,17 @@ class NearSet {
   std::vector<Vec3> now_;     // the core's points
   Vec3 from_ = Vec3::Zero();  // the segment of the first two
   Vec3 to_ = Vec3::Zero();
+  /// A triangle that is not listed yet.
+  struct Found {
+    double at_least;  // see NearTriangle [length]
+    TriangleId id;
+    std::uint32_t number;  // in ids_
+
+    bool operator<(const Found& o) const noexcept {
+      return at_least < o.at_least || (at_least == o.at_least && id < o.id);
+    }
+  };
+  std::vector<Found> found_;  // a temporary
   std::vector<NearTriangle> listed_;
   std::vector<std::uint64_t> listed_in_;  // of each triangle, the last listing that it is in
   std::uint64_t listing_ = 0;

@@ -45,19 +45,16 @@ void PointMotion::set_trial(const JointVector& increment, CertifiedMotion which)
   }
 }
 
-const Vec3* PointMotion::points_at(int knot) noexcept {
-  Positions& there = positions_[static_cast<std::size_t>(knot)];
-  if (knot == 0 || there.motion_number == number_) return there.points.data();
+void PointMotion::compute(int knot, Positions& there) noexcept {
   there.motion_number = number_;
   const double fraction = static_cast<double>(knot) / last_knot;
   if (which_ == CertifiedMotion::linearized) {
     for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
       there.points[p] = points_at_start()[p] + fraction * straight_[p];
     }
-    return there.points.data();
+    return;
   }
   fill(chain_at_fraction(fraction), there);
-  return there.points.data();
 }
 
 Pose PointMotion::flange_at(double fraction) noexcept {

@@ -49,7 +49,11 @@ class PointMotion {
   const JointVector& increment() const noexcept { return increment_; }
 
   /// Returns the positions of all points at a knot, by their number. [length]
-  const Vec3* points_at(int knot) noexcept;
+  const Vec3* points_at(int knot) noexcept {
+    Positions& there = positions_[static_cast<std::size_t>(knot)];
+    if (knot != 0 && there.motion_number != number_) compute(knot, there);
+    return there.points.data();
+  }
   /// Returns the positions of all points at the start of the cycle. [length]
   const Vec3* points_at_start() const noexcept { return positions_[0].points.data(); }
   /// Returns the chain at the start of the cycle.
@@ -66,6 +70,7 @@ class PointMotion {
 
  private:
   const ChainState& chain_at_fraction(double fraction) noexcept;
+  void compute(int knot, Positions& there) noexcept;
   void fill(const ChainState& state, Positions& positions) const noexcept;
 
   const Instrument* instrument_;

@@ -54,17 +54,13 @@ Vec3 RelativeMotion::in_mesh(const Vec3& position, int knot) const noexcept {
   return mesh.rotation.transpose() * (position - mesh.position);
 }
 
-const Vec3* RelativeMotion::points_in_mesh(int knot) noexcept {
-  if (is_world_frame_) return joint_motion_->points_at(knot);
-  PointMotion::Positions& there = positions_[static_cast<std::size_t>(knot)];
-  if (knot == 0 || there.motion_number == joint_motion_->number()) return there.points.data();
+void RelativeMotion::compute(int knot, PointMotion::Positions& there) noexcept {
   there.motion_number = joint_motion_->number();
   const Vec3* in_world = joint_motion_->points_at(knot);
   const Pose mesh = pose_at(knot);
   for (std::size_t p = 0; p < instrument_->points().size(); ++p) {
     there.points[p] = mesh.rotation.transpose() * (in_world[p] - mesh.position);
   }
-  return there.points.data();
 }
 
 std::span<const Vec3> RelativeMotion::core_at(std::size_t body, int knot,

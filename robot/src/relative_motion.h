@@ -43,7 +43,12 @@ class RelativeMotion {
   }
 
   /// Returns the positions of all points at a knot, by their number. [length]
-  const Vec3* points_in_mesh(int knot) noexcept;
+  const Vec3* points_in_mesh(int knot) noexcept {
+    if (is_world_frame_) return joint_motion_->points_at(knot);
+    PointMotion::Positions& there = positions_[static_cast<std::size_t>(knot)];
+    if (knot != 0 && there.motion_number != joint_motion_->number()) compute(knot, there);
+    return there.points.data();
+  }
   /// Copies the positions of one body's points at a knot into `core`, and returns them. [length]
   std::span<const Vec3> core_at(std::size_t body, int knot, CorePositions& core) noexcept;
   /// Returns the positions of all points at the start of the cycle. [length]
@@ -63,6 +68,7 @@ class RelativeMotion {
   /// Returns the bounds of a point's own motion plus that of the mesh. `at`: the point at the
   /// start.
   MotionBounds with_mesh(const MotionBounds& own, const Vec3& at) const noexcept;
+  void compute(int knot, PointMotion::Positions& there) noexcept;
 
   const Instrument* instrument_;
   PointMotion* joint_motion_;

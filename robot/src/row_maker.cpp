@@ -38,7 +38,7 @@ Vec3 turned_back(const Vec3& valid, const Vec3& wanted, const IsValid& is_valid)
 std::optional<Row> RowMaker::at_contact(std::size_t pair, const NearTriangle& triangle,
                                         int knot) noexcept {
   const Triangle& corners = *triangle.corners;
-  const Gap there = gap_at(pair, corners, knot);
+  const Gap there = gap_at(pair, triangle, knot);
   if (!(there.distance > 0.0)) return std::nullopt;
   const CorePoint point = core_point(pair, there.contact, knot);
   const Vec3 at = position_of(pair, point, 0);
@@ -79,7 +79,7 @@ void RowMaker::at_vertices(std::size_t pair, const NearTriangle& triangle, int k
                            Buffer<Row>& rows) noexcept {
   const Triangle& corners = *triangle.corners;
   if (!(triangle.at_start.distance > 0.0)) return;
-  const Gap there = gap_at(pair, corners, knot);
+  const Gap there = gap_at(pair, triangle, knot);
   const double needed_height =
       std::min(pairs_.radius(pair) + pairs_.row_margin(pair), triangle.at_start.distance) -
       memory_.tolerance;
@@ -114,12 +114,16 @@ double RowMaker::height_at_end(const Row& row) noexcept {
   return row.normal.dot(at) - row.offset;
 }
 
-Gap RowMaker::gap_at(std::size_t pair, const Triangle& corners, int knot) noexcept {
+Gap RowMaker::gap_at(std::size_t pair, const NearTriangle& triangle, int knot) noexcept {
   constexpr std::size_t work_of_turning = 5;  // in work units
+  if (knot == 0 && triangle.is_measured) {
+    memory_.budget.spend(work_of_turning);
+    return triangle.at_start;
+  }
   CorePositions core;
   const std::span<const Vec3> points = pairs_.motion(pair).core_at(pairs_.body(pair), knot, core);
   memory_.budget.spend(work_of_gap(points.size()) + work_of_turning);
-  return gap(points, corners);
+  return gap(points, *triangle.corners);
 }
 
 /// Returns the point of the body's core that is at `contact` at a knot of the motion.

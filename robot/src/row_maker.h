@@ -31,7 +31,7 @@ class RowMaker {
   double height_at_end(const Row& row) noexcept;
 
  private:
-  Gap gap_at(std::size_t pair, const Triangle& corners, int knot) noexcept;
+  Gap gap_at(std::size_t pair, const NearTriangle& triangle, int knot) noexcept;
   CorePoint core_point(std::size_t pair, const Vec3& contact, int knot) noexcept;
   Vec3 position_of(std::size_t pair, const CorePoint& point, int knot) noexcept;
   void finish(Row& row, const Vec3& at, const Triangle& corners) const noexcept;

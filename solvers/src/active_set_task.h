@@ -2,7 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "active_set_rows.h"
 
@@ -20,6 +24,9 @@ class TaskSpace {
     inverse_.resize(variables);
     target_.resize(variables);
     tail_.resize(variables);
+    const auto n = static_cast<std::size_t>(variables);
+    factored_.reserve(n * n + n);
+    factored_variables_ = 0;
   }
 
   /// Returns false if there is no unique minimizer to working precision.
@@ -31,10 +38,15 @@ class TaskSpace {
     if (identity_) {
       for (int j = 0; j < n(); ++j) target_[j] = problem.desired[j];
       size_ = std::sqrt(static_cast<double>(n()));
+      factored_variables_ = 0;
       return true;
     }
-    factor();
-    return condition() <= singular;
+    if (!is_factored(problem)) {
+      factor();
+      condition_ = condition();
+      remember(problem);
+    }
+    return condition_ <= singular;
   }
 
   const Vector<N>& target() const noexcept { return target_; }  // c
@@ -86,6 +98,31 @@ class TaskSpace {
       }
     }
     return true;
+  }
+
+  /// Returns true if J, d and damping are those that were factored last, bit for bit. The solves of
+  /// a cycle share them.
+  bool is_factored(const StepProblem& p) const noexcept {
+    const auto is_same = [](double a, double b) {
+      return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+    };
+    const auto size = static_cast<std::size_t>(p.jacobian.size() + p.desired.size());
+    return factored_variables_ == n() && factored_.size() == size &&
+           is_same(factored_damping_, p.damping) &&
+           std::equal(p.desired.data(), p.desired.data() + p.desired.size(), factored_.data(),
+                      is_same) &&
+           std::equal(p.jacobian.data(), p.jacobian.data() + p.jacobian.size(),
+                      factored_.data() + p.desired.size(), is_same);
+  }
+
+  /// Notes what was factored; nothing if it has more than n task rows, which would not fit.
+  void remember(const StepProblem& p) noexcept {
+    const auto size = static_cast<std::size_t>(p.jacobian.size() + p.desired.size());
+    factored_variables_ = size <= factored_.capacity() ? n() : 0;
+    if (factored_variables_ == 0) return;
+    factored_.assign(p.desired.data(), p.desired.data() + p.desired.size());
+    factored_.insert(factored_.end(), p.jacobian.data(), p.jacobian.data() + p.jacobian.size());
+    factored_damping_ = p.damping;
   }
 
   /// Starts from the rows of the damping, which are triangular, and adds J in blocks of n rows. So
@@ -162,6 +199,11 @@ class TaskSpace {
   Vector<N> target_;   // c
   Matrix<N> block_;    // rows of J that are being added to R
   Vector<N> tail_;     // their part of d
+  double condition_ = 0;
+  // What was factored last.
+  std::vector<double> factored_;  // d, then J
+  double factored_damping_ = 0;
+  int factored_variables_ = 0;  // 0: nothing
 };
 
 }  // namespace keepout::active_set
