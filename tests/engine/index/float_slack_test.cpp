@@ -65,13 +65,13 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
         const float in_float[3] = {static_cast<float>(motion.x()), static_cast<float>(motion.y()),
                                    static_cast<float>(motion.z())};
         Suspects suspects;
-        find_suspects(filter, in_float, suspects);
+        const std::uint32_t begun = find_suspects(filter, in_float, 1.0f, suspects);
         for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
           const Triangle triangle = mesh->triangle(index.tree().leaves()[0].triangle(lane));
           const Vec3 its = normal_of(filter.at_tip, lane);
           const double clear = clear_in_double(its, triangle, tip, margin);
           ASSERT_LE(filter.at_tip.clear[lane], clear);
-          if ((suspects.mask >> lane & 1u) != 0) continue;
+          if (((begun | suspects.mask) >> lane & 1u) != 0) continue;
           ASSERT_GE(clear + its.dot(motion), 0.0) << "at the end";
           ++clear_of_a_motion;
         }
@@ -79,6 +79,118 @@ TEST(FloatSlack, NoProofOfALeafClaimsMoreThanItsPlaneDoes) {
     }
   }
   EXPECT_GT(clear_of_a_motion, test::trials(10'000));
+}
+
+/// Returns the least distance of a motion from a shape up to a time. `distance(point)` is convex.
+template <class Distance>
+double least_distance(const Distance& distance, const Vec3& motion, double until) {
+  double low = 0.0, high = until;
+  for (int i = 0; i < 100; ++i) {
+    const double third = (high - low) / 3.0;
+    if (distance((low + third) * motion) < distance((high - third) * motion)) {
+      high -= third;
+    } else {
+      low += third;
+    }
+  }
+  return std::min({distance(Vec3(low * motion)), distance(Vec3::Zero()), distance(until * motion)});
+}
+
+// Motions past or to one of the triangles, and then others with the proofs of the first.
+TEST(FloatSlack, NoSharpenedSuspectIsDelayedBeyondItsContact) {
+  Random random(4);
+  int removed = 0, delayed = 0;
+  for (int trial = 0; trial < test::trials(400); ++trial) {
+    const auto mesh = one_leaf(1.0, random);
+    const WideBvh index(mesh);
+    const LeafBlock& leaf = index.tree().leaves()[0];
+    const double margin = 0.1;
+    const Vec3 tip = random.uniform(0.5, 2.0) * random.direction();
+    const FloatLevels levels = float_levels(margin, 4.0, tip, index.tree().frame().error);
+    LeafFilter filter;
+    fill_filter(leaf, float_tip(tip), levels, filter);
+    for (int i = 0; i < 6; ++i) {
+      const Vec3 near = mesh->triangle(leaf.triangle(random.below(LeafBlock::lanes)))[0] +
+                        2.0 * margin * random.direction();
+      const Vec3 motion =
+          (random.uniform(0.5, 1.5) * (near - tip)).cast<float>().cast<double>().eval();
+      const float in_float[3] = {static_cast<float>(motion.x()), static_cast<float>(motion.y()),
+                                 static_cast<float>(motion.z())};
+      const float latest = i % 2 == 0 ? 1.0f : static_cast<float>(random.uniform(0.1, 1.0));
+      Suspects suspects;
+      const std::uint32_t begun = find_suspects(filter, in_float, latest, suspects);
+      for (int sharpening = 0; sharpening < 3; ++sharpening) {
+        for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+          if ((begun >> lane & 1u) != 0) continue;
+          const Triangle triangle = mesh->triangle(leaf.triangle(lane));
+          const auto distance = [&](const Vec3& at) {
+            return closest_point(triangle, tip + at).distance;
+          };
+          const bool is_suspect = (suspects.mask >> lane & 1u) != 0;
+          const float until = is_suspect ? suspects.time[lane] : latest;
+          ASSERT_GE(least_distance(distance, motion, std::min(double{until}, 1.0)), margin);
+          ++(is_suspect ? delayed : removed);
+          if (!is_suspect) continue;
+          ASSERT_GE(suspects.time[lane], suspects.time[suspects.earliest]);
+        }
+        if (suspects.mask == 0) break;
+        sharpen_suspects(leaf, float_tip(tip), in_float, levels, latest, 1 + sharpening, filter,
+                         suspects);
+      }
+    }
+  }
+  EXPECT_GT(removed, test::trials(10'000));
+  EXPECT_GT(delayed, test::trials(1'000));
+}
+
+// The nearest point of a cylinder is computed from its axis.
+TEST(FloatSlack, NoCylinderIsPassedOverOrDelayedBeyondItsContact) {
+  Random random(5);
+  int removed = 0, delayed = 0;
+  for (int trial = 0; trial < test::trials(2000); ++trial) {
+    CylinderBlock cylinders{};
+    for (std::size_t lane = 0; lane < CylinderBlock::lanes; ++lane) {
+      const Vec3 axis = random.direction(), middle = random.direction();
+      for (int i = 0; i < 3; ++i) {
+        cylinders.axis[i][lane] = static_cast<float>(axis[i]);
+        cylinders.middle[i][lane] = static_cast<float>(middle[i]);
+      }
+      cylinders.half_height[lane] = static_cast<float>(random.uniform(0.0, 0.3));
+      cylinders.radius[lane] = static_cast<float>(random.uniform(0.01, 0.3));
+    }
+    const double margin = 0.1;
+    const Vec3 tip = random.uniform(0.5, 2.0) * random.direction();
+    const Vec3 motion =
+        (random.uniform(0.3, 1.5) * random.direction() - tip).cast<float>().cast<double>();
+    const float in_float[3] = {static_cast<float>(motion.x()), static_cast<float>(motion.y()),
+                               static_cast<float>(motion.z())};
+    BoxEntries entries{};
+    entries.reached = 0xffff;
+    enter_cylinders(cylinders, float_tip(tip), in_float, float_levels(margin, 4.0, tip, 0.0),
+                    entries);
+    for (std::size_t lane = 0; lane < CylinderBlock::lanes; ++lane) {
+      Vec3 axis, middle;
+      for (int i = 0; i < 3; ++i) {
+        axis[i] = cylinders.axis[i][lane];
+        middle[i] = cylinders.middle[i][lane];
+      }
+      axis.normalize();
+      const auto distance = [&](const Vec3& at) {
+        const Vec3 off = tip + at - middle;
+        const double along = axis.dot(off);
+        const double above = std::abs(along) - double{cylinders.half_height[lane]};
+        const double beside = (off - along * axis).norm() - double{cylinders.radius[lane]};
+        return std::hypot(std::max(above, 0.0), std::max(beside, 0.0));
+      };
+      const bool is_reached = (entries.reached >> lane & 1u) != 0;
+      const double until = is_reached ? std::clamp(double{entries.time[lane]}, 0.0, 1.0) : 1.0;
+      if (until == 0.0) continue;  // may begin too close
+      ASSERT_GE(least_distance(distance, motion, until), margin);
+      ++(is_reached ? delayed : removed);
+    }
+  }
+  EXPECT_GT(removed, test::trials(5'000));
+  EXPECT_GT(delayed, test::trials(1'000));
 }
 
 // The motions are far longer than the margin, and end just within the margin of a box.

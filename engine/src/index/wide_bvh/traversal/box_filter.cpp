@@ -105,14 +105,27 @@ void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float
   };
   std::uint32_t clear = 0;
   for (std::size_t lane = 0; lane < CylinderBlock::lanes; lane += hn::Lanes(d)) {
+    const M asked = lanes_of(d, entries.reached, lane);
+    if (hn::AllFalse(d, asked)) continue;
     const Cylinders its = cylinders_at(d, block, tip, lane);
     // The direction to about the point where the motion is nearest to the cylinder.
     const Vector near = nearest(d, its, nearest_of_motion(its.middle));
     const Proof proof = proof_along(d, its, nearest_of_motion(near) - near, levels);
     const V along = dot(proof.n, z);
-    const V time = hn::Load(d, entries.time + lane);
-    hn::Store(hn::Max(time, entry(d, proof, along)), d, entries.time + lane);
-    clear |= bits(d, holds(d, proof, along), lane);
+    V time = hn::Max(hn::Load(d, entries.time + lane), entry(d, proof, along));
+    M is_clear = holds(d, proof, along);
+    // A Newton step from the time so far, up to which the motion is clear.
+    if (!hn::AllTrue(d, hn::Or(is_clear, hn::Not(asked)))) {
+      const V at = hn::Min(time, hn::Set(d, 1.0f));
+      const Vector there = at * z;
+      const Proof later = proof_along(d, its, there - nearest(d, its, there), levels);
+      const V along_later = dot(later.n, z);
+      is_clear = hn::Or(is_clear, stays(d, later, along_later, at));
+      time = hn::Max(time, entry(d, later, along_later));
+      is_clear = hn::Or(is_clear, hn::Gt(time, hn::Set(d, 1.0f)));
+    }
+    hn::Store(time, d, entries.time + lane);
+    clear |= bits(d, is_clear, lane);
   }
   entries.reached &= ~clear;
 }

@@ -81,7 +81,7 @@ void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motio
                  const FloatLevels& levels, BoxEntries& entries) noexcept;
 
 /// Improves the entries of the boxes that are reached, with the directions from their cylinders to
-/// the nearest points of the motion.
+/// the nearest points of the motion, and then to the points where the motion enters so far.
 void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
                      const FloatLevels& levels, BoxEntries& entries) noexcept;
 
@@ -94,33 +94,37 @@ float distance_to_boxes(const NodeBlock& boxes, const FloatTip& center) noexcept
 /// Proofs for the sixteen triangles of a leaf.
 struct LeafFilter {
   ProofBlock at_tip;  // along the shortest segments to the tip
-  ProofBlock last;    // the last proof that was better for some motion
+  ProofBlock last;    // of the last step of sharpen_suspects(), if has_last
+  bool has_last;      // false until the first call of sharpen_suspects()
 };
 
-/// Fills the filter of a leaf for this tip.
+/// Fills the filter of a leaf for this tip. Lanes without a triangle are always clear.
 void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatLevels& levels,
                  LeafFilter& filter) noexcept;
 
-/// The triangles that a motion is not proved to stay clear of, one bit each. `time` is when the
-/// motion may meet them, never late: a fraction of the motion, or -1e30 if they may be too close
-/// already.
+/// Triangles of a leaf that a motion is not proved to stay clear of in time, one bit each. `time`
+/// is when the motion may meet them, never late: a fraction of the motion.
 struct Suspects {
   alignas(64) float time[LeafBlock::lanes];
   std::uint32_t mask;
+  std::uint32_t earliest;  // the suspect of least time, unless there is none
+
+  /// Removes a suspect.
+  void remove(std::uint32_t lane) noexcept;
 };
 
-/// Finds the suspects among the triangles of a leaf. `motion`: three coordinates. [length]
-void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept;
+/// Finds the suspects among the triangles of a leaf that the motion may meet up to the time
+/// `latest`. Those at time 0 or before are not in `suspects`: returns them, one bit each, as the
+/// tip may be too close to them already. `motion`: three coordinates. [length]
+std::uint32_t find_suspects(const LeafFilter& filter, const float* motion, float latest,
+                            Suspects& suspects) noexcept;
 
-/// Searches for better proofs for the suspects, which removes some and delays the others. Costs
-/// more than find_suspects. Suspects later than `latest`, a fraction of the motion, may remain
-/// unchanged.
+/// Searches for better proofs for the suspects: delays some, and removes those that the motion does
+/// not meet up to the time `latest`. Makes `steps` Newton steps, each from a suspect's time so far.
+/// Where a step finds a normal along which the motion moves away, the proofs before it cover the
+/// beginning of the motion, and this one the rest. A step costs more than find_suspects.
 void sharpen_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                      const FloatLevels& levels, float latest, LeafFilter& filter,
+                      const FloatLevels& levels, float latest, int steps, LeafFilter& filter,
                       Suspects& suspects) noexcept;
-
-/// Delays the suspects by a Newton step towards the times of their contacts, up to `latest`.
-void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                    const FloatLevels& levels, float latest, Suspects& suspects) noexcept;
 
 }  // namespace keepout

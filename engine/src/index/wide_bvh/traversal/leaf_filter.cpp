@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <bit>
+#include <limits>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "index/wide_bvh/traversal/leaf_filter.cpp"
 #include <hwy/foreach_target.h>
@@ -72,113 +75,109 @@ HWY_INLINE Proof proof_at(FloatTag d, const TriangleLanes& t, const Vector& p,
 void FillFilter(const LeafBlock& leaf, const FloatTip& tip, const FloatLevels& levels,
                 LeafFilter& filter) {
   const FloatTag d;
+  const hn::RebindToUnsigned<FloatTag> du;
   const V zero = hn::Zero(d);
+  const V always = hn::Set(d, 1e30f);
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
     const TriangleLanes t = corners(d, leaf, tip, lane);
-    const Proof proof = proof_at(d, t, {zero, zero, zero}, levels);
+    Proof proof = proof_at(d, t, {zero, zero, zero}, levels);
+    const auto is_unused =
+        hn::Eq(hn::Load(du, leaf.tagged_triangle + lane), hn::Set(du, no_triangle));
+    const M unused = hn::RebindMask(d, is_unused);
+    proof = {select(unused, {zero, zero, zero}, proof.n),
+             hn::IfThenElse(unused, always, proof.clear)};
     store(d, proof, lane, filter.at_tip);
-    store(d, proof, lane, filter.last);
   }
+  filter.has_last = false;
 }
 
-void FindSuspects(const LeafFilter& filter, const float* motion, Suspects& suspects) {
+/// Returns the suspect of least time, the first one if several have it. Precondition: there is one.
+HWY_INLINE std::uint32_t earliest_of(FloatTag d, const Suspects& suspects) {
+  const auto time_at = [&](std::size_t lane) HWY_ATTR {
+    return hn::IfThenElse(lanes_of(d, suspects.mask, lane), hn::Load(d, suspects.time + lane),
+                          hn::Set(d, std::numeric_limits<float>::infinity()));
+  };
+  V least = time_at(0);
+  for (std::size_t lane = hn::Lanes(d); lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
+    least = hn::Min(least, time_at(lane));
+  }
+  least = hn::MinOfLanes(d, least);
+  std::uint32_t found = 0;
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
+    found |= bits(d, hn::Eq(time_at(lane), least), lane);
+  }
+  return static_cast<std::uint32_t>(std::countr_zero(found & suspects.mask));
+}
+
+std::uint32_t FindSuspects(const LeafFilter& filter, const float* motion, float latest,
+                           Suspects& suspects) {
   const FloatTag d;
   const Vector z = all(d, motion);
+  const V until = hn::Set(d, latest);
+  std::uint32_t begun = 0;
   suspects.mask = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
     const Proof first = load(d, filter.at_tip, lane);
-    const Proof last = load(d, filter.last, lane);
     const V along_first = dot(first.n, z);
-    const V along_last = dot(last.n, z);
-    const M clear = hn::Or(holds(d, first, along_first), holds(d, last, along_last));
-    hn::Store(hn::Max(entry(d, first, along_first), entry(d, last, along_last)), d,
-              suspects.time + lane);
-    suspects.mask |= bits(d, hn::Not(clear), lane);
+    M clear = holds(d, first, along_first);
+    V time = entry(d, first, along_first);
+    if (filter.has_last) {
+      const Proof last = load(d, filter.last, lane);
+      const V along = dot(last.n, z);
+      time = hn::Max(time, entry(d, last, along));
+      clear = hn::Or(hn::Or(clear, holds(d, last, along)), hn::Le(leaving(d, last, along), time));
+    }
+    hn::Store(time, d, suspects.time + lane);
+    const M later = hn::Gt(time, hn::Zero(d));
+    begun |= bits(d, hn::Not(hn::Or(clear, later)), lane);
+    suspects.mask |= bits(d, hn::AndNot(clear, hn::And(later, hn::Le(time, until))), lane);
   }
-}
-
-/// Returns the lanes of a vector at `lane` of the block whose bits are set in `mask`.
-HWY_INLINE M lanes_of(FloatTag d, std::uint32_t mask, std::size_t lane) {
-  const hn::RebindToUnsigned<FloatTag> du;
-  const auto bit = hn::Shl(hn::Set(du, 1u), hn::Iota(du, static_cast<std::uint32_t>(lane)));
-  return hn::RebindMask(d, hn::TestBit(hn::Set(du, mask), bit));
-}
-
-/// Returns the suspects of a vector with a time up to `latest`; the others are not worth
-/// sharpening.
-HWY_INLINE M in_time(FloatTag d, const Suspects& suspects, V time, float latest, std::size_t lane) {
-  return hn::And(lanes_of(d, suspects.mask, lane), hn::Le(time, hn::Set(d, latest)));
+  if (suspects.mask != 0) suspects.earliest = earliest_of(d, suspects);
+  return begun;
 }
 
 void SharpenSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                     const FloatLevels& levels, float latest, LeafFilter& filter,
+                     const FloatLevels& levels, float latest, int steps, LeafFilter& filter,
                      Suspects& suspects) {
-  constexpr int cuts = 2;
   const FloatTag d;
   const Vector z = all(d, motion);
   const V zero = hn::Zero(d);
-  const V one = hn::Set(d, 1.0f);
+  const V until = hn::Min(hn::Set(d, latest), hn::Set(d, 1.0f));
   std::uint32_t proven = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
-    V time = hn::Load(d, suspects.time + lane);
-    M asked = in_time(d, suspects, time, latest, lane);
-    if (hn::AllFalse(d, asked)) continue;
-    Proof left = load(d, filter.at_tip, lane);
-    V fall = dot(left.n, z);
-    Proof best = load(d, filter.last, lane);
-    M clear = hn::Or(holds(d, left, fall), holds(d, best, dot(best.n, z)));
-    const TriangleLanes t = corners(d, leaf, tip, lane);
-    const auto consider = [&](const Proof& proof, V along) {
-      const M better = hn::AndNot(clear, holds(d, proof, along));
-      best = select(better, proof, best);
-      clear = hn::Or(clear, better);
-      time = hn::Max(time, entry(d, proof, along));
-    };
-    Proof right = proof_at(d, t, z, levels);
-    V rise = dot(right.n, z);
-    consider(right, rise);
-    // A motion that ends too close has no proof.
-    asked = hn::AndNot(hn::Lt(hn::Add(right.clear, rise), zero), asked);
-    for (int cut = 0; cut < cuts; ++cut) {
-      asked = hn::AndNot(hn::Or(clear, hn::Gt(time, hn::Set(d, latest))), asked);
-      if (hn::AllFalse(d, asked)) break;
-      // The blend that is level along the motion, and the normal at the time when the two lines
-      // cross.
-      const Proof blend = proof_along(d, t, rise * left.n - fall * right.n, levels);
-      consider(blend, dot(blend.n, z));
-      const V crossing = hn::Div(hn::Sub(left.clear, right.clear), hn::Sub(rise, fall));
-      const V at = hn::Min(hn::Max(crossing, zero), one);
-      const Proof next = proof_at(d, t, at * z, levels);
-      const V along = dot(next.n, z);
-      consider(next, along);
-      const M falls = hn::Lt(along, zero);
-      left = select(falls, next, left);
-      fall = hn::IfThenElse(falls, along, fall);
-      right = select(falls, right, next);
-      rise = hn::IfThenElse(falls, rise, along);
+    M asked = lanes_of(d, suspects.mask, lane);
+    Proof last = load(d, filter.has_last ? filter.last : filter.at_tip, lane);
+    if (hn::AllFalse(d, asked)) {
+      if (!filter.has_last) store(d, last, lane, filter.last);
+      continue;
     }
-    store(d, best, lane, filter.last);
+    V time = hn::Load(d, suspects.time + lane);
+    const TriangleLanes t = corners(d, leaf, tip, lane);
+    M clear = hn::Gt(time, until);
+    for (int step = 0; step < steps; ++step) {
+      asked = hn::AndNot(clear, asked);
+      if (hn::AllFalse(d, asked)) break;
+      // The motion is clear up to this time. A proof that holds here and does not fall proves the
+      // rest.
+      const V at = hn::Min(hn::Max(time, zero), until);
+      const Proof proof = proof_at(d, t, at * z, levels);
+      const V along = dot(proof.n, z);
+      time = hn::Max(time, entry(d, proof, along));
+      clear = hn::Or(clear, hn::Or(stays(d, proof, along, at), hn::Gt(time, until)));
+      last = select(asked, proof, last);
+    }
+    store(d, last, lane, filter.last);
     hn::Store(time, d, suspects.time + lane);
     proven |= bits(d, clear, lane);
   }
+  filter.has_last = true;
   suspects.mask &= ~proven;
+  if (suspects.mask != 0) suspects.earliest = earliest_of(d, suspects);
 }
 
-void DelaySuspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                   const FloatLevels& levels, float latest, Suspects& suspects) {
-  const FloatTag d;
-  const Vector z = all(d, motion);
-  std::uint32_t proven = 0;
-  for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
-    const V time = hn::Load(d, suspects.time + lane);
-    if (hn::AllFalse(d, in_time(d, suspects, time, latest, lane))) continue;
-    const V at = hn::Min(hn::Max(time, hn::Zero(d)), hn::Set(d, 1.0f));
-    const Proof proof = proof_at(d, corners(d, leaf, tip, lane), at * z, levels);
-    const V along = dot(proof.n, z);
-    hn::Store(hn::Max(time, entry(d, proof, along)), d, suspects.time + lane);
-    proven |= bits(d, holds(d, proof, along), lane);
-  }
-  suspects.mask &= ~proven;
+void RemoveSuspect(Suspects& suspects, std::uint32_t lane) {
+  suspects.mask &= ~(std::uint32_t{1} << lane);
+  if (suspects.mask != 0) suspects.earliest = earliest_of(FloatTag(), suspects);
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -191,26 +190,27 @@ namespace keepout {
 HWY_EXPORT(FillFilter);
 HWY_EXPORT(FindSuspects);
 HWY_EXPORT(SharpenSuspects);
-HWY_EXPORT(DelaySuspects);
+HWY_EXPORT(RemoveSuspect);
 
 void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatLevels& levels,
                  LeafFilter& filter) noexcept {
   HWY_DYNAMIC_DISPATCH(FillFilter)(leaf, tip, levels, filter);
 }
 
-void find_suspects(const LeafFilter& filter, const float* motion, Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(FindSuspects)(filter, motion, suspects);
+std::uint32_t find_suspects(const LeafFilter& filter, const float* motion, float latest,
+                            Suspects& suspects) noexcept {
+  return HWY_DYNAMIC_DISPATCH(FindSuspects)(filter, motion, latest, suspects);
 }
 
 void sharpen_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                      const FloatLevels& levels, float latest, LeafFilter& filter,
+                      const FloatLevels& levels, float latest, int steps, LeafFilter& filter,
                       Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(SharpenSuspects)(leaf, tip, motion, levels, latest, filter, suspects);
+  HWY_DYNAMIC_DISPATCH(SharpenSuspects)
+  (leaf, tip, motion, levels, latest, steps, filter, suspects);
 }
 
-void delay_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
-                    const FloatLevels& levels, float latest, Suspects& suspects) noexcept {
-  HWY_DYNAMIC_DISPATCH(DelaySuspects)(leaf, tip, motion, levels, latest, suspects);
+void Suspects::remove(std::uint32_t lane) noexcept {
+  HWY_DYNAMIC_DISPATCH(RemoveSuspect)(*this, lane);
 }
 
 }  // namespace keepout

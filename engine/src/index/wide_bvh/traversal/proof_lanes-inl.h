@@ -19,6 +19,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
+/// Returns the lanes of a vector at `lane` of the block whose bits are set in `mask`.
+HWY_INLINE M lanes_of(FloatTag d, std::uint32_t mask, std::size_t lane) {
+  const hn::RebindToUnsigned<FloatTag> du;
+  const auto bit = hn::Shl(hn::Set(du, 1u), hn::Iota(du, static_cast<std::uint32_t>(lane)));
+  return hn::RebindMask(d, hn::TestBit(hn::Set(du, mask), bit));
+}
+
 /// Returns points of a block, relative to the tip.
 template <std::size_t Lanes>
 HWY_INLINE Vector relative(FloatTag d, const float (&from)[3][Lanes], std::size_t lane,
@@ -92,6 +99,21 @@ HWY_INLINE V entry(FloatTag d, const Proof& proof, V along) {
   const V time = hn::Mul(hn::Div(proof.clear, hn::Neg(along)), hn::Set(d, never_late));
   const M falls = hn::And(hn::Ge(proof.clear, zero), hn::Lt(along, zero));
   return hn::IfThenElse(falls, time, hn::Set(d, -1e30f));
+}
+
+/// Returns true if the proof holds from a time of the motion on. `along`: n . z.
+HWY_INLINE M stays(FloatTag d, const Proof& proof, V along, V time) {
+  const V zero = hn::Zero(d);
+  return hn::And(hn::Ge(along, zero), hn::Ge(hn::Add(proof.clear, hn::Mul(time, along)), zero));
+}
+
+/// Returns the time from which on a motion that moves away along the normal is surely beyond the
+/// level. Returns 1e30 if it comes nearer, or if its end may be within the level. `along`: n . z.
+HWY_INLINE V leaving(FloatTag d, const Proof& proof, V along) {
+  const V zero = hn::Zero(d);
+  const V time = hn::Mul(hn::Div(hn::Neg(proof.clear), along), hn::Set(d, 2.0f - never_late));
+  const M rises = hn::And(hn::Gt(along, zero), hn::Ge(hn::Add(proof.clear, along), zero));
+  return hn::IfThenElse(rises, time, hn::Set(d, 1e30f));
 }
 
 }  // namespace keepout::HWY_NAMESPACE

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace keepout {
 namespace {
@@ -12,23 +13,19 @@ constexpr std::size_t most_deferred = 1024;  // below suspects_bit, like the num
 
 // In work units, in proportion to their times: see Budget.
 constexpr std::size_t work_of_boxes = 1;
-constexpr std::size_t work_of_cylinders = 2;
+constexpr std::size_t work_of_cylinders = 3;
 constexpr std::size_t work_of_leaf = 4;
 constexpr std::size_t work_of_suspects = 1;
 constexpr std::size_t work_of_sharpening = 4;
+
+// Newton steps each time that suspects are sharpened.
+constexpr int steps_of_sharpening = 2;
 
 /// Returns true if more than `count` bits are set. Some of the targets have no instruction to count
 /// bits.
 bool are_more(std::uint32_t bits, int count) noexcept {
   for (; count > 0; --count) bits &= bits - 1;
   return bits != 0;
-}
-
-/// Returns a bit for each lane that is used; all leaves but one are full.
-std::uint32_t lanes_used(const LeafBlock& leaf) noexcept {
-  std::size_t count = LeafBlock::lanes;
-  while (!leaf.is_used(count - 1)) --count;
-  return (std::uint32_t{1} << count) - 1;
 }
 
 }  // namespace
@@ -177,67 +174,47 @@ void TreeTraversal::inspect(std::uint32_t number) noexcept {
   Deferred& found = deferred_[deferred_size_];
   found.leaf_number = number;
   budget_.spend(work_of_suspects);
-  find_suspects(seen.filter, motion_.data(), found.suspects);
-  std::uint32_t& mask = found.suspects.mask;
-  mask &= seen.used;
-  if (mask == 0) return;
+  std::uint32_t begun = find_suspects(seen.filter, motion_.data(), until(), found.suspects);
+  if ((begun | found.suspects.mask) == 0) return;
   meets_nothing_ = false;
 
   // Suspects at time 0 or before are visited now, because the tip may be too close already. If the
   // memory for deferred suspects is full, all are visited now.
-  const bool has_room = deferred_size_ + 1 < deferred_.size();
-  std::uint32_t later = 0;
-  for (std::uint32_t lanes = mask; lanes != 0; lanes &= lanes - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-    const float time = found.suspects.time[lane];
-    if (time > 0.0f) {
-      if (comes_too_late(time)) continue;
-      if (has_room) {
-        later |= std::uint32_t{1} << lane;
-        continue;
-      }
-    }
-    visit(seen, lane);
+  if (deferred_size_ + 1 == deferred_.size()) begun |= std::exchange(found.suspects.mask, 0u);
+  for (; begun != 0; begun &= begun - 1) {
+    visit(seen, static_cast<std::uint32_t>(std::countr_zero(begun)));
   }
-  mask = later;
-  if (mask == 0) return;
-  found.sharpenings_left = is_long_ ? most_sharpenings : are_more(mask, 2) ? 1 : 0;
+  if (found.suspects.mask == 0) return;
+  found.sharpenings_left = is_long_ ? most_sharpenings : are_more(found.suspects.mask, 2) ? 1 : 0;
   const auto deferred = static_cast<std::uint32_t>(deferred_size_++);
-  if (!wait(found.suspects.time[found.earliest()], deferred | suspects_bit)) resume(deferred);
+  const float time = found.suspects.time[found.suspects.earliest];
+  if (!wait(time, deferred | suspects_bit)) resume(deferred);
 }
 
 /// Visits suspects of a leaf, the earliest first, until a waiting one is earlier.
 void TreeTraversal::resume(std::uint32_t number) noexcept {
   Deferred& deferred = deferred_[number];
-  while (deferred.suspects.mask != 0) {
+  Suspects& suspects = deferred.suspects;
+  while (suspects.mask != 0) {
     if (deferred.sharpenings_left > 0) sharpen(deferred);
-    if (deferred.suspects.mask == 0) return;
-    const std::uint32_t lane = deferred.earliest();
-    const float time = deferred.suspects.time[lane];
+    if (suspects.mask == 0) return;
+    const std::uint32_t lane = suspects.earliest;
+    const float time = suspects.time[lane];
     if (comes_too_late(time)) return;
     if (waiting_size_ > 0 && waiting_[0].time < time && wait(time, number | suspects_bit)) return;
     if (deferred.sharpenings_left > 0) continue;
-    deferred.suspects.mask &= ~(std::uint32_t{1} << lane);
+    suspects.remove(lane);
     visit(filled_leaf(deferred.leaf_number), lane);
   }
 }
 
-/// Sharpens the suspects that may be met before `latest_`. The first time on a long motion it
-/// searches for better proofs; otherwise it makes a Newton step.
+/// Searches for better proofs for the suspects that may be met before `latest_`.
 void TreeTraversal::sharpen(Deferred& deferred) noexcept {
   const LeafBlock& block = tree_.leaves()[deferred.leaf_number];
-  const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // rounds to no earlier
   budget_.spend(work_of_sharpening);
-  // Only long motions start at most_sharpenings.
-  static_assert(most_sharpenings > 1);
-  const bool is_first_of_long_motion = deferred.sharpenings_left == most_sharpenings;
   --deferred.sharpenings_left;
-  if (is_first_of_long_motion) {
-    sharpen_suspects(block, float_tip_, motion_.data(), levels_, until,
-                     filled_leaf(deferred.leaf_number).filter, deferred.suspects);
-  } else {
-    delay_suspects(block, float_tip_, motion_.data(), levels_, until, deferred.suspects);
-  }
+  sharpen_suspects(block, float_tip_, motion_.data(), levels_, until(), steps_of_sharpening,
+                   filled_leaf(deferred.leaf_number).filter, deferred.suspects);
 }
 
 /// Shows a triangle to the visitor.
@@ -276,7 +253,6 @@ TreeTraversal::SeenLeaf& TreeTraversal::filled_leaf(std::uint32_t number) noexce
   seen.number = number;
   seen.filled_in = generation_;
   seen.note.fill(no_note);
-  seen.used = lanes_used(block);
   fill_filter(block, float_tip_, levels_, seen.filter);
   return seen;
 }
@@ -301,15 +277,6 @@ TreeTraversal::Waiting TreeTraversal::pop_earliest() noexcept {
   std::pop_heap(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(waiting_size_),
                 is_later);
   return waiting_[--waiting_size_];
-}
-
-std::uint32_t TreeTraversal::Deferred::earliest() const noexcept {
-  auto found = static_cast<std::uint32_t>(std::countr_zero(suspects.mask));
-  for (std::uint32_t lanes = suspects.mask; lanes != 0; lanes &= lanes - 1) {
-    const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
-    if (suspects.time[lane] < suspects.time[found]) found = lane;
-  }
-  return found;
 }
 
 }  // namespace keepout

@@ -29,7 +29,6 @@ namespace keepout {
 ///     Suspects         triangles of a leaf that the motion is not proved to stay clear of.
 ///     Deferred         suspects that are not visited yet.
 ///     Sharpen          find better proofs, which clear or delay suspects.
-///     Delay            find later times for suspects.
 ///     Visit            show a triangle to the visitor, whose number for it is the note.
 class TreeTraversal final : public MotionTraversal {
  public:
@@ -56,7 +55,6 @@ class TreeTraversal final : public MotionTraversal {
     std::array<std::uint32_t, LeafBlock::lanes> note;
     std::uint32_t number = 0;
     std::uint32_t filled_in = 0;  // generation of the last filling; 0: not filled
-    std::uint32_t used = 0;       // a bit for each lane
   };
 
   /// A box or suspects that the motion may meet at some time.
@@ -71,17 +69,15 @@ class TreeTraversal final : public MotionTraversal {
   static constexpr std::uint32_t suspects_bit = std::uint32_t{1} << 30;
 
   /// The number of times that suspects are sharpened before a visit if motions are long. Many late
-  /// suspects are then not met, or not met first. If motions are short, one Newton step is enough,
-  /// and only if there are many suspects.
-  static constexpr int most_sharpenings = 3;
+  /// suspects are then not met, or not met first. If motions are short, once is enough, and only if
+  /// there are many suspects.
+  static constexpr int most_sharpenings = 2;
 
   /// Suspects of a leaf that are not visited yet.
   struct Deferred {
     Suspects suspects;
     std::uint32_t leaf_number;
     int sharpenings_left;
-
-    std::uint32_t earliest() const noexcept;
   };
 
   void locate(const Start& start) noexcept;
@@ -97,6 +93,8 @@ class TreeTraversal final : public MotionTraversal {
   SeenLeaf& filled_leaf(std::uint32_t number) noexcept;
   void prefetch_leaf(std::uint32_t number) const noexcept;
   Triangle corners(std::uint32_t leaf_number, std::size_t lane) const noexcept;
+  /// Returns `latest_`, rounded to no earlier.
+  float until() const noexcept { return static_cast<float>(latest_ * (1.0 + 1e-6)); }
   bool comes_too_late(float time) const noexcept { return static_cast<double>(time) > latest_; }
 
   const WideBvh::Tree& tree_;
