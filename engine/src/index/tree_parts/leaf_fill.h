@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 
@@ -11,10 +12,21 @@
 
 namespace keepout {
 
-/// Writes the corners of a mesh's triangles to leaves. The mesh has its own order, and each vertex
-/// is read about six times. So vertices that are floats are first copied to a table of floats, four
-/// to a cache line. Other vertices are stored relative to the middle of the triangles. So neither
-/// the origin nor vertices without triangles cost digits.
+/// The vertices of a leaf's triangles. Unused lanes repeat lane 0.
+using LeafCorners = std::array<Corners, LeafBlock::lanes>;
+
+/// Looks up the vertices of a leaf, whose `tagged_triangle` has the numbers of its triangles.
+inline void look_up(const Corners* triangles, const LeafBlock& leaf,
+                    LeafCorners& corners) noexcept {
+  const bool is_full = leaf.is_used(LeafBlock::lanes - 1);
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+    corners[lane] = triangles[leaf.triangle(is_full || leaf.is_used(lane) ? lane : 0)];
+  }
+}
+
+/// Writes the corners of a mesh's triangles to leaves. Coordinates that are floats are stored as
+/// they are. Others are stored relative to the middle of the triangles. So neither the origin nor
+/// vertices without triangles cost digits.
 class LeafFill {
  public:
   /// Reads the vertices once. `mesh` must outlive this object.
@@ -24,17 +36,13 @@ class LeafFill {
   const LeafFrame& frame() const noexcept { return frame_; }
 
   /// Fills leaves first .. last - 1, whose `tagged_triangle` already has the numbers of their
-  /// triangles. Prefetches the data of the leaves after them.
-  void fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last) const noexcept;
-
-  /// A vertex that never crosses a cache line. [length]
-  struct alignas(16) FloatVertex {
-    float x[4];  // the last is unused
-  };
+  /// triangles. `corners`: the vertices of all leaves, or null to look them up. Prefetches the data
+  /// of the leaves after them.
+  void fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last,
+            const LeafCorners* corners = nullptr) const noexcept;
 
  private:
   const Mesh& mesh_;
-  BlockVector<FloatVertex> vertices_;  // empty if the mesh's vertices are not floats
   LeafFrame frame_;
 };
 

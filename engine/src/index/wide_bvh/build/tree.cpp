@@ -5,10 +5,10 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "../../../parallel.h"
-#include "../../tree_parts/leaf_fill.h"
 #include "../../tree_parts/median_split.h"
 #include "enclosure.h"
 #include "keepout/error.h"
@@ -148,6 +148,16 @@ void WideBvh::Tree::divide(std::span<const TriangleId> order) noexcept {
   }
 }
 
+void WideBvh::Tree::keep_corners(unsigned threads) {
+  if (!corners_.empty()) return;
+  BlockVector<LeafCorners> corners(leaves_.size());
+  const Corners* triangles = mesh().triangles().data();
+  share_ranges(leaves_.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) look_up(triangles, leaves_[i], corners[i]);
+  });
+  corners_ = std::move(corners);
+}
+
 void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
   frame_ = fill.frame();
 
@@ -162,7 +172,7 @@ void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
     for (std::size_t i = from; i < to; ++i) {
       const std::size_t first = i * NodeBlock::lanes;
       const std::size_t last = std::min(first + NodeBlock::lanes, shared.size());
-      fill.fill(shared, first, last);
+      fill.fill(shared, first, last, corners_.empty() ? nullptr : corners_.data());
       enclose_leaves(begin + i, first, last);
     }
   });
@@ -206,7 +216,7 @@ void WideBvh::Tree::enclose_nodes(std::size_t self, std::size_t first, std::size
 
 std::size_t WideBvh::Tree::memory() const noexcept {
   return nodes_.capacity() * sizeof(NodeBlock) + cylinders_.capacity() * sizeof(CylinderBlock) +
-         leaves_.capacity() * sizeof(LeafBlock);
+         leaves_.capacity() * sizeof(LeafBlock) + corners_.capacity() * sizeof(LeafCorners);
 }
 
 }  // namespace keepout
