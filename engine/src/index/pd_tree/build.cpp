@@ -78,7 +78,7 @@ class Builder {
       divide(centers, spare, 0, 0, threads);
       constexpr std::size_t share = 1024;  // leaves, worked on at a time
       share_ranges(leaves_.size(), threads, share, [&](std::size_t begin, std::size_t end) {
-        fill.fill(leaves_.first(end), begin, end);
+        fill.fill(leaves_.first(end), begin, end, &leaves_[begin]);
       });
     }
     enclose(0, 0, threads);

@@ -64,22 +64,22 @@ HWY_INLINE void store(const Place<double>& place, const Vec3& origin,
   write(place.z, 2);
 }
 
-/// Reads corner `c` of the triangles from lane `first` on. The vertices are read one after the
-/// other, and their coordinates are separated afterwards.
-HWY_INLINE void read(const Vec3* vertices, const Corners* triangles, std::size_t c,
-                     Place<double>& place) {
+/// Reads a vertex for each lane: vertex_of(lane). Vertices are read one after the other, and their
+/// coordinates are separated afterwards.
+template <class VertexOf>
+HWY_INLINE void read(const VertexOf& vertex_of, Place<double>& place) {
   const Lanes<double> d;
   constexpr std::size_t lanes = hn::MaxLanes(Lanes<double>());
-  HWY_ALIGN double gathered[lanes][4];
+  HWY_ALIGN double read[lanes][4];
   for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const Vec3& from = vertices[triangles[lane][c]];
-    gathered[lane][0] = from.x();
-    gathered[lane][1] = from.y();
-    gathered[lane][2] = from.z();
-    gathered[lane][3] = 0.0;
+    const Vec3& from = vertex_of(lane);
+    read[lane][0] = from.x();
+    read[lane][1] = from.y();
+    read[lane][2] = from.z();
+    read[lane][3] = 0.0;
   }
   hn::Vec<Lanes<double>> unused;
-  hn::LoadInterleaved4(d, gathered[0], place.x, place.y, place.z, unused);
+  hn::LoadInterleaved4(d, read[0], place.x, place.y, place.z, unused);
 }
 
 #if HWY_TARGET != HWY_SCALAR
@@ -98,28 +98,27 @@ HWY_INLINE hn::Vec<Four> rounded(Doubles d, const Vec3& vertex) {
   }
 }
 
-/// Returns every fourth of the vertices from lane `lane` on, side by side.
-template <std::size_t Lanes>
-HWY_INLINE auto every_fourth(const Vec3* vertices, const Corners* triangles, std::size_t c,
-                             std::size_t lane) {
-  if constexpr (Lanes == 4) {
-    return rounded(hn::CappedTag<double, 4>(), vertices[triangles[lane][c]]);
+/// Returns every fourth of the vertices from `lane` on, side by side.
+template <std::size_t Count, class VertexOf>
+HWY_INLINE auto every_fourth(const VertexOf& vertex_of, std::size_t lane) {
+  if constexpr (Count == 4) {
+    return rounded(hn::CappedTag<double, 4>(), vertex_of(lane));
   } else {
-    const auto low = every_fourth<Lanes / 2>(vertices, triangles, c, lane);
-    const auto high = every_fourth<Lanes / 2>(vertices, triangles, c, lane + Lanes / 2);
-    return hn::Combine(hn::CappedTag<float, Lanes>(), high, low);
+    const auto low = every_fourth<Count / 2>(vertex_of, lane);
+    const auto high = every_fourth<Count / 2>(vertex_of, lane + Count / 2);
+    return hn::Combine(hn::CappedTag<float, Count>(), high, low);
   }
 }
 
-HWY_INLINE void read(const Vec3* vertices, const Corners* triangles, std::size_t c,
-                     Place<float>& place) {
+template <class VertexOf>
+HWY_INLINE void read(const VertexOf& vertex_of, Place<float>& place) {
   const Lanes<float> d;
   const hn::RepartitionToWide<Lanes<float>> pairs;
   constexpr std::size_t lanes = hn::MaxLanes(Lanes<float>());
-  const auto first = every_fourth<lanes>(vertices, triangles, c, 0);
-  const auto second = every_fourth<lanes>(vertices, triangles, c, 1);
-  const auto third = every_fourth<lanes>(vertices, triangles, c, 2);
-  const auto fourth = every_fourth<lanes>(vertices, triangles, c, 3);
+  const auto first = every_fourth<lanes>(vertex_of, 0);
+  const auto second = every_fourth<lanes>(vertex_of, 1);
+  const auto third = every_fourth<lanes>(vertex_of, 2);
+  const auto fourth = every_fourth<lanes>(vertex_of, 3);
   const auto xy_front = hn::BitCast(pairs, hn::InterleaveLower(d, first, second));
   const auto xy_back = hn::BitCast(pairs, hn::InterleaveLower(d, third, fourth));
   const auto z_front = hn::BitCast(pairs, hn::InterleaveUpper(d, first, second));
@@ -129,110 +128,209 @@ HWY_INLINE void read(const Vec3* vertices, const Corners* triangles, std::size_t
   place.z = hn::BitCast(d, hn::InterleaveLower(pairs, z_front, z_back));
 }
 #else
-HWY_INLINE void read(const Vec3* vertices, const Corners* triangles, std::size_t c,
-                     Place<float>& place) {
-  const Vec3& from = vertices[(*triangles)[c]];
+template <class VertexOf>
+HWY_INLINE void read(const VertexOf& vertex_of, Place<float>& place) {
+  const Vec3& from = vertex_of(0);
   const Lanes<float> d;
   place = {hn::Set(d, static_cast<float>(from.x())), hn::Set(d, static_cast<float>(from.y())),
            hn::Set(d, static_cast<float>(from.z()))};
 }
 #endif
 
-/// Writes the corners in lexicographic order; equal corners keep their order, as in corner_order().
-/// Corners are ordered before the origin is subtracted, because rounding could make different
-/// corners equal.
+/// Writes the corners of some triangles in lexicographic order; equal corners keep their order, as
+/// in corner_order(). Returns a bit for each triangle whose order is an odd permutation. Corners
+/// are ordered before the origin is subtracted, because rounding could make different corners
+/// equal.
 template <class Number>
-HWY_INLINE void fill_leaf(const Vec3* vertices, const Corners* triangles, const Vec3& origin,
-                          LeafBlock& leaf) {
-  const Lanes<Number> d;
-  std::uint32_t odd = 0;
-  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    Place<Number> a, b, c;
-    read(vertices, triangles + first, 0, a);
-    read(vertices, triangles + first, 1, b);
-    read(vertices, triangles + first, 2, c);
-    const Choice<Number> b_before_a = is_before<Number>(b, a);
-    const Choice<Number> c_before_a = is_before<Number>(c, a);
-    const Choice<Number> c_before_b = is_before<Number>(c, b);
-    const Place<Number> lower = choose<Number>(b_before_a, b, a);
-    const Place<Number> upper = choose<Number>(b_before_a, a, b);
-    const Choice<Number> c_is_first =
-        hn::Or(hn::And(b_before_a, c_before_b), hn::AndNot(b_before_a, c_before_a));
-    const Choice<Number> c_is_not_last =
-        hn::Or(hn::And(b_before_a, c_before_a), hn::AndNot(b_before_a, c_before_b));
-    store(choose<Number>(c_is_first, c, lower), origin, leaf.corner[0], first);
-    store(choose<Number>(c_is_first, lower, choose<Number>(c_is_not_last, c, upper)), origin,
-          leaf.corner[1], first);
-    store(choose<Number>(c_is_not_last, upper, c), origin, leaf.corner[2], first);
+HWY_INLINE std::uint32_t write_in_order(const Place<Number>& a, const Place<Number>& b,
+                                        const Place<Number>& c, const Vec3& origin,
+                                        std::size_t first, LeafBlock& leaf) {
+  const Choice<Number> b_before_a = is_before<Number>(b, a);
+  const Choice<Number> c_before_a = is_before<Number>(c, a);
+  const Choice<Number> c_before_b = is_before<Number>(c, b);
+  const Place<Number> lower = choose<Number>(b_before_a, b, a);
+  const Place<Number> upper = choose<Number>(b_before_a, a, b);
+  const Choice<Number> c_is_first =
+      hn::Or(hn::And(b_before_a, c_before_b), hn::AndNot(b_before_a, c_before_a));
+  const Choice<Number> c_is_not_last =
+      hn::Or(hn::And(b_before_a, c_before_a), hn::AndNot(b_before_a, c_before_b));
+  store(choose<Number>(c_is_first, c, lower), origin, leaf.corner[0], first);
+  store(choose<Number>(c_is_first, lower, choose<Number>(c_is_not_last, c, upper)), origin,
+        leaf.corner[1], first);
+  store(choose<Number>(c_is_not_last, upper, c), origin, leaf.corner[2], first);
 
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Xor(hn::Xor(b_before_a, c_before_a), c_before_b), bits);
-    odd |= (bits[0] | std::uint32_t{bits[1]} << 8) << first;
-  }
-  const hn::CappedTag<std::uint32_t, LeafBlock::lanes> tags;
-  const auto odd_bit = hn::Set(tags, LeafBlock::odd);
-  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(tags)) {
-    const auto named = hn::Load(tags, leaf.tagged_triangle + first);
-    const auto places = hn::Sub(hn::Set(tags, 31), hn::Iota(tags, static_cast<std::uint32_t>(first)));
-    const auto parity = hn::And(hn::Shl(hn::Set(tags, odd), places), odd_bit);
-    const auto is_unused = hn::Eq(named, hn::Set(tags, no_triangle));
-    hn::Store(hn::IfThenElse(is_unused, named, hn::Or(hn::AndNot(odd_bit, named), parity)), tags,
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Lanes<Number>(), hn::Xor(hn::Xor(b_before_a, c_before_a), c_before_b), bits);
+  return (bits[0] | std::uint32_t{bits[1]} << 8) << first;
+}
+
+/// Writes the numbers of the triangles, and the bits of odd permutations.
+HWY_INLINE void write_tags(const LeafBlock& from, std::uint32_t odd, LeafBlock& leaf) {
+  const hn::CappedTag<std::uint32_t, LeafBlock::lanes> d;
+  const auto bit = hn::Set(d, LeafBlock::odd);
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
+    const auto named = hn::Load(d, from.tagged_triangle + first);
+    const auto shift = hn::Sub(hn::Set(d, 31), hn::Iota(d, static_cast<std::uint32_t>(first)));
+    const auto parity = hn::And(hn::Shl(hn::Set(d, odd), shift), bit);
+    const auto is_unused = hn::Eq(named, hn::Set(d, no_triangle));
+    hn::Store(hn::IfThenElse(is_unused, named, hn::Or(hn::AndNot(bit, named), parity)), d,
               leaf.tagged_triangle + first);
   }
 }
 
+/// The vertices of the triangles in the lanes of a leaf. Unused lanes repeat lane 0.
+using CornersOfLeaf = Corners[LeafBlock::lanes];
+
 HWY_INLINE bool is_full(const LeafBlock& leaf) { return leaf.is_used(LeafBlock::lanes - 1); }
+
+HWY_INLINE void look_up(const Corners* triangles, const LeafBlock& leaf, CornersOfLeaf& corners) {
+  if (is_full(leaf)) [[likely]] {
+    for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+      corners[lane] = triangles[leaf.triangle(lane)];
+    }
+    return;
+  }
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+    corners[lane] = triangles[leaf.triangle(leaf.is_used(lane) ? lane : 0)];
+  }
+}
+
+template <class Number>
+HWY_INLINE void fill_leaf(const Vec3* vertices, const CornersOfLeaf& corners, const Vec3& origin,
+                          const LeafBlock& from, LeafBlock& leaf) {
+  std::uint32_t odd = 0;
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(Lanes<Number>())) {
+    Place<Number> place[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      read([&](std::size_t lane) -> const Vec3& { return vertices[corners[first + lane][c]]; },
+           place[c]);
+    }
+    odd |= write_in_order<Number>(place[0], place[1], place[2], origin, first, leaf);
+  }
+  write_tags(from, odd, leaf);
+}
+
+constexpr std::size_t vertices_ahead = 4;
+constexpr std::size_t triangles_ahead = 12;
+constexpr std::size_t sources_ahead = 24;
 
 /// Without prefetching, the processor would wait for nearly every read. So the triangle numbers of
 /// a leaf are fetched many leaves ahead, then its triangles, then its vertices.
 template <class Number>
-HWY_INLINE void fill_leaves(const Mesh& mesh, const LeafCorners* corners, const Vec3& origin,
-                            std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
-  constexpr std::size_t vertices_ahead = 4;
-  constexpr std::size_t triangles_ahead = 12;
-  constexpr std::size_t sources_ahead = 24;
+HWY_INLINE void fill_leaves(const Mesh& mesh, const Vec3& origin, std::span<const LeafBlock> leaves,
+                            std::size_t first, std::size_t last, LeafBlock* to) {
   const Corners* triangles = mesh.triangles().data();
   const Vec3* vertices = mesh.vertices().data();
-  LeafCorners looked_up[vertices_ahead];
-  if (corners == nullptr) {
-    // The previous call has fetched these.
-    for (std::size_t i = first; i < std::min(first + vertices_ahead, leaves.size()); ++i) {
-      look_up(triangles, leaves[i], looked_up[i % vertices_ahead]);
-    }
+  CornersOfLeaf looked_up[vertices_ahead];
+  // The previous call has fetched these.
+  for (std::size_t i = first; i < std::min(first + vertices_ahead, leaves.size()); ++i) {
+    look_up(triangles, leaves[i], looked_up[i % vertices_ahead]);
   }
   for (std::size_t i = first; i < last; ++i) {
-    LeafCorners& spare = looked_up[i % vertices_ahead];
-    fill_leaf<Number>(vertices, corners == nullptr ? spare.data() : corners[i].data(), origin,
-                      leaves[i]);
+    CornersOfLeaf& its = looked_up[i % vertices_ahead];
+    fill_leaf<Number>(vertices, its, origin, leaves[i], *to++);
     if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
-    if (corners == nullptr && i + triangles_ahead < leaves.size() &&
-        is_full(leaves[i + triangles_ahead])) {
+    if (i + triangles_ahead < leaves.size() && is_full(leaves[i + triangles_ahead])) {
       const LeafBlock& ahead = leaves[i + triangles_ahead];
       for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
         hwy::Prefetch(&triangles[ahead.triangle(lane)]);
       }
     }
     if (i + vertices_ahead < leaves.size()) {
-      LeafBlock& ahead = leaves[i + vertices_ahead];
-      if (corners == nullptr) look_up(triangles, ahead, spare);
-      for (const Corners& triangle : corners == nullptr ? spare : corners[i + vertices_ahead]) {
-        for (const VertexId v : triangle) hwy::Prefetch(&vertices[v]);
-      }
-      for (auto& corner : ahead.corner) {
-        for (const auto& coordinates : corner) __builtin_prefetch(coordinates, 1);  // to be written
+      look_up(triangles, leaves[i + vertices_ahead], its);
+      for (const Corners& corners : its) {
+        for (const VertexId v : corners) hwy::Prefetch(&vertices[v]);
       }
     }
   }
 }
 
-void FillFromFloats(const Mesh& mesh, const LeafCorners* corners, std::span<LeafBlock> leaves,
-                    std::size_t first, std::size_t last) {
-  fill_leaves<float>(mesh, corners, Vec3::Zero(), leaves, first, last);
+void FillFromFloats(const Mesh& mesh, std::span<const LeafBlock> leaves, std::size_t first,
+                    std::size_t last, LeafBlock* to) {
+  fill_leaves<float>(mesh, Vec3::Zero(), leaves, first, last, to);
 }
 
-void FillFromDoubles(const Mesh& mesh, const LeafCorners* corners, const Vec3& origin,
-                     std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
-  fill_leaves<double>(mesh, corners, origin, leaves, first, last);
+void FillFromDoubles(const Mesh& mesh, const Vec3& origin, std::span<const LeafBlock> leaves,
+                     std::size_t first, std::size_t last, LeafBlock* to) {
+  fill_leaves<double>(mesh, origin, leaves, first, last, to);
+}
+
+constexpr std::size_t width = hn::MaxLanes(Lanes<float>());
+
+/// Returns the positions at some entries of a table, in registers of eight or more lanes.
+HWY_INLINE hn::Vec<Lanes<float>> table_lookup(const float (&table)[LeafPoints::lanes],
+                                             hn::Vec<hn::RebindToUnsigned<Lanes<float>>> entry) {
+  const Lanes<float> d;
+  const hn::RebindToUnsigned<Lanes<float>> entries;
+  const auto index = hn::IndicesFromVec(d, hn::And(entry, hn::Set(entries, width - 1)));
+  auto found = hn::TableLookupLanes(hn::Load(d, table), index);
+  for (std::size_t begin = width; begin < LeafVertices::most; begin += width) {
+    const auto is_here = hn::RebindMask(d, hn::Gt(entry, hn::Set(entries, static_cast<std::uint32_t>(begin - 1))));
+    found = hn::IfThenElse(is_here, hn::TableLookupLanes(hn::Load(d, table + begin), index), found);
+  }
+  return found;
+}
+
+/// Reads each vertex of a leaf once, and distributes it to the corners in registers.
+HWY_INLINE void fill_leaf(const Vec3* vertices, const LeafVertices& its, const LeafBlock& from,
+                          LeafPoints& points, LeafBlock& leaf) {
+  const Lanes<float> d;
+  const hn::RebindToUnsigned<Lanes<float>> entries;
+  const hn::Rebind<std::uint8_t, Lanes<float>> bytes;
+  for (std::size_t first = 0; first < LeafVertices::most; first += width) {
+    Place<float> place;
+    read(
+        [&](std::size_t lane) -> const Vec3& {
+          const std::size_t entry = first + lane;
+          return vertices[its.vertex[entry < LeafVertices::most ? entry : 0]];
+        },
+        place);
+    hn::Store(place.x, d, points.position[0] + first);
+    hn::Store(place.y, d, points.position[1] + first);
+    hn::Store(place.z, d, points.position[2] + first);
+  }
+  points.is_known = true;
+  std::uint32_t odd = 0;
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += width) {
+    Place<float> place[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto entry = hn::PromoteTo(entries, hn::LoadU(bytes, its.corner[c] + first));
+      place[c] = {table_lookup(points.position[0], entry), table_lookup(points.position[1], entry),
+                  table_lookup(points.position[2], entry)};
+    }
+    odd |= write_in_order<float>(place[0], place[1], place[2], Vec3::Zero(), first, leaf);
+  }
+  write_tags(from, odd, leaf);
+}
+
+void FillFromVertices(const Mesh& mesh, const LeafVertices* known, std::span<const LeafBlock> leaves,
+                      std::size_t first, std::size_t last, LeafBlock* to, LeafPoints* points) {
+  const Vec3* vertices = mesh.vertices().data();
+  for (std::size_t i = first; i < last; ++i) {
+    if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
+    if (i + vertices_ahead < leaves.size()) {
+      for (const VertexId v : known[i + vertices_ahead].vertex) hwy::Prefetch(&vertices[v]);
+    }
+    if (width >= 8 && known[i].is_complete()) [[likely]] {
+      fill_leaf(vertices, known[i], leaves[i], *points++, *to++);
+      continue;
+    }
+    CornersOfLeaf corners;
+    look_up(mesh.triangles().data(), leaves[i], corners);
+    fill_leaf<float>(vertices, corners, Vec3::Zero(), leaves[i], *to++);
+    points++->is_known = false;
+  }
+}
+
+void CopyLeaves(const LeafBlock* from, std::size_t count, bool bypass, LeafBlock* to) {
+  static_assert(sizeof(LeafBlock) % (LeafBlock::lanes * sizeof(float)) == 0);
+  const Lanes<float> d;
+  const float* source = from->corner[0][0];
+  float* target = to->corner[0][0];
+  const std::size_t size = count * (sizeof(LeafBlock) / sizeof(float));
+  for (std::size_t i = 0; i < size; i += width) hn::Stream(hn::Load(d, source + i), d, target + i);
+  hwy::FlushStream();
+  (void)bypass;
 }
 
 /// Returns true if all numbers are floats.
@@ -260,7 +358,27 @@ namespace keepout {
 
 HWY_EXPORT(FillFromFloats);
 HWY_EXPORT(FillFromDoubles);
+HWY_EXPORT(FillFromVertices);
 HWY_EXPORT(AreFloats);
+HWY_EXPORT(CopyLeaves);
+
+void LeafVertices::collect(const Corners* triangles, const LeafBlock& leaf) noexcept {
+  std::size_t count = 0;
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+    const Corners& its = triangles[leaf.triangle(leaf.is_used(lane) ? lane : 0)];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t entry = static_cast<std::size_t>(std::find(vertex, vertex + count, its[c]) - vertex);
+      if (entry == most) {
+        corner[0][0] = 1;  // not complete
+        return;
+      }
+      vertex[entry] = its[c];
+      count = std::max(count, entry + 1);
+      corner[c][lane] = static_cast<std::uint8_t>(entry);
+    }
+  }
+  std::fill(vertex + count, vertex + most, vertex[0]);
+}
 
 LeafFill::LeafFill(const Mesh& mesh, unsigned threads) : mesh_(mesh) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -281,20 +399,34 @@ LeafFill::LeafFill(const Mesh& mesh, unsigned threads) : mesh_(mesh) {
   frame_.error = 0x1p-24 * (1.0 + 0x1p-20) * farthest + 0x1p-149;
 }
 
-void LeafFill::fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last,
-                    const LeafCorners* corners) const noexcept {
+void LeafFill::fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
+                    LeafBlock* to) const noexcept {
   if (frame_.is_exact()) {
-    HWY_DYNAMIC_DISPATCH(FillFromFloats)(mesh_, corners, leaves, first, last);
+    HWY_DYNAMIC_DISPATCH(FillFromFloats)(mesh_, leaves, first, last, to);
   } else {
-    HWY_DYNAMIC_DISPATCH(FillFromDoubles)(mesh_, corners, frame_.origin, leaves, first, last);
+    HWY_DYNAMIC_DISPATCH(FillFromDoubles)(mesh_, frame_.origin, leaves, first, last, to);
   }
 }
 
+void LeafFill::fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
+                    LeafBlock* to, const LeafVertices* vertices,
+                    LeafPoints* points) const noexcept {
+  if (frame_.is_exact()) {
+    HWY_DYNAMIC_DISPATCH(FillFromVertices)(mesh_, vertices, leaves, first, last, to, points);
+  } else {
+    for (std::size_t i = 0; i < last - first; ++i) points[i].is_known = false;
+    fill(leaves, first, last, to);
+  }
+}
 
 void name_triangles(std::span<const Center> centers, LeafBlock& leaf) noexcept {
   for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
     leaf.tagged_triangle[lane] = lane < centers.size() ? centers[lane].triangle : no_triangle;
   }
+}
+
+void copy_leaves(const LeafBlock* from, std::size_t count, bool bypass, LeafBlock* to) noexcept {
+  HWY_DYNAMIC_DISPATCH(CopyLeaves)(from, count, bypass, to);
 }
 
 }  // namespace keepout

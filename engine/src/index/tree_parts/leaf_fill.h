@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "block_memory.h"
@@ -12,17 +12,30 @@
 
 namespace keepout {
 
-/// The vertices of a leaf's triangles. Unused lanes repeat lane 0.
-using LeafCorners = std::array<Corners, LeafBlock::lanes>;
+/// The vertices of a leaf's triangles, each once: about 16 in a closed surface.
+struct LeafVertices {
+  /// The number of vertices in an entry.
+  static constexpr std::size_t most = 24;
 
-/// Looks up the vertices of a leaf, whose `tagged_triangle` has the numbers of its triangles.
-inline void look_up(const Corners* triangles, const LeafBlock& leaf,
-                    LeafCorners& corners) noexcept {
-  const bool is_full = leaf.is_used(LeafBlock::lanes - 1);
-  for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-    corners[lane] = triangles[leaf.triangle(is_full || leaf.is_used(lane) ? lane : 0)];
-  }
-}
+  VertexId vertex[most];                     // unused entries repeat the first
+  std::uint8_t corner[3][LeafBlock::lanes];  // the entries of each triangle's vertices; unused
+                                             // lanes repeat lane 0
+
+  /// Collects the vertices of a leaf, whose `tagged_triangle` has the numbers of its triangles.
+  void collect(const Corners* triangles, const LeafBlock& leaf) noexcept;
+
+  /// Returns false if the leaf has more vertices. Then no entry is valid.
+  bool is_complete() const noexcept { return corner[0][0] == 0; }
+};
+
+/// The positions of a leaf's vertices in the frame of the leaves. [length]
+struct alignas(64) LeafPoints {
+  /// The number of positions, a multiple of the width of any SIMD register.
+  static constexpr std::size_t lanes = 32;
+
+  float position[3][lanes];  // [axis][lane]; unused lanes repeat other positions
+  bool is_known = false;     // false if the leaf's corners are to be used instead
+};
 
 /// Writes the corners of a mesh's triangles to leaves. Coordinates that are floats are stored as
 /// they are. Others are stored relative to the middle of the triangles. So neither the origin nor
@@ -35,11 +48,15 @@ class LeafFill {
   /// Returns the frame of the leaves.
   const LeafFrame& frame() const noexcept { return frame_; }
 
-  /// Fills leaves first .. last - 1, whose `tagged_triangle` already has the numbers of their
-  /// triangles. `corners`: the vertices of all leaves, or null to look them up. Prefetches the data
-  /// of the leaves after them.
-  void fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last,
-            const LeafCorners* corners = nullptr) const noexcept;
+  /// Writes leaves first .. last - 1, with the numbers in their `tagged_triangle`, to `to`.
+  /// Prefetches the data of the leaves after them.
+  void fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
+            LeafBlock* to) const noexcept;
+
+  /// Like fill(leaves, first, last, to), but faster, with the `vertices` of all leaves. Also writes
+  /// the positions of the vertices to `points`.
+  void fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last, LeafBlock* to,
+            const LeafVertices* vertices, LeafPoints* points) const noexcept;
 
  private:
   const Mesh& mesh_;
@@ -48,5 +65,8 @@ class LeafFill {
 
 /// Writes the numbers of the triangles to the lanes of a leaf.
 void name_triangles(std::span<const Center> centers, LeafBlock& leaf) noexcept;
+
+/// Copies leaves to a tree. `bypass`: without the caches, for a tree that does not fit into them.
+void copy_leaves(const LeafBlock* from, std::size_t count, bool bypass, LeafBlock* to) noexcept;
 
 }  // namespace keepout

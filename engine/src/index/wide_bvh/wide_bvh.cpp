@@ -81,7 +81,7 @@ void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
   threads = thread_count(threads);
   require_same_triangles(moved.get(), threads);
   const LeafFill fill(*moved, threads);
-  tree_->keep_corners(threads);
+  tree_->collect_vertices(threads);
   set_mesh(std::move(moved));
   tree_->fit(fill, threads);
 }

@@ -148,14 +148,14 @@ void WideBvh::Tree::divide(std::span<const TriangleId> order) noexcept {
   }
 }
 
-void WideBvh::Tree::keep_corners(unsigned threads) {
-  if (!corners_.empty()) return;
-  BlockVector<LeafCorners> corners(leaves_.size());
+void WideBvh::Tree::collect_vertices(unsigned threads) {
+  if (!vertices_.empty()) return;
+  BlockVector<LeafVertices> vertices(leaves_.size());
   const Corners* triangles = mesh().triangles().data();
   share_ranges(leaves_.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) look_up(triangles, leaves_[i], corners[i]);
+    for (std::size_t i = begin; i < end; ++i) vertices[i].collect(triangles, leaves_[i]);
   });
-  corners_ = std::move(corners);
+  vertices_ = std::move(vertices);
 }
 
 void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
@@ -172,8 +172,7 @@ void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
     for (std::size_t i = from; i < to; ++i) {
       const std::size_t first = i * NodeBlock::lanes;
       const std::size_t last = std::min(first + NodeBlock::lanes, shared.size());
-      fill.fill(shared, first, last, corners_.empty() ? nullptr : corners_.data());
-      enclose_leaves(begin + i, first, last);
+      fit_leaves(fill, shared, begin + i, first, last);
     }
   });
   while (size > 1) {
@@ -191,18 +190,29 @@ void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
   }
 }
 
-/// Makes a node of the leaves first .. last - 1.
-void WideBvh::Tree::enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept {
-  NodeBlock& node = nodes_[self];
-  SixteenLeaves leaves;
-  for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
-    const std::size_t leaf = std::min(first + lane, last - 1);
-    leaves[lane] = &leaves_[leaf];
-    node.child[lane] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf_bit;
+/// Makes a node of the leaves first .. last - 1. They are made in a copy, so that all that is made
+/// of them reads it from the nearest cache.
+void WideBvh::Tree::fit_leaves(const LeafFill& fill, std::span<const LeafBlock> leaves,
+                               std::size_t self, std::size_t first, std::size_t last) noexcept {
+  SixteenLeaves made;
+  if (vertices_.empty()) {
+    fill.fill(leaves, first, last, made.leaf);
+  } else {
+    fill.fill(leaves, first, last, made.leaf, vertices_.data(), made.points);
   }
-  enclose(leaves, node, cylinders_[self]);
+  NodeBlock& node = nodes_[self];
+  for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+    if (first + lane >= last) {
+      made.leaf[lane] = made.leaf[lane - 1];
+      made.points[lane] = made.points[lane - 1];
+    }
+    node.child[lane] =
+        static_cast<std::uint32_t>(std::min(first + lane, last - 1)) | NodeBlock::leaf_bit;
+  }
+  enclose(made, node, cylinders_[self]);
   if (!frame_.is_exact()) widen(node);
   close_lanes(node, cylinders_[self], last - first);
+  copy_leaves(made.leaf, last - first, true, &leaves_[first]);
 }
 
 /// Makes a node of the nodes first .. last - 1.
@@ -216,7 +226,7 @@ void WideBvh::Tree::enclose_nodes(std::size_t self, std::size_t first, std::size
 
 std::size_t WideBvh::Tree::memory() const noexcept {
   return nodes_.capacity() * sizeof(NodeBlock) + cylinders_.capacity() * sizeof(CylinderBlock) +
-         leaves_.capacity() * sizeof(LeafBlock) + corners_.capacity() * sizeof(LeafCorners);
+         leaves_.capacity() * sizeof(LeafBlock) + vertices_.capacity() * sizeof(LeafVertices);
 }
 
 }  // namespace keepout
