@@ -259,13 +259,14 @@ constexpr std::size_t width = hn::MaxLanes(Lanes<float>());
 
 /// Returns the positions at some entries of a table, in registers of eight or more lanes.
 HWY_INLINE hn::Vec<Lanes<float>> table_lookup(const float (&table)[LeafPoints::lanes],
-                                             hn::Vec<hn::RebindToUnsigned<Lanes<float>>> entry) {
+                                              hn::Vec<hn::RebindToUnsigned<Lanes<float>>> entry) {
   const Lanes<float> d;
   const hn::RebindToUnsigned<Lanes<float>> entries;
   const auto index = hn::IndicesFromVec(d, hn::And(entry, hn::Set(entries, width - 1)));
   auto found = hn::TableLookupLanes(hn::Load(d, table), index);
   for (std::size_t begin = width; begin < LeafVertices::most; begin += width) {
-    const auto is_here = hn::RebindMask(d, hn::Gt(entry, hn::Set(entries, static_cast<std::uint32_t>(begin - 1))));
+    const auto is_here =
+        hn::RebindMask(d, hn::Gt(entry, hn::Set(entries, static_cast<std::uint32_t>(begin - 1))));
     found = hn::IfThenElse(is_here, hn::TableLookupLanes(hn::Load(d, table + begin), index), found);
   }
   return found;
@@ -303,8 +304,9 @@ HWY_INLINE void fill_leaf(const Vec3* vertices, const LeafVertices& its, const L
   write_tags(from, odd, leaf);
 }
 
-void FillFromVertices(const Mesh& mesh, const LeafVertices* known, std::span<const LeafBlock> leaves,
-                      std::size_t first, std::size_t last, LeafBlock* to, LeafPoints* points) {
+void FillFromVertices(const Mesh& mesh, const LeafVertices* known,
+                      std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
+                      LeafBlock* to, LeafPoints* points) {
   const Vec3* vertices = mesh.vertices().data();
   for (std::size_t i = first; i < last; ++i) {
     if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
@@ -328,9 +330,12 @@ void CopyLeaves(const LeafBlock* from, std::size_t count, bool bypass, LeafBlock
   const float* source = from->corner[0][0];
   float* target = to->corner[0][0];
   const std::size_t size = count * (sizeof(LeafBlock) / sizeof(float));
+  if (!bypass) {
+    for (std::size_t i = 0; i < size; i += width) hn::Store(hn::Load(d, source + i), d, target + i);
+    return;
+  }
   for (std::size_t i = 0; i < size; i += width) hn::Stream(hn::Load(d, source + i), d, target + i);
   hwy::FlushStream();
-  (void)bypass;
 }
 
 /// Returns true if all numbers are floats.
@@ -367,7 +372,8 @@ void LeafVertices::collect(const Corners* triangles, const LeafBlock& leaf) noex
   for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
     const Corners& its = triangles[leaf.triangle(leaf.is_used(lane) ? lane : 0)];
     for (std::size_t c = 0; c < 3; ++c) {
-      const std::size_t entry = static_cast<std::size_t>(std::find(vertex, vertex + count, its[c]) - vertex);
+      const std::size_t entry =
+          static_cast<std::size_t>(std::find(vertex, vertex + count, its[c]) - vertex);
       if (entry == most) {
         corner[0][0] = 1;  // not complete
         return;

@@ -82,8 +82,7 @@ HWY_INLINE void for_each_vertex(FloatTag d, const LeafBlock& leaf, const LeafPoi
 /// Computes the sum of the triangles' normals, each twice as long as the area and on the side given
 /// by the winding. Also computes the leaf's box.
 HWY_INLINE void look_at(FloatTag d, const LeafBlock& leaf, const LeafPoints& points,
-                        std::size_t row, VectorRows& normals, VectorRows& lows,
-                        VectorRows& highs) {
+                        std::size_t row, VectorRows& normals, VectorRows& lows, VectorRows& highs) {
   const hn::RebindToUnsigned<FloatTag> unsigned_lanes;
   const V zero = hn::Zero(d);
   Vector normal{zero, zero, zero};

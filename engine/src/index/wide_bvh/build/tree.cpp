@@ -212,7 +212,9 @@ void WideBvh::Tree::fit_leaves(const LeafFill& fill, std::span<const LeafBlock> 
   enclose(made, node, cylinders_[self]);
   if (!frame_.is_exact()) widen(node);
   close_lanes(node, cylinders_[self], last - first);
-  copy_leaves(made.leaf, last - first, true, &leaves_[first]);
+  constexpr std::size_t most_in_cache = std::size_t{1} << 24;  // bytes
+  const bool bypass = leaves_.size() * sizeof(LeafBlock) > most_in_cache;
+  copy_leaves(made.leaf, last - first, bypass, &leaves_[first]);
 }
 
 /// Makes a node of the nodes first .. last - 1.
