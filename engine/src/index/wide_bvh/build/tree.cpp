@@ -57,32 +57,55 @@ class Division {
     }
     const std::size_t parts = rounded_up_quotient(centers.size(), capacity);
     const std::size_t middle = parts / 2 * capacity;
-    split(centers, spare, middle);
+    constexpr std::size_t worth_a_thread = 4096;
+    threads =
+        static_cast<unsigned>(std::min<std::size_t>(threads, centers.size() / worth_a_thread + 1));
+    split(centers, spare, middle, threads);
+    // Each thread gets about as many triangles as any other.
+    const std::size_t for_front = (threads * middle + centers.size() / 2) / centers.size();
+    const auto in_front =
+        static_cast<unsigned>(std::clamp<std::size_t>(for_front, 1, std::max(threads, 2u) - 1));
     const auto front = [&] {
-      divide(spare.first(middle), centers.first(middle), begin, capacity, threads / 2);
+      divide(spare.first(middle), centers.first(middle), begin, capacity, in_front);
     };
     const auto back = [&] {
       divide(spare.subspan(middle), centers.subspan(middle), begin + middle, capacity,
-             threads - threads / 2);
+             std::max(threads, 2u) - in_front);
     };
-    constexpr std::size_t worth_a_thread = 4096;
-    run_both(centers.size() >= worth_a_thread ? threads : 1, front, back);
+    run_both(threads, front, back);
   }
 
-  static void split(Centers from, Centers to, std::size_t middle) {
-    std::array<float, 3> low = from.front().position;
-    std::array<float, 3> high = low;
-    for (const Center& center : from) {
+  /// The least box around centers.
+  struct Extent {
+    std::array<float, 3> low, high;
+
+    void add(const std::array<float, 3>& least, const std::array<float, 3>& most) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], center.position[axis]);
-        high[axis] = std::max(high[axis], center.position[axis]);
+        low[axis] = std::min(low[axis], least[axis]);
+        high[axis] = std::max(high[axis], most[axis]);
       }
     }
+  };
+
+  static void split(Centers from, Centers to, std::size_t middle, unsigned threads) {
+    const Extent first{from.front().position, from.front().position};
+    Extent extent = first;
+    std::vector<Extent> shared(threads > 1 ? threads : 0, first);
+    share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+      Extent of_part = first;
+      for (const Center& center : from.subspan(begin, end - begin)) {
+        of_part.add(center.position, center.position);
+      }
+      (shared.empty() ? extent : shared[part]) = of_part;
+    });
+    for (const Extent& of_part : shared) extent.add(of_part.low, of_part.high);
     std::size_t axis = 0;
     for (const std::size_t other : {1u, 2u}) {
-      if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
+      if (extent.high[other] - extent.low[other] > extent.high[axis] - extent.low[axis]) {
+        axis = other;
+      }
     }
-    split_at(from, to, middle, low[axis], high[axis],
+    split_at(from, to, middle, extent.low[axis], extent.high[axis], threads,
              [axis](const Center& center) { return center.position[axis]; });
   }
 
