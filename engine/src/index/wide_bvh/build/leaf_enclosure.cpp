@@ -198,9 +198,11 @@ void EncloseLeaves(const SixteenLeaves& leaves, NodeBlock& boxes, CylinderBlock&
   for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
     look_at(d, leaves.leaf[leaf], leaves.points[leaf], leaf, normals, lows, highs);
   }
+  // -0 becomes 0, because which of them is the least depends on the order of the vertices.
+  const Vector zero{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (std::size_t first = 0; first < leaf_count; first += width) {
-    store(d, of_leaves(d, lows, first, least_of), first, boxes.low);
-    store(d, of_leaves(d, highs, first, most_of), first, boxes.high);
+    store(d, of_leaves(d, lows, first, least_of) + zero, first, boxes.low);
+    store(d, of_leaves(d, highs, first, most_of) + zero, first, boxes.high);
   }
   set_axes(d, normals, boxes, cylinders);
   Rows bottoms, tops, radii2;
