@@ -78,7 +78,7 @@ void split_at(std::span<const Center> from, std::span<Center> to, std::size_t mi
     return;
   }
   const auto last_bin = static_cast<std::int32_t>(bins) - 1;
-  const auto bin_of = [&](const Center& center) {
+  const auto bins_of = [key, low, scale, last_bin](const Center& center) {
     return std::min(static_cast<std::int32_t>((key(center) - low) * scale), last_bin);
   };
   using Counts = std::array<std::uint32_t, most_bins>;
@@ -87,6 +87,7 @@ void split_at(std::span<const Center> from, std::span<Center> to, std::size_t mi
   std::fill_n(counts.begin(), bins, 0u);
   share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
     Counts& of_part = shared.empty() ? counts : shared[part];
+    const auto bin_of = bins_of;  // a copy, which stores cannot change: it stays in registers
     for (const Center& center : from.subspan(begin, end - begin)) {
       ++of_part[static_cast<std::size_t>(bin_of(center))];
     }
@@ -94,28 +95,30 @@ void split_at(std::span<const Center> from, std::span<Center> to, std::size_t mi
   for (const Counts& of_part : shared) {
     for (std::size_t bin = 0; bin < bins; ++bin) counts[bin] += of_part[bin];
   }
-  std::int32_t split_bin = 0;
+  std::int32_t its_bin = 0;  // the bin of the middle
   std::size_t before = 0;
-  while (before + counts[static_cast<std::size_t>(split_bin)] <= middle) {
-    before += counts[static_cast<std::size_t>(split_bin++)];
+  while (before + counts[static_cast<std::size_t>(its_bin)] <= middle) {
+    before += counts[static_cast<std::size_t>(its_bin++)];
   }
 
   // A part's centers come after those of the parts before it.
   struct Ends {
     Center *left, *here, *right;
   };
-  const std::size_t in_split_bin = counts[static_cast<std::size_t>(split_bin)];
+  const std::size_t in_split_bin = counts[static_cast<std::size_t>(its_bin)];
   const Ends first{to.data(), to.data() + before, to.data() + before + in_split_bin};
   std::vector<Ends> ends(shared.size(), first);
   for (std::size_t part = 1; part < shared.size(); ++part) {
     const Counts& previous = shared[part - 1];
-    const auto split = previous.begin() + split_bin;
+    const auto split = previous.begin() + its_bin;
     ends[part].left = ends[part - 1].left + std::accumulate(previous.begin(), split, 0u);
     ends[part].here = ends[part - 1].here + *split;
     ends[part].right = ends[part - 1].right + std::accumulate(split + 1, previous.end(), 0u);
   }
   share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
     auto [left, here, right] = ends.empty() ? first : ends[part];
+    const auto bin_of = bins_of;
+    const std::int32_t split_bin = its_bin;
     for (const Center& center : from.subspan(begin, end - begin)) {
       const std::int32_t bin = bin_of(center);
       if (bin == split_bin) [[unlikely]] {
