@@ -75,37 +75,36 @@ class Division {
     run_both(threads, front, back);
   }
 
-  /// The least box around centers.
-  struct Extent {
-    std::array<float, 3> low, high;
-
-    void add(const std::array<float, 3>& least, const std::array<float, 3>& most) {
+  static void split(Centers from, Centers to, std::size_t middle, unsigned threads) {
+    using Coordinates = std::array<float, 3>;
+    Coordinates low = from.front().position;
+    Coordinates high = low;
+    std::vector<std::array<Coordinates, 2>> shared(threads > 1 ? threads : 0, {low, high});
+    share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+      Coordinates least = from.front().position;
+      Coordinates most = least;
+      for (const Center& center : from.subspan(begin, end - begin)) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          least[axis] = std::min(least[axis], center.position[axis]);
+          most[axis] = std::max(most[axis], center.position[axis]);
+        }
+      }
+      (shared.empty() ? low : shared[part][0]) = least;
+      (shared.empty() ? high : shared[part][1]) = most;
+    });
+    for (const auto& [least, most] : shared) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         low[axis] = std::min(low[axis], least[axis]);
         high[axis] = std::max(high[axis], most[axis]);
       }
     }
-  };
-
-  static void split(Centers from, Centers to, std::size_t middle, unsigned threads) {
-    const Extent first{from.front().position, from.front().position};
-    Extent extent = first;
-    std::vector<Extent> shared(threads > 1 ? threads : 0, first);
-    share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
-      Extent of_part = first;
-      for (const Center& center : from.subspan(begin, end - begin)) {
-        of_part.add(center.position, center.position);
-      }
-      (shared.empty() ? extent : shared[part]) = of_part;
-    });
-    for (const Extent& of_part : shared) extent.add(of_part.low, of_part.high);
     std::size_t axis = 0;
     for (const std::size_t other : {1u, 2u}) {
-      if (extent.high[other] - extent.low[other] > extent.high[axis] - extent.low[axis]) {
+      if (high[other] - low[other] > high[axis] - low[axis]) {
         axis = other;
       }
     }
-    split_at(from, to, middle, extent.low[axis], extent.high[axis], threads,
+    split_at(from, to, middle, low[axis], high[axis], threads,
              [axis](const Center& center) { return center.position[axis]; });
   }
 
