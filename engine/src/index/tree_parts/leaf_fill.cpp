@@ -92,6 +92,12 @@ HWY_INLINE void fill_leaf(const Vec3* vertices, const CornersOfLeaf& corners, co
   write_tags(from, odd, leaf);
 }
 
+/// Fetches a vertex, which may be in two cache lines.
+HWY_INLINE void fetch(const Vec3& vertex) {
+  hwy::Prefetch(&vertex.x());
+  hwy::Prefetch(&vertex.z());
+}
+
 constexpr std::size_t vertices_ahead = 4;
 constexpr std::size_t triangles_ahead = 12;
 constexpr std::size_t sources_ahead = 24;
@@ -121,7 +127,7 @@ HWY_INLINE void fill_leaves(const Mesh& mesh, const Vec3& origin, std::span<cons
     if (i + vertices_ahead < leaves.size()) {
       look_up(triangles, leaves[i + vertices_ahead], its);
       for (const Corners& corners : its) {
-        for (const VertexId v : corners) hwy::Prefetch(&vertices[v]);
+        for (const VertexId v : corners) fetch(vertices[v]);
       }
     }
   }
@@ -193,7 +199,7 @@ void FillFromVertices(const Mesh& mesh, const LeafVertices* known,
   for (std::size_t i = first; i < last; ++i) {
     if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
     if (i + vertices_ahead < leaves.size()) {
-      for (const VertexId v : known[i + vertices_ahead].vertex) hwy::Prefetch(&vertices[v]);
+      for (const VertexId v : known[i + vertices_ahead].vertex) fetch(vertices[v]);
     }
     if (width >= 8 && known[i].is_complete()) [[likely]] {
       fill_leaf(vertices, known[i], leaves[i], *points++, *to++);
