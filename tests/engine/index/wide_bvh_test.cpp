@@ -93,7 +93,7 @@ TEST(WideBvh, IsTheSameTreeWhateverTheNumberOfThreads) {
   const auto mesh = mesh_of(make_cortex(0.7, 1));
   ASSERT_GT(mesh->triangle_count(), 30'000u);
   const WideBvh alone(mesh, 1);
-  for (const unsigned threads : {2u, 3u, 8u}) {
+  for (const unsigned threads : {2u, 3u, 8u, 16u}) {
     EXPECT_TRUE(are_equal(alone.tree(), WideBvh(mesh, threads).tree())) << threads << " threads";
   }
 }
@@ -129,6 +129,26 @@ TEST(WideBvh, ARefitAndBackIsTheTreeThatWas) {
   EXPECT_FALSE(are_equal(index.tree(), was.tree()));
   index.refit(mesh);
   EXPECT_TRUE(are_equal(index.tree(), was.tree()));
+}
+
+/// Tests leaves with few and with many vertices, coordinates that are floats and coordinates that
+/// are not, and -0.
+TEST(WideBvh, ARefitIsTheTreeThatIsBuiltInTheSameOrder) {
+  for (const Shape& shape : shapes_to_try()) {
+    SCOPED_TRACE(shape.name);
+    const auto before = mesh_of(shape.name);
+    for (const double unit : {0.0, 1.0, 0.25}) {  // 0: not rounded
+      const auto after = moved(*before, [&](const Vec3& v) -> Vec3 {
+        return unit == 0.0 ? twisted(v) : Vec3(unit * (twisted(v) / unit).array().round());
+      });
+      WideBvh index(before);
+      index.refit(after);
+      index.refit(before);  // the tables of the first refit are used again
+      EXPECT_TRUE(are_equal(index.tree(), WideBvh(before, WideBvh(before).order()).tree()));
+      index.refit(after);
+      EXPECT_TRUE(are_equal(index.tree(), WideBvh(after, index.order()).tree()));
+    }
+  }
 }
 
 TEST(WideBvh, ARefitIsTheSameWhateverTheNumberOfThreads) {

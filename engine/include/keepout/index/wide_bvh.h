@@ -31,10 +31,11 @@ class WideBvh final : public SpatialIndex {
   explicit WideBvh(std::shared_ptr<const Mesh> mesh, unsigned threads = 0);
 
   /// Refits the index to a mesh with the same triangles and moved vertices, in about a tenth of the
-  /// time of a build. The tree is nearly as good if neighbors stay neighbors. No other thread may
-  /// use the index during the call. Every motion constraint on the index then returns mesh_changed
-  /// until MotionConstraint::follow. Throws Error, and changes nothing, if the corners of a
-  /// triangle differ, or without a mesh.
+  /// time of a build. The first call takes longer, and allocates 9 bytes per triangle for later
+  /// calls. The tree is nearly as good if neighbors stay neighbors. No other thread may use the
+  /// index during the call. Every motion constraint on the index then returns mesh_changed until
+  /// MotionConstraint::follow. Throws Error, and changes nothing, if the corners of a triangle
+  /// differ, or without a mesh.
   void refit(std::shared_ptr<const Mesh> moved, unsigned threads = 0);
 
   /// Builds the tree from the order() of an earlier build, in about a tenth of the time. Boxes

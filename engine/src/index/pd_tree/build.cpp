@@ -78,7 +78,7 @@ class Builder {
       divide(centers, spare, 0, 0, threads);
       constexpr std::size_t share = 1024;  // leaves, worked on at a time
       share_ranges(leaves_.size(), threads, share, [&](std::size_t begin, std::size_t end) {
-        fill.fill(leaves_.first(end), begin, end);
+        fill.fill(leaves_.first(end), begin, end, &leaves_[begin]);
       });
     }
     enclose(0, 0, threads);
@@ -105,9 +105,10 @@ class Builder {
 
     const std::size_t near = leaves / 2;
     const std::size_t middle = near * LeafBlock::lanes;
-    split(centers, spare, middle, node);
+    if (centers.size() < worth_a_thread) threads = 1;
+    split(centers, spare, middle, threads, node);
     run_both(
-        centers.size() >= worth_a_thread ? threads : 1,
+        threads,
         [&] {
           divide(spare.first(middle), centers.first(middle), self + 1, first_leaf, threads / 2);
         },
@@ -118,7 +119,8 @@ class Builder {
   }
 
   /// Splits along the direction of the largest spread.
-  static void split(Centers from, Centers to, std::size_t middle, const PdNode& node) {
+  static void split(Centers from, Centers to, std::size_t middle, unsigned threads,
+                    const PdNode& node) {
     const auto along = [x = node.across[0][0], y = node.across[1][0],
                         z = node.across[2][0]](const Center& center) {
       return x * center.position[0] + y * center.position[1] + z * center.position[2];
@@ -130,7 +132,7 @@ class Builder {
       low = std::min(low, at);
       high = std::max(high, at);
     }
-    split_at(from, to, middle, low, high, along);
+    split_at(from, to, middle, low, high, threads, along);
   }
 
   /// Computes the sizes of the boxes of a node and of all nodes below it.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <cstring>
 
 #include "../../parallel.h"
 
@@ -15,153 +14,109 @@
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
+#include "vertex_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace keepout::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
+/// Writes the corners of some triangles in lexicographic order; equal corners keep their order, as
+/// in corner_order(). Returns a bit for each triangle whose order is an odd permutation. Corners
+/// are ordered before the origin is subtracted, because rounding could make different corners
+/// equal.
 template <class Number>
-using Lanes = hn::CappedTag<Number, LeafBlock::lanes>;
+HWY_INLINE std::uint32_t write_in_order(const Place<Number>& a, const Place<Number>& b,
+                                        const Place<Number>& c, const Vec3& origin,
+                                        std::size_t first, LeafBlock& leaf) {
+  const Choice<Number> b_before_a = is_before<Number>(b, a);
+  const Choice<Number> c_before_a = is_before<Number>(c, a);
+  const Choice<Number> c_before_b = is_before<Number>(c, b);
+  const Place<Number> lower = choose<Number>(b_before_a, b, a);
+  const Place<Number> upper = choose<Number>(b_before_a, a, b);
+  const Choice<Number> c_is_first =
+      hn::Or(hn::And(b_before_a, c_before_b), hn::AndNot(b_before_a, c_before_a));
+  const Choice<Number> c_is_not_last =
+      hn::Or(hn::And(b_before_a, c_before_a), hn::AndNot(b_before_a, c_before_b));
+  store(choose<Number>(c_is_first, c, lower), origin, leaf.corner[0], first);
+  store(choose<Number>(c_is_first, lower, choose<Number>(c_is_not_last, c, upper)), origin,
+        leaf.corner[1], first);
+  store(choose<Number>(c_is_not_last, upper, c), origin, leaf.corner[2], first);
 
-template <class Number>
-struct Place {
-  hn::Vec<Lanes<Number>> x, y, z;
-};
-
-template <class Number>
-using Choice = hn::Mask<Lanes<Number>>;
-
-template <class Number>
-HWY_INLINE Choice<Number> is_before(const Place<Number>& a, const Place<Number>& b) {
-  const auto in_plane = hn::Or(hn::Lt(a.y, b.y), hn::And(hn::Eq(a.y, b.y), hn::Lt(a.z, b.z)));
-  return hn::Or(hn::Lt(a.x, b.x), hn::And(hn::Eq(a.x, b.x), in_plane));
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Lanes<Number>(), hn::Xor(hn::Xor(b_before_a, c_before_a), c_before_b), bits);
+  return (bits[0] | std::uint32_t{bits[1]} << 8) << first;
 }
 
-template <class Number>
-HWY_INLINE Place<Number> choose(Choice<Number> first, const Place<Number>& a,
-                                const Place<Number>& b) {
-  return {hn::IfThenElse(first, a.x, b.x), hn::IfThenElse(first, a.y, b.y),
-          hn::IfThenElse(first, a.z, b.z)};
-}
-
-HWY_INLINE void store(const Place<float>& place, const Vec3&, float (&corner)[3][LeafBlock::lanes],
-                      std::size_t first) {
-  const Lanes<float> d;
-  hn::Store(place.x, d, corner[0] + first);
-  hn::Store(place.y, d, corner[1] + first);
-  hn::Store(place.z, d, corner[2] + first);
-}
-
-HWY_INLINE void store(const Place<double>& place, const Vec3& origin,
-                      float (&corner)[3][LeafBlock::lanes], std::size_t first) {
-  const Lanes<double> d;
-  const hn::Rebind<float, Lanes<double>> floats;
-  const auto write = [&](hn::Vec<Lanes<double>> x, int axis) HWY_ATTR {
-    const auto from_origin = hn::Sub(x, hn::Set(d, origin[axis]));
-    hn::Store(hn::DemoteTo(floats, from_origin), floats, corner[axis] + first);
-  };
-  write(place.x, 0);
-  write(place.y, 1);
-  write(place.z, 2);
-}
-
-/// The corners of a leaf's triangles, each with one unused number. [length]
-template <class Number>
-struct alignas(64) Gathered {
-  Number corner[3][LeafBlock::lanes][4];
-
-  HWY_INLINE Place<Number> place(std::size_t c, std::size_t first) const {
-    const Lanes<Number> d;
-    Place<Number> place;
-    hn::Vec<Lanes<Number>> unused;
-    hn::LoadInterleaved4(d, corner[c][first], place.x, place.y, place.z, unused);
-    return place;
-  }
-};
-
-HWY_INLINE void copy(const LeafFill::FloatVertex& from, float (&to)[4]) {
-  std::memcpy(to, from.x, sizeof to);  // one instruction
-}
-
-HWY_INLINE void copy(const Vec3& from, double (&to)[4]) {
-  to[0] = from.x();
-  to[1] = from.y();
-  to[2] = from.z();
-  to[3] = 0.0;
-}
-
-/// Writes the corners in lexicographic order; equal corners keep their order, as in corner_order().
-/// Corners are ordered before the origin is subtracted, because rounding could make different
-/// corners equal.
-template <class Number>
-HWY_INLINE void write_in_order(const Gathered<Number>& from, const Vec3& origin, LeafBlock& leaf) {
-  const Lanes<Number> d;
-  std::uint32_t odd = 0;
+/// Writes the numbers of the triangles, and the bits of odd permutations.
+HWY_INLINE void write_tags(const LeafBlock& from, std::uint32_t odd, LeafBlock& leaf) {
+  const hn::CappedTag<std::uint32_t, LeafBlock::lanes> d;
+  const auto bit = hn::Set(d, LeafBlock::odd);
   for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(d)) {
-    const Place<Number> a = from.place(0, first);
-    const Place<Number> b = from.place(1, first);
-    const Place<Number> c = from.place(2, first);
-    const Choice<Number> b_before_a = is_before<Number>(b, a);
-    const Choice<Number> c_before_a = is_before<Number>(c, a);
-    const Choice<Number> c_before_b = is_before<Number>(c, b);
-    const Place<Number> lower = choose<Number>(b_before_a, b, a);
-    const Place<Number> upper = choose<Number>(b_before_a, a, b);
-    const Choice<Number> c_is_first =
-        hn::Or(hn::And(b_before_a, c_before_b), hn::AndNot(b_before_a, c_before_a));
-    const Choice<Number> c_is_not_last =
-        hn::Or(hn::And(b_before_a, c_before_a), hn::AndNot(b_before_a, c_before_b));
-    store(choose<Number>(c_is_first, c, lower), origin, leaf.corner[0], first);
-    store(choose<Number>(c_is_first, lower, choose<Number>(c_is_not_last, c, upper)), origin,
-          leaf.corner[1], first);
-    store(choose<Number>(c_is_not_last, upper, c), origin, leaf.corner[2], first);
-
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, hn::Xor(hn::Xor(b_before_a, c_before_a), c_before_b), bits);
-    odd |= (bits[0] | std::uint32_t{bits[1]} << 8) << first;
-  }
-  for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-    const std::uint32_t parity = odd << (31 - lane) & LeafBlock::odd;
-    const std::uint32_t named = leaf.triangle(lane) | parity;
-    leaf.tagged_triangle[lane] = leaf.is_used(lane) ? named : no_triangle;
+    const auto named = hn::Load(d, from.tagged_triangle + first);
+    const auto shift = hn::Sub(hn::Set(d, 31), hn::Iota(d, static_cast<std::uint32_t>(first)));
+    const auto parity = hn::And(hn::Shl(hn::Set(d, odd), shift), bit);
+    const auto is_unused = hn::Eq(named, hn::Set(d, no_triangle));
+    hn::Store(hn::IfThenElse(is_unused, named, hn::Or(hn::AndNot(bit, named), parity)), d,
+              leaf.tagged_triangle + first);
   }
 }
 
-/// The vertices of a leaf's triangles.
-using VerticesOfLeaf = Corners[LeafBlock::lanes];
+/// The vertices of the triangles in the lanes of a leaf. Unused lanes repeat lane 0.
+using CornersOfLeaf = Corners[LeafBlock::lanes];
 
 HWY_INLINE bool is_full(const LeafBlock& leaf) { return leaf.is_used(LeafBlock::lanes - 1); }
 
-HWY_INLINE void look_up(const Corners* triangles, const LeafBlock& leaf, VerticesOfLeaf& vertices) {
+HWY_INLINE void look_up(const Corners* triangles, const LeafBlock& leaf, CornersOfLeaf& corners) {
   if (is_full(leaf)) [[likely]] {
     for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-      vertices[lane] = triangles[leaf.triangle(lane)];
+      corners[lane] = triangles[leaf.triangle(lane)];
     }
     return;
   }
   for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-    vertices[lane] = triangles[leaf.triangle(leaf.is_used(lane) ? lane : 0)];
+    corners[lane] = triangles[leaf.triangle(leaf.is_used(lane) ? lane : 0)];
   }
 }
 
+template <class Number>
+HWY_INLINE void fill_leaf(const Vec3* vertices, const CornersOfLeaf& corners, const Vec3& origin,
+                          const LeafBlock& from, LeafBlock& leaf) {
+  std::uint32_t odd = 0;
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(Lanes<Number>())) {
+    Place<Number> place[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      read([&](std::size_t lane) -> const Vec3& { return vertices[corners[first + lane][c]]; },
+           place[c]);
+    }
+    odd |= write_in_order<Number>(place[0], place[1], place[2], origin, first, leaf);
+  }
+  write_tags(from, odd, leaf);
+}
+
+/// Fetches a vertex, which may be in two cache lines.
+HWY_INLINE void fetch(const Vec3& vertex) {
+  hwy::Prefetch(&vertex.x());
+  hwy::Prefetch(&vertex.z());
+}
+
+constexpr std::size_t vertices_ahead = 4;
+constexpr std::size_t triangles_ahead = 12;
+constexpr std::size_t sources_ahead = 24;
+
 /// Without prefetching, the processor would wait for nearly every read. So the triangle numbers of
 /// a leaf are fetched many leaves ahead, then its triangles, then its vertices.
-template <class Number, class Vertex>
-HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices, const Vec3& origin,
-                            std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
-  constexpr std::size_t vertices_ahead = 4;
-  constexpr std::size_t triangles_ahead = 12;
-  constexpr std::size_t sources_ahead = 24;
-  VerticesOfLeaf looked_up[vertices_ahead];
+template <class Number>
+HWY_INLINE void fill_leaves(const Mesh& mesh, const Vec3& origin, std::span<const LeafBlock> leaves,
+                            std::size_t first, std::size_t last, LeafBlock* to) {
+  const Corners* triangles = mesh.triangles().data();
+  const Vec3* vertices = mesh.vertices().data();
+  CornersOfLeaf looked_up[vertices_ahead];
   // The previous call has fetched these.
   for (std::size_t i = first; i < std::min(first + vertices_ahead, leaves.size()); ++i) {
     look_up(triangles, leaves[i], looked_up[i % vertices_ahead]);
   }
   for (std::size_t i = first; i < last; ++i) {
-    VerticesOfLeaf& its = looked_up[i % vertices_ahead];
-    Gathered<Number> gathered;
-    for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
-      for (std::size_t c = 0; c < 3; ++c) copy(vertices[its[lane][c]], gathered.corner[c][lane]);
-    }
+    CornersOfLeaf& its = looked_up[i % vertices_ahead];
+    fill_leaf<Number>(vertices, its, origin, leaves[i], *to++);
     if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
     if (i + triangles_ahead < leaves.size() && is_full(leaves[i + triangles_ahead])) {
       const LeafBlock& ahead = leaves[i + triangles_ahead];
@@ -170,49 +125,121 @@ HWY_INLINE void fill_leaves(const Corners* triangles, const Vertex* vertices, co
       }
     }
     if (i + vertices_ahead < leaves.size()) {
-      LeafBlock& ahead = leaves[i + vertices_ahead];
-      look_up(triangles, ahead, its);
+      look_up(triangles, leaves[i + vertices_ahead], its);
       for (const Corners& corners : its) {
-        for (const VertexId v : corners) hwy::Prefetch(&vertices[v]);
-      }
-      for (auto& corner : ahead.corner) {
-        for (const auto& coordinates : corner) __builtin_prefetch(coordinates, 1);  // to be written
+        for (const VertexId v : corners) fetch(vertices[v]);
       }
     }
-    write_in_order(gathered, origin, leaves[i]);
   }
 }
 
-void FillFromFloats(const Corners* triangles, const LeafFill::FloatVertex* vertices,
-                    std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
-  fill_leaves<float>(triangles, vertices, Vec3::Zero(), leaves, first, last);
+void FillFromFloats(const Mesh& mesh, std::span<const LeafBlock> leaves, std::size_t first,
+                    std::size_t last, LeafBlock* to) {
+  fill_leaves<float>(mesh, Vec3::Zero(), leaves, first, last, to);
 }
 
-void FillFromDoubles(const Corners* triangles, const Vec3* vertices, const Vec3& origin,
-                     std::span<LeafBlock> leaves, std::size_t first, std::size_t last) {
-  fill_leaves<double>(triangles, vertices, origin, leaves, first, last);
+void FillFromDoubles(const Mesh& mesh, const Vec3& origin, std::span<const LeafBlock> leaves,
+                     std::size_t first, std::size_t last, LeafBlock* to) {
+  fill_leaves<double>(mesh, origin, leaves, first, last, to);
 }
 
-/// Rounds vertices to floats. Returns true if all keep their values.
-bool RoundVertices(std::span<const Vec3> from, LeafFill::FloatVertex* to) {
-  // Each read also covers the next coordinate, which has no effect.
-  const hn::CappedTag<double, 4> d;
-  const hn::Rebind<float, decltype(d)> floats;
-  auto off = hn::Zero(d);
-  const auto round = [&](const double* x, float* rounded) HWY_ATTR {
-    for (std::size_t i = 0; i < 4; i += hn::Lanes(d)) {
-      const auto exact = hn::LoadU(d, x + i);
-      const auto nearest = hn::DemoteTo(floats, exact);
-      hn::StoreU(nearest, floats, rounded + i);
-      off = hn::Max(off, hn::Abs(hn::Sub(exact, hn::PromoteTo(d, nearest))));
+constexpr std::size_t width = hn::MaxLanes(Lanes<float>());
+
+/// Returns the positions at some entries of a table, in registers of eight or more lanes.
+HWY_INLINE hn::Vec<Lanes<float>> table_lookup(const float (&table)[LeafPoints::lanes],
+                                              hn::Vec<hn::RebindToUnsigned<Lanes<float>>> entry) {
+  const Lanes<float> d;
+  const hn::RebindToUnsigned<Lanes<float>> entries;
+  const auto index = hn::IndicesFromVec(d, hn::And(entry, hn::Set(entries, width - 1)));
+  auto found = hn::TableLookupLanes(hn::Load(d, table), index);
+  for (std::size_t begin = width; begin < LeafVertices::most; begin += width) {
+    const auto is_here =
+        hn::RebindMask(d, hn::Gt(entry, hn::Set(entries, static_cast<std::uint32_t>(begin - 1))));
+    found = hn::IfThenElse(is_here, hn::TableLookupLanes(hn::Load(d, table + begin), index), found);
+  }
+  return found;
+}
+
+/// Reads each vertex of a leaf once, and distributes it to the corners in registers.
+HWY_INLINE void fill_leaf(const Vec3* vertices, const LeafVertices& its, const LeafBlock& from,
+                          LeafPoints& points, LeafBlock& leaf) {
+  const Lanes<float> d;
+  const hn::RebindToUnsigned<Lanes<float>> entries;
+  const hn::Rebind<std::uint8_t, Lanes<float>> bytes;
+  for (std::size_t first = 0; first < LeafVertices::most; first += width) {
+    Place<float> place;
+    read(
+        [&](std::size_t lane) -> const Vec3& {
+          const std::size_t entry = first + lane;
+          return vertices[its.vertex[entry < LeafVertices::most ? entry : 0]];
+        },
+        place);
+    hn::Store(place.x, d, points.position[0] + first);
+    hn::Store(place.y, d, points.position[1] + first);
+    hn::Store(place.z, d, points.position[2] + first);
+  }
+  points.is_known = true;
+  std::uint32_t odd = 0;
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += width) {
+    Place<float> place[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto entry = hn::PromoteTo(entries, hn::LoadU(bytes, its.corner[c] + first));
+      place[c] = {table_lookup(points.position[0], entry), table_lookup(points.position[1], entry),
+                  table_lookup(points.position[2], entry)};
     }
+    odd |= write_in_order<float>(place[0], place[1], place[2], Vec3::Zero(), first, leaf);
+  }
+  write_tags(from, odd, leaf);
+}
+
+void FillFromVertices(const Mesh& mesh, const LeafVertices* known,
+                      std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
+                      LeafBlock* to, LeafPoints* points) {
+  const Vec3* vertices = mesh.vertices().data();
+  for (std::size_t i = first; i < last; ++i) {
+    if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
+    if (i + vertices_ahead < leaves.size()) {
+      for (const VertexId v : known[i + vertices_ahead].vertex) fetch(vertices[v]);
+    }
+    if (width >= 8 && known[i].is_complete()) [[likely]] {
+      fill_leaf(vertices, known[i], leaves[i], *points++, *to++);
+      continue;
+    }
+    CornersOfLeaf corners;
+    look_up(mesh.triangles().data(), leaves[i], corners);
+    fill_leaf<float>(vertices, corners, Vec3::Zero(), leaves[i], *to++);
+    points++->is_known = false;
+  }
+}
+
+void CopyLeaves(const LeafBlock* from, std::size_t count, bool bypass, LeafBlock* to) {
+  static_assert(sizeof(LeafBlock) % (LeafBlock::lanes * sizeof(float)) == 0);
+  const Lanes<float> d;
+  const float* source = from->corner[0][0];
+  float* target = to->corner[0][0];
+  const std::size_t size = count * (sizeof(LeafBlock) / sizeof(float));
+  if (!bypass) {
+    for (std::size_t i = 0; i < size; i += width) hn::Store(hn::Load(d, source + i), d, target + i);
+    return;
+  }
+  for (std::size_t i = 0; i < size; i += width) hn::Stream(hn::Load(d, source + i), d, target + i);
+  hwy::FlushStream();
+}
+
+/// Returns true if all numbers are floats.
+bool AreFloats(std::span<const double> numbers) {
+  const hn::CappedTag<double, 8> d;
+  const hn::Rebind<float, decltype(d)> floats;
+  const auto is_off = [&](hn::Vec<decltype(d)> exact) HWY_ATTR {
+    return hn::Ne(exact, hn::PromoteTo(d, hn::DemoteTo(floats, exact)));
   };
-  static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  const std::size_t last = from.size() - 1;
-  for (std::size_t v = 0; v < last; ++v) round(from[v].data(), to[v].x);
-  const double copied[4] = {from[last].x(), from[last].y(), from[last].z(), from[last].z()};
-  round(copied, to[last].x);
-  return hn::GetLane(hn::MaxOfLanes(d, off)) == 0.0;
+  auto off = hn::FirstN(d, 0);
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= numbers.size(); i += hn::Lanes(d)) {
+    off = hn::Or(off, is_off(hn::LoadU(d, &numbers[i])));
+  }
+  for (; i < numbers.size(); ++i) off = hn::Or(off, is_off(hn::Set(d, numbers[i])));
+  return hn::AllFalse(d, off);
 }
 
 }  // namespace keepout::HWY_NAMESPACE
@@ -224,19 +251,39 @@ namespace keepout {
 
 HWY_EXPORT(FillFromFloats);
 HWY_EXPORT(FillFromDoubles);
-HWY_EXPORT(RoundVertices);
+HWY_EXPORT(FillFromVertices);
+HWY_EXPORT(AreFloats);
+HWY_EXPORT(CopyLeaves);
 
-LeafFill::LeafFill(const Mesh& mesh, unsigned threads)
-    : mesh_(mesh), vertices_(mesh.vertex_count()) {
+void LeafVertices::collect(const Corners* triangles, const LeafBlock& leaf) noexcept {
+  std::size_t count = 0;
+  for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
+    const Corners& its = triangles[leaf.triangle(leaf.is_used(lane) ? lane : 0)];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::size_t entry =
+          static_cast<std::size_t>(std::find(vertex, vertex + count, its[c]) - vertex);
+      if (entry == most) {
+        corner[0][0] = 1;  // not complete
+        return;
+      }
+      vertex[entry] = its[c];
+      count = std::max(count, entry + 1);
+      corner[c][lane] = static_cast<std::uint8_t>(entry);
+    }
+  }
+  std::fill(vertex + count, vertex + most, vertex[0]);
+}
+
+LeafFill::LeafFill(const Mesh& mesh, unsigned threads) : mesh_(mesh) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
   std::atomic<bool> are_floats = true;
   share_ranges(mesh.vertex_count(), threads, [&](std::size_t begin, std::size_t end) {
     if (!are_floats) return;
-    const auto share = mesh.vertices().subspan(begin, end - begin);
-    if (!HWY_DYNAMIC_DISPATCH(RoundVertices)(share, &vertices_[begin])) are_floats = false;
+    const std::span numbers(mesh.vertices()[begin].data(), 3 * (end - begin));
+    if (!HWY_DYNAMIC_DISPATCH(AreFloats)(numbers)) are_floats = false;
   });
   if (are_floats) return;
   // Corners that round to the same floats may still have an order, so the doubles are used.
-  vertices_ = {};
   const Box& bounds = mesh.bounds();
   frame_.origin = bounds.center();
   // Half of a float's last digit, and of a double's for the subtraction of the origin. Below the
@@ -246,14 +293,23 @@ LeafFill::LeafFill(const Mesh& mesh, unsigned threads)
   frame_.error = 0x1p-24 * (1.0 + 0x1p-20) * farthest + 0x1p-149;
 }
 
-void LeafFill::fill(std::span<LeafBlock> leaves, std::size_t first,
-                    std::size_t last) const noexcept {
-  const Corners* triangles = mesh_.triangles().data();
+void LeafFill::fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
+                    LeafBlock* to) const noexcept {
   if (frame_.is_exact()) {
-    HWY_DYNAMIC_DISPATCH(FillFromFloats)(triangles, vertices_.data(), leaves, first, last);
+    HWY_DYNAMIC_DISPATCH(FillFromFloats)(mesh_, leaves, first, last, to);
   } else {
-    HWY_DYNAMIC_DISPATCH(FillFromDoubles)
-    (triangles, mesh_.vertices().data(), frame_.origin, leaves, first, last);
+    HWY_DYNAMIC_DISPATCH(FillFromDoubles)(mesh_, frame_.origin, leaves, first, last, to);
+  }
+}
+
+void LeafFill::fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
+                    LeafBlock* to, const LeafVertices* vertices,
+                    LeafPoints* points) const noexcept {
+  if (frame_.is_exact()) {
+    HWY_DYNAMIC_DISPATCH(FillFromVertices)(mesh_, vertices, leaves, first, last, to, points);
+  } else {
+    for (std::size_t i = 0; i < last - first; ++i) points[i].is_known = false;
+    fill(leaves, first, last, to);
   }
 }
 
@@ -261,6 +317,10 @@ void name_triangles(std::span<const Center> centers, LeafBlock& leaf) noexcept {
   for (std::size_t lane = 0; lane < LeafBlock::lanes; ++lane) {
     leaf.tagged_triangle[lane] = lane < centers.size() ? centers[lane].triangle : no_triangle;
   }
+}
+
+void copy_leaves(const LeafBlock* from, std::size_t count, bool bypass, LeafBlock* to) noexcept {
+  HWY_DYNAMIC_DISPATCH(CopyLeaves)(from, count, bypass, to);
 }
 
 }  // namespace keepout

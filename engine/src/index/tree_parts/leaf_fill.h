@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "block_memory.h"
@@ -11,10 +12,34 @@
 
 namespace keepout {
 
-/// Writes the corners of a mesh's triangles to leaves. The mesh has its own order, and each vertex
-/// is read about six times. So vertices that are floats are first copied to a table of floats, four
-/// to a cache line. Other vertices are stored relative to the middle of the triangles. So neither
-/// the origin nor vertices without triangles cost digits.
+/// The vertices of a leaf's triangles, each once: about 16 in a closed surface.
+struct LeafVertices {
+  /// The number of vertices in an entry.
+  static constexpr std::size_t most = 24;
+
+  VertexId vertex[most];                     // unused entries repeat the first
+  std::uint8_t corner[3][LeafBlock::lanes];  // the entries of each triangle's vertices; unused
+                                             // lanes repeat lane 0
+
+  /// Collects the vertices of a leaf, whose `tagged_triangle` has the numbers of its triangles.
+  void collect(const Corners* triangles, const LeafBlock& leaf) noexcept;
+
+  /// Returns false if the leaf has more vertices. Then no entry is valid.
+  bool is_complete() const noexcept { return corner[0][0] == 0; }
+};
+
+/// The positions of a leaf's vertices in the frame of the leaves. [length]
+struct alignas(64) LeafPoints {
+  /// The number of positions, a multiple of the width of any SIMD register.
+  static constexpr std::size_t lanes = 32;
+
+  float position[3][lanes];  // [axis][lane]; unused lanes repeat other positions
+  bool is_known = false;     // false if the leaf's corners are to be used instead
+};
+
+/// Writes the corners of a mesh's triangles to leaves. Coordinates that are floats are stored as
+/// they are. Others are stored relative to the middle of the triangles. So neither the origin nor
+/// vertices without triangles cost digits.
 class LeafFill {
  public:
   /// Reads the vertices once. `mesh` must outlive this object.
@@ -23,22 +48,25 @@ class LeafFill {
   /// Returns the frame of the leaves.
   const LeafFrame& frame() const noexcept { return frame_; }
 
-  /// Fills leaves first .. last - 1, whose `tagged_triangle` already has the numbers of their
-  /// triangles. Prefetches the data of the leaves after them.
-  void fill(std::span<LeafBlock> leaves, std::size_t first, std::size_t last) const noexcept;
+  /// Writes leaves first .. last - 1, with the numbers in their `tagged_triangle`, to `to`.
+  /// Prefetches the data of the leaves after them.
+  void fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
+            LeafBlock* to) const noexcept;
 
-  /// A vertex that never crosses a cache line. [length]
-  struct alignas(16) FloatVertex {
-    float x[4];  // the last is unused
-  };
+  /// Like fill(leaves, first, last, to), but faster, with the `vertices` of all leaves. Also writes
+  /// the positions of the vertices to `points`.
+  void fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last, LeafBlock* to,
+            const LeafVertices* vertices, LeafPoints* points) const noexcept;
 
  private:
   const Mesh& mesh_;
-  BlockVector<FloatVertex> vertices_;  // empty if the mesh's vertices are not floats
   LeafFrame frame_;
 };
 
 /// Writes the numbers of the triangles to the lanes of a leaf.
 void name_triangles(std::span<const Center> centers, LeafBlock& leaf) noexcept;
+
+/// Copies leaves to a tree. `bypass`: without the caches, for a tree that does not fit into them.
+void copy_leaves(const LeafBlock* from, std::size_t count, bool bypass, LeafBlock* to) noexcept;
 
 }  // namespace keepout

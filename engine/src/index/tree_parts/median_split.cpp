@@ -4,8 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
-#include "../../parallel.h"
-
 namespace keepout {
 
 BlockVector<Center> centers_of(const Mesh& mesh, unsigned threads) {

@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <span>
+#include <vector>
 
+#include "../../parallel.h"
 #include "block_memory.h"
 #include "keepout/mesh/mesh.h"
 
@@ -39,14 +42,25 @@ Spread spread_of(std::span<const Center> centers) noexcept;
 /// need.
 Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& covariance) noexcept;
 
+/// Calls work(part, begin, end) for `threads` ranges of equal size that together are 0 to `size`,
+/// at the same time.
+template <class Work>
+void share_equally(std::size_t size, unsigned threads, const Work& work) {
+  if (threads <= 1) return work(std::size_t{0}, std::size_t{0}, size);
+  const std::size_t share = (size + threads - 1) / threads;
+  share_ranges(size, threads, share,
+               [&](std::size_t begin, std::size_t end) { work(begin / share, begin, end); });
+}
+
 /// Moves the centers to `to`, the `middle` ones with the smallest keys to its front. The number of
-/// the triangle decides ties, so each half depends only on the mesh.
+/// the triangle decides ties, so each half depends only on the mesh. The order within a half does
+/// not depend on the number of threads.
 ///
 /// A histogram of the keys, which are in low .. high, gives the bin of the middle. One pass moves
 /// the centers of the other bins to their half, without branches that a processor cannot predict.
 template <class Key>
 void split_at(std::span<const Center> from, std::span<Center> to, std::size_t middle, float low,
-              float high, const Key& key) noexcept {
+              float high, unsigned threads, const Key& key) {
   constexpr std::size_t most_bins = 1024;
   const std::size_t bins = std::clamp(from.size(), std::size_t{16}, most_bins);
   const auto settle = [&](std::span<Center> part, std::size_t rank) {
@@ -64,33 +78,60 @@ void split_at(std::span<const Center> from, std::span<Center> to, std::size_t mi
     return;
   }
   const auto last_bin = static_cast<std::int32_t>(bins) - 1;
-  const auto bin_of = [&](const Center& center) {
+  const auto bins_of = [key, low, scale, last_bin](const Center& center) {
     return std::min(static_cast<std::int32_t>((key(center) - low) * scale), last_bin);
   };
-  std::array<std::uint32_t, most_bins> counts;
+  using Counts = std::array<std::uint32_t, most_bins>;
+  Counts counts;  // of the centers in each bin
+  std::vector<Counts> shared(threads > 1 ? threads : 0);
   std::fill_n(counts.begin(), bins, 0u);
-  for (const Center& center : from) ++counts[static_cast<std::size_t>(bin_of(center))];
-  std::int32_t split_bin = 0;
+  share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    Counts& of_part = shared.empty() ? counts : shared[part];
+    const auto bin_of = bins_of;  // a copy, which stores cannot change: it stays in registers
+    for (const Center& center : from.subspan(begin, end - begin)) {
+      ++of_part[static_cast<std::size_t>(bin_of(center))];
+    }
+  });
+  for (const Counts& of_part : shared) {
+    for (std::size_t bin = 0; bin < bins; ++bin) counts[bin] += of_part[bin];
+  }
+  std::int32_t its_bin = 0;  // the bin of the middle
   std::size_t before = 0;
-  while (before + counts[static_cast<std::size_t>(split_bin)] <= middle) {
-    before += counts[static_cast<std::size_t>(split_bin++)];
+  while (before + counts[static_cast<std::size_t>(its_bin)] <= middle) {
+    before += counts[static_cast<std::size_t>(its_bin++)];
   }
 
-  Center* left = to.data();
-  Center* here = to.data() + before;
-  Center* right = here + counts[static_cast<std::size_t>(split_bin)];
-  for (const Center& center : from) {
-    const std::int32_t bin = bin_of(center);
-    if (bin == split_bin) [[unlikely]] {
-      *here++ = center;
-      continue;
-    }
-    const bool is_left = bin < split_bin;
-    *(is_left ? left : right) = center;
-    left += is_left;
-    right += !is_left;
+  // A part's centers come after those of the parts before it.
+  struct Ends {
+    Center *left, *here, *right;
+  };
+  const std::size_t in_split_bin = counts[static_cast<std::size_t>(its_bin)];
+  const Ends first{to.data(), to.data() + before, to.data() + before + in_split_bin};
+  std::vector<Ends> ends(shared.size(), first);
+  for (std::size_t part = 1; part < shared.size(); ++part) {
+    const Counts& previous = shared[part - 1];
+    const auto split = previous.begin() + its_bin;
+    ends[part].left = ends[part - 1].left + std::accumulate(previous.begin(), split, 0u);
+    ends[part].here = ends[part - 1].here + *split;
+    ends[part].right = ends[part - 1].right + std::accumulate(split + 1, previous.end(), 0u);
   }
-  settle(to.subspan(before, counts[static_cast<std::size_t>(split_bin)]), middle - before);
+  share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    auto [left, here, right] = ends.empty() ? first : ends[part];
+    const auto bin_of = bins_of;
+    const std::int32_t split_bin = its_bin;
+    for (const Center& center : from.subspan(begin, end - begin)) {
+      const std::int32_t bin = bin_of(center);
+      if (bin == split_bin) [[unlikely]] {
+        *here++ = center;
+        continue;
+      }
+      const bool is_left = bin < split_bin;
+      *(is_left ? left : right) = center;
+      left += is_left;
+      right += !is_left;
+    }
+  });
+  settle(to.subspan(before, in_split_bin), middle - before);
 }
 
 }  // namespace keepout

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "../tree_parts/block_memory.h"
+#include "../tree_parts/leaf_fill.h"
 #include "../tree_parts/triangle_blocks.h"
 #include "keepout/index/wide_bvh.h"
 
@@ -52,8 +53,6 @@ template <class Block>
   for (std::size_t at = 0; at < sizeof block; at += line) __builtin_prefetch(bytes + at);
 }
 
-class LeafFill;
-
 /// The nodes and leaves of a WideBvh.
 class WideBvh::Tree final : public TriangleBlocks {
  public:
@@ -65,6 +64,9 @@ class WideBvh::Tree final : public TriangleBlocks {
   void divide(unsigned threads);
   /// Distributes the triangles in a given order. Precondition: it names each triangle once.
   void divide(std::span<const TriangleId> order) noexcept;
+  /// Collects the vertices of each leaf, so that each later fit() is faster. Takes a fifth more
+  /// memory.
+  void collect_vertices(unsigned threads);
   /// Writes the corners to the leaves, and encloses them in boxes and cylinders.
   void fit(const LeafFill& fill, unsigned threads);
 
@@ -85,13 +87,15 @@ class WideBvh::Tree final : public TriangleBlocks {
   std::size_t memory() const noexcept;
 
  private:
-  void enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept;
+  void fit_leaves(const LeafFill& fill, std::span<const LeafBlock> leaves, std::size_t self,
+                  std::size_t first, std::size_t last) noexcept;
   void enclose_nodes(std::size_t self, std::size_t first, std::size_t last) noexcept;
 
   const WideBvh& index_;
   BlockVector<NodeBlock> nodes_;          // level by level, the root first
   BlockVector<LeafBlock> leaves_;         // neighbors near each other
   BlockVector<CylinderBlock> cylinders_;  // in the order of nodes_
+  BlockVector<LeafVertices> vertices_;    // of the leaves, after collect_vertices()
   LeafFrame frame_;
 };
 

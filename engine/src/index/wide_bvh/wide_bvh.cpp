@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "../../parallel.h"
-#include "../tree_parts/leaf_fill.h"
 #include "keepout/error.h"
 #include "traversal/tree_traversal.h"
 #include "tree.h"
@@ -82,6 +81,7 @@ void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
   threads = thread_count(threads);
   require_same_triangles(moved.get(), threads);
   const LeafFill fill(*moved, threads);
+  tree_->collect_vertices(threads);
   set_mesh(std::move(moved));
   tree_->fit(fill, threads);
 }

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include "../tree.h"
 
 namespace keepout {
 
-using SixteenLeaves = std::array<const LeafBlock*, NodeBlock::lanes>;
+/// The leaves of a node, and their vertices. If there are fewer, the last ones are repeated.
+struct SixteenLeaves {
+  LeafBlock leaf[NodeBlock::lanes];
+  LeafPoints points[NodeBlock::lanes];
+};
 
 /// Computes boxes and cylinders around the floats of leaves, in all lanes. The axis of a cylinder
 /// is the mean normal of the triangles.

@@ -62,24 +62,40 @@ HWY_INLINE Vector of_leaves(FloatTag d, const VectorRows& rows, std::size_t firs
           of_leaves(d, rows.z, first, operation)};
 }
 
+/// Calls visit(points) for all vertices of the leaf, in the lanes of registers.
+template <class Visit>
+HWY_INLINE void for_each_vertex(FloatTag d, const LeafBlock& leaf, const LeafPoints& points,
+                                const Visit& visit) {
+  if (points.is_known) {
+    for (std::size_t lane = 0; lane < LeafVertices::most; lane += width) {
+      visit(load(d, points.position, lane));
+    }
+    return;
+  }
+  for (const auto& corner : leaf.corner) {
+    for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += width) {
+      visit(load(d, corner, lane));
+    }
+  }
+}
+
 /// Computes the sum of the triangles' normals, each twice as long as the area and on the side given
 /// by the winding. Also computes the leaf's box.
-HWY_INLINE void look_at(FloatTag d, const LeafBlock& leaf, std::size_t row, VectorRows& normals,
-                        VectorRows& lows, VectorRows& highs) {
+HWY_INLINE void look_at(FloatTag d, const LeafBlock& leaf, const LeafPoints& points,
+                        std::size_t row, VectorRows& normals, VectorRows& lows, VectorRows& highs) {
   const hn::RebindToUnsigned<FloatTag> unsigned_lanes;
   const V zero = hn::Zero(d);
   Vector normal{zero, zero, zero};
   Vector low = load(d, leaf.corner[0], 0);
   Vector high = low;
+  for_each_vertex(d, leaf, points, [&](const Vector& at) HWY_ATTR {
+    low = min(low, at);
+    high = max(high, at);
+  });
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += width) {
     const Vector a = load(d, leaf.corner[0], lane);
     const Vector b = load(d, leaf.corner[1], lane);
     const Vector c = load(d, leaf.corner[2], lane);
-    // The first corner has the least x, the last one the greatest.
-    low = {hn::Min(low.x, a.x), hn::Min(low.y, hn::Min(a.y, hn::Min(b.y, c.y))),
-           hn::Min(low.z, hn::Min(a.z, hn::Min(b.z, c.z)))};
-    high = {hn::Max(high.x, c.x), hn::Max(high.y, hn::Max(a.y, hn::Max(b.y, c.y))),
-            hn::Max(high.z, hn::Max(a.z, hn::Max(b.z, c.z)))};
     const Vector ab = b - a;
     const Vector ac = c - a;
     // The bit `odd` is at the place of a float's sign.
@@ -117,8 +133,9 @@ HWY_INLINE void set_axes(FloatTag d, const VectorRows& normals, const NodeBlock&
 }
 
 /// Measures a leaf from the middle of its box, along the cylinder's axis and across it.
-HWY_INLINE void measure(FloatTag d, const LeafBlock& leaf, std::size_t row,
-                        const CylinderBlock& cylinders, Rows& bottoms, Rows& tops, Rows& radii2) {
+HWY_INLINE void measure(FloatTag d, const LeafBlock& leaf, const LeafPoints& points,
+                        std::size_t row, const CylinderBlock& cylinders, Rows& bottoms, Rows& tops,
+                        Rows& radii2) {
   const auto vector_of = [&](const float(&from)[3][leaf_count]) HWY_ATTR -> Vector {
     return {hn::Set(d, from[0][row]), hn::Set(d, from[1][row]), hn::Set(d, from[2][row])};
   };
@@ -127,16 +144,14 @@ HWY_INLINE void measure(FloatTag d, const LeafBlock& leaf, std::size_t row,
   V bottom = dot(axis, load(d, leaf.corner[0], 0) - middle);
   V top = bottom;
   V radius2 = hn::Zero(d);
-  for (const auto& corner : leaf.corner) {
-    for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += width) {
-      const Vector way = load(d, corner, lane) - middle;
-      const V height = dot(axis, way);
-      const Vector across = way - height * axis;
-      bottom = hn::Min(bottom, height);
-      top = hn::Max(top, height);
-      radius2 = hn::Max(radius2, dot(across, across));
-    }
-  }
+  for_each_vertex(d, leaf, points, [&](const Vector& at) HWY_ATTR {
+    const Vector way = at - middle;
+    const V height = dot(axis, way);
+    const Vector across = way - height * axis;
+    bottom = hn::Min(bottom, height);
+    top = hn::Max(top, height);
+    radius2 = hn::Max(radius2, dot(across, across));
+  });
   hn::Store(bottom, d, bottoms.row[row]);
   hn::Store(top, d, tops.row[row]);
   hn::Store(radius2, d, radii2.row[row]);
@@ -181,16 +196,18 @@ void EncloseLeaves(const SixteenLeaves& leaves, NodeBlock& boxes, CylinderBlock&
   const FloatTag d;
   VectorRows normals, lows, highs;
   for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
-    look_at(d, *leaves[leaf], leaf, normals, lows, highs);
+    look_at(d, leaves.leaf[leaf], leaves.points[leaf], leaf, normals, lows, highs);
   }
+  // -0 becomes 0, because which of them is the least depends on the order of the vertices.
+  const Vector zero{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (std::size_t first = 0; first < leaf_count; first += width) {
-    store(d, of_leaves(d, lows, first, least_of), first, boxes.low);
-    store(d, of_leaves(d, highs, first, most_of), first, boxes.high);
+    store(d, of_leaves(d, lows, first, least_of) + zero, first, boxes.low);
+    store(d, of_leaves(d, highs, first, most_of) + zero, first, boxes.high);
   }
   set_axes(d, normals, boxes, cylinders);
   Rows bottoms, tops, radii2;
   for (std::size_t leaf = 0; leaf < leaf_count; ++leaf) {
-    measure(d, *leaves[leaf], leaf, cylinders, bottoms, tops, radii2);
+    measure(d, leaves.leaf[leaf], leaves.points[leaf], leaf, cylinders, bottoms, tops, radii2);
   }
   set_sizes(d, bottoms, tops, radii2, boxes, cylinders);
 }

@@ -5,10 +5,10 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "../../../parallel.h"
-#include "../../tree_parts/leaf_fill.h"
 #include "../../tree_parts/median_split.h"
 #include "enclosure.h"
 #include "keepout/error.h"
@@ -57,32 +57,54 @@ class Division {
     }
     const std::size_t parts = rounded_up_quotient(centers.size(), capacity);
     const std::size_t middle = parts / 2 * capacity;
-    split(centers, spare, middle);
+    constexpr std::size_t worth_a_thread = 4096;
+    threads =
+        static_cast<unsigned>(std::min<std::size_t>(threads, centers.size() / worth_a_thread + 1));
+    split(centers, spare, middle, threads);
+    // Each thread gets about as many triangles as any other.
+    const std::size_t for_front = (threads * middle + centers.size() / 2) / centers.size();
+    const auto in_front =
+        static_cast<unsigned>(std::clamp<std::size_t>(for_front, 1, std::max(threads, 2u) - 1));
     const auto front = [&] {
-      divide(spare.first(middle), centers.first(middle), begin, capacity, threads / 2);
+      divide(spare.first(middle), centers.first(middle), begin, capacity, in_front);
     };
     const auto back = [&] {
       divide(spare.subspan(middle), centers.subspan(middle), begin + middle, capacity,
-             threads - threads / 2);
+             std::max(threads, 2u) - in_front);
     };
-    constexpr std::size_t worth_a_thread = 4096;
-    run_both(centers.size() >= worth_a_thread ? threads : 1, front, back);
+    run_both(threads, front, back);
   }
 
-  static void split(Centers from, Centers to, std::size_t middle) {
-    std::array<float, 3> low = from.front().position;
-    std::array<float, 3> high = low;
-    for (const Center& center : from) {
+  static void split(Centers from, Centers to, std::size_t middle, unsigned threads) {
+    using Coordinates = std::array<float, 3>;
+    Coordinates low = from.front().position;
+    Coordinates high = low;
+    std::vector<std::array<Coordinates, 2>> shared(threads > 1 ? threads : 0, {low, high});
+    share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
+      Coordinates least = from.front().position;
+      Coordinates most = least;
+      for (const Center& center : from.subspan(begin, end - begin)) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          least[axis] = std::min(least[axis], center.position[axis]);
+          most[axis] = std::max(most[axis], center.position[axis]);
+        }
+      }
+      (shared.empty() ? low : shared[part][0]) = least;
+      (shared.empty() ? high : shared[part][1]) = most;
+    });
+    for (const auto& [least, most] : shared) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], center.position[axis]);
-        high[axis] = std::max(high[axis], center.position[axis]);
+        low[axis] = std::min(low[axis], least[axis]);
+        high[axis] = std::max(high[axis], most[axis]);
       }
     }
     std::size_t axis = 0;
     for (const std::size_t other : {1u, 2u}) {
-      if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
+      if (high[other] - low[other] > high[axis] - low[axis]) {
+        axis = other;
+      }
     }
-    split_at(from, to, middle, low[axis], high[axis],
+    split_at(from, to, middle, low[axis], high[axis], threads,
              [axis](const Center& center) { return center.position[axis]; });
   }
 
@@ -148,6 +170,16 @@ void WideBvh::Tree::divide(std::span<const TriangleId> order) noexcept {
   }
 }
 
+void WideBvh::Tree::collect_vertices(unsigned threads) {
+  if (!vertices_.empty()) return;
+  BlockVector<LeafVertices> vertices(leaves_.size());
+  const Corners* triangles = mesh().triangles().data();
+  share_ranges(leaves_.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) vertices[i].collect(triangles, leaves_[i]);
+  });
+  vertices_ = std::move(vertices);
+}
+
 void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
   frame_ = fill.frame();
 
@@ -162,8 +194,7 @@ void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
     for (std::size_t i = from; i < to; ++i) {
       const std::size_t first = i * NodeBlock::lanes;
       const std::size_t last = std::min(first + NodeBlock::lanes, shared.size());
-      fill.fill(shared, first, last);
-      enclose_leaves(begin + i, first, last);
+      fit_leaves(fill, shared, begin + i, first, last);
     }
   });
   while (size > 1) {
@@ -181,18 +212,31 @@ void WideBvh::Tree::fit(const LeafFill& fill, unsigned threads) {
   }
 }
 
-/// Makes a node of the leaves first .. last - 1.
-void WideBvh::Tree::enclose_leaves(std::size_t self, std::size_t first, std::size_t last) noexcept {
-  NodeBlock& node = nodes_[self];
-  SixteenLeaves leaves;
-  for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
-    const std::size_t leaf = std::min(first + lane, last - 1);
-    leaves[lane] = &leaves_[leaf];
-    node.child[lane] = static_cast<std::uint32_t>(leaf) | NodeBlock::leaf_bit;
+/// Makes a node of the leaves first .. last - 1. They are made in a copy, so that all that is made
+/// of them reads it from the nearest cache.
+void WideBvh::Tree::fit_leaves(const LeafFill& fill, std::span<const LeafBlock> leaves,
+                               std::size_t self, std::size_t first, std::size_t last) noexcept {
+  SixteenLeaves made;
+  if (vertices_.empty()) {
+    fill.fill(leaves, first, last, made.leaf);
+  } else {
+    fill.fill(leaves, first, last, made.leaf, vertices_.data(), made.points);
   }
-  enclose(leaves, node, cylinders_[self]);
+  NodeBlock& node = nodes_[self];
+  for (std::size_t lane = 0; lane < NodeBlock::lanes; ++lane) {
+    if (first + lane >= last) {
+      made.leaf[lane] = made.leaf[lane - 1];
+      made.points[lane] = made.points[lane - 1];
+    }
+    node.child[lane] =
+        static_cast<std::uint32_t>(std::min(first + lane, last - 1)) | NodeBlock::leaf_bit;
+  }
+  enclose(made, node, cylinders_[self]);
   if (!frame_.is_exact()) widen(node);
   close_lanes(node, cylinders_[self], last - first);
+  constexpr std::size_t most_in_cache = std::size_t{1} << 24;  // bytes
+  const bool bypass = leaves_.size() * sizeof(LeafBlock) > most_in_cache;
+  copy_leaves(made.leaf, last - first, bypass, &leaves_[first]);
 }
 
 /// Makes a node of the nodes first .. last - 1.
@@ -206,7 +250,7 @@ void WideBvh::Tree::enclose_nodes(std::size_t self, std::size_t first, std::size
 
 std::size_t WideBvh::Tree::memory() const noexcept {
   return nodes_.capacity() * sizeof(NodeBlock) + cylinders_.capacity() * sizeof(CylinderBlock) +
-         leaves_.capacity() * sizeof(LeafBlock);
+         leaves_.capacity() * sizeof(LeafBlock) + vertices_.capacity() * sizeof(LeafVertices);
 }
 
 }  // namespace keepout
