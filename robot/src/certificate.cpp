@@ -9,12 +9,6 @@
 #include "keepout/activation/tolerances.h"
 
 namespace keepout {
-namespace {
-
-constexpr std::size_t work_of_separation = 1;  // in work units
-
-}  // namespace
-
 Certificate::Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion,
                          NearSet& near, double demand, double tolerance, Budget& budget) noexcept
     : body_(body),
@@ -36,9 +30,10 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
   Obstacle first;
   latest_ = PointMotion::last_knot;
   const double out_of_reach = radius_ + demand_ + displacement;
+  budget_.spend((triangles.size() / 16) * work::listed_again);
   for (NearTriangle& triangle : triangles) {
     if (triangle.is_measured && triangle.at_start.distance >= out_of_reach) continue;
-    budget_.spend(1);
+    budget_.spend(work::judged);
     if (budget_.is_spent()) return {0, nullptr};
     if (is_covered(triangle)) continue;
     near_.measure(triangle, budget_);
@@ -67,7 +62,7 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
 }
 
 Gap Certificate::gap_at(int knot, const Triangle& corners) noexcept {
-  budget_.spend(work_of_gap(points_.size()));
+  budget_.spend(work::gap(points_.size()));
   CorePositions core;
   return gap(motion_.core_at(body_, knot, core), corners);
 }
@@ -92,7 +87,7 @@ double Certificate::least_height(const Vec3& normal, int lo, int hi) noexcept {
 
 bool Certificate::separates(const Vec3& normal, const NearTriangle& triangle, int lo,
                             int hi) noexcept {
-  budget_.spend(work_of_separation);
+  budget_.spend(work::separation);
   const double least = least_height(normal, lo, hi);
   const double behind = support(*triangle.corners, normal);
   if (!(least - behind >= radius_ + due_plus_rounding_ - plane_rounding * tolerance_)) return false;

@@ -64,7 +64,8 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
   near.index().collect_near({from_, to_, radius + beyond_}, candidates);
-  budget.spend(16 + candidates.size());
+  budget.spend(work::search);
+  budget.spend(candidates.size() * work::candidate);
   // Does not call Budget::mark_overflow(), because the caller may search again within a smaller
   // radius.
   if (candidates.overflowed() || budget.is_spent()) return false;
@@ -119,7 +120,7 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
   if (distance > listed_below_ && !ids_.empty()) {
     const auto old_count = static_cast<std::ptrdiff_t>(listed_.size());
     const NearScreen screen = screen_within(distance);
-    budget.spend(1 + ids_.size() / (4 * NearBlock::lanes));
+    budget.spend((1 + ids_.size() / NearBlock::lanes) * work::screened);
     for (std::size_t first = 0; first < ids_.size(); first += NearBlock::lanes) {
       std::uint32_t lanes = may_be_near(blocks_[first / NearBlock::lanes], screen);
       for (; lanes != 0; lanes &= lanes - 1) {
@@ -134,7 +135,7 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
             {.id = ids_[i], .at_least = at_least, .corners = &corners_[i], .normal = &normals_[i]});
       }
     }
-    budget.spend(listed_.size() - static_cast<std::size_t>(old_count));
+    budget.spend((listed_.size() - static_cast<std::size_t>(old_count)) * work::listed);
     // All triangles listed before are nearer than these.
     std::sort(listed_.begin() + old_count, listed_.end(),
               [](const NearTriangle& x, const NearTriangle& y) {
@@ -150,7 +151,7 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
 
 void NearSet::measure(NearTriangle& triangle, Budget& budget) noexcept {
   if (triangle.is_measured) return;
-  budget.spend(work_of_gap(now_.size()));
+  budget.spend(work::gap(now_.size()));
   triangle.at_start = gap(now_, *triangle.corners);
   *triangle.normal = triangle.at_start.normal;
   triangle.is_measured = true;

@@ -115,10 +115,10 @@ double RowMaker::height_at_end(const Row& row) noexcept {
 }
 
 Gap RowMaker::gap_at(std::size_t pair, const Triangle& corners, int knot) noexcept {
-  constexpr std::size_t work_of_turning = 5;  // in work units
   CorePositions core;
   const std::span<const Vec3> points = pairs_.motion(pair).core_at(pairs_.body(pair), knot, core);
-  memory_.budget.spend(work_of_gap(points.size()) + work_of_turning);
+  memory_.budget.spend(work::gap(points.size()));
+  memory_.budget.spend(work::row);
   return gap(points, corners);
 }
 

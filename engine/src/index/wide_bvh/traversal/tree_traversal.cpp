@@ -10,13 +10,6 @@ namespace {
 constexpr std::size_t most_waiting = 4096;
 constexpr std::size_t most_deferred = 1024;  // below suspects_bit, like the numbers of nodes
 
-// In work units, in proportion to their times: see Budget.
-constexpr std::size_t work_of_boxes = 1;
-constexpr std::size_t work_of_cylinders = 2;
-constexpr std::size_t work_of_leaf = 4;
-constexpr std::size_t work_of_suspects = 1;
-constexpr std::size_t work_of_sharpening = 4;
-
 /// Returns true if more than `count` bits are set. Some of the targets have no instruction to count
 /// bits.
 bool are_more(std::uint32_t bits, int count) noexcept {
@@ -145,11 +138,11 @@ void TreeTraversal::descend(std::uint32_t box) noexcept {
 template <class Cylinders>
 void TreeTraversal::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   BoxEntries entries;
-  budget_.spend(work_of_boxes);
+  budget_.spend(work::boxes);
   enter_boxes(node, float_tip_, motion_.data(), levels_, entries);
   // Cylinders cost less than opening more boxes than this.
   if (are_more(entries.reached, is_long_ ? 1 : 4)) {
-    budget_.spend(work_of_cylinders);
+    budget_.spend(work::cylinders);
     enter_cylinders(cylinders(), float_tip_, motion_.data(), levels_, entries);
   }
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
@@ -176,7 +169,7 @@ void TreeTraversal::inspect(std::uint32_t number) noexcept {
   SeenLeaf& seen = filled_leaf(number);
   Deferred& found = deferred_[deferred_size_];
   found.leaf_number = number;
-  budget_.spend(work_of_suspects);
+  budget_.spend(work::suspects);
   find_suspects(seen.filter, motion_.data(), found.suspects);
   std::uint32_t& mask = found.suspects.mask;
   mask &= seen.used;
@@ -227,7 +220,7 @@ void TreeTraversal::resume(std::uint32_t number) noexcept {
 void TreeTraversal::sharpen(Deferred& deferred) noexcept {
   const LeafBlock& block = tree_.leaves()[deferred.leaf_number];
   const auto until = static_cast<float>(latest_ * (1.0 + 1e-6));  // rounds to no earlier
-  budget_.spend(work_of_sharpening);
+  budget_.spend(work::sharpening);
   // Only long motions start at most_sharpenings.
   static_assert(most_sharpenings > 1);
   const bool is_first_of_long_motion = deferred.sharpenings_left == most_sharpenings;
@@ -271,7 +264,7 @@ Triangle TreeTraversal::corners(std::uint32_t number, std::size_t lane) const no
 TreeTraversal::SeenLeaf& TreeTraversal::filled_leaf(std::uint32_t number) noexcept {
   SeenLeaf& seen = leaves_[number % most_leaves];
   if (seen.number == number && seen.filled_in == generation_) return seen;
-  budget_.spend(work_of_leaf);
+  budget_.spend(work::leaf);
   const LeafBlock& block = tree_.leaves()[number];
   seen.number = number;
   seen.filled_in = generation_;
