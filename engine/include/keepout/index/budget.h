@@ -43,9 +43,9 @@ class Budget {
   void spend_solve(std::size_t variables, std::size_t rows, int iterations) noexcept {
     const auto count = static_cast<std::size_t>(iterations > 0 ? iterations : 0);
     spend(work::solve);
-    spend((variables * variables * variables / 512) * work::factor);
+    spend((variables * variables * variables / 64) * work::factor);
     spend(count * work::iteration);
-    spend((count + 1) * (variables * rows / 48) * work::solved_rows);
+    spend((count + 1) * (variables * rows / 16) * work::solved_rows);
   }
 
   /// Spends all units: no further examination is allowed.

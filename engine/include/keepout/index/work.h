@@ -37,9 +37,9 @@ inline constexpr std::size_t polytope_test = 2;    // a triangle against a plane
 
 // Quadratic programs: see Budget::spend_solve.
 inline constexpr std::size_t solve = 4;
-inline constexpr std::size_t factor = 1;       // 512 operations
+inline constexpr std::size_t factor = 1;       // 64 operations
 inline constexpr std::size_t iteration = 4;    //
-inline constexpr std::size_t solved_rows = 1;  // 48 numbers of the rows, in an iteration
+inline constexpr std::size_t solved_rows = 1;  // 16 numbers of the rows, in an iteration
 
 // The step of an instrument.
 inline constexpr std::size_t cycle = 20;        // what each cycle does once
