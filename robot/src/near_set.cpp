@@ -65,10 +65,12 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
   candidates.clear();
   near.index().collect_near({from_, to_, radius + beyond_}, candidates);
   budget.spend(work::search);
-  budget.spend(candidates.size() * work::candidate);
+  budget.spend((candidates.size() / 8) * work::collected);
   // Does not call Budget::mark_overflow(), because the caller may search again within a smaller
   // radius.
-  if (candidates.overflowed() || budget.is_spent()) return false;
+  if (candidates.overflowed()) return false;
+  budget.spend(candidates.size() * work::candidate);
+  if (budget.is_spent()) return false;
   const Mesh& mesh = near.mesh();
   // All triangles that matter touch the ball of this radius about the core.
   size_ = (to_ - from_).norm() + 2.0 * (radius + beyond_) + mesh.longest_edge();

@@ -57,7 +57,7 @@ struct Campaign {
   std::vector<std::string> scenarios = {};  // of scenarios(); empty: the usual ones
   std::uint64_t cycles = 200'000;
   std::vector<double> speeds{1.0, 5.0};  // multiples of the operator's motion at speed 1
-  double rate = 0.0;  // of the cycles [Hz]; 0: see options_of
+  double rate = 0.0;                     // of the cycles [Hz]; 0: see options_of
   CertifiedMotion motion = CertifiedMotion::actual;
   double margin = 0.2;         // [mm]
   std::uint64_t searched = 0;  // one of this many blocked cycles is searched for a better motion;

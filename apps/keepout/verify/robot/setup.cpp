@@ -211,10 +211,9 @@ std::optional<RobotSetup> draw_setup(
   if (scenario.attacked != Attacked::instrument) setup.options.damping = 0.0;
   // Slow motions start nearer, so that they come into contact.
   constexpr double cycles_to_contact = 500.0;
-  const double ahead =
-      std::min(is_of_slides ? 4.0 : 20.0,
-               setup.options.margin + setup.robot.judged().bodies.back().radius +
-                   cycles_to_contact * speed * fastest_way);
+  const double ahead = std::min(is_of_slides ? 4.0 : 20.0,
+                                setup.options.margin + setup.robot.judged().bodies.back().radius +
+                                    cycles_to_contact * speed * fastest_way);
   const auto start = find_start(*setup.meshes[0].scene, setup.robot, scenario.begin,
                                 setup.options.margin, random, ahead);
   if (!start) return std::nullopt;

@@ -45,7 +45,7 @@ class Budget {
     spend(work::solve);
     spend((variables * variables * variables / 64) * work::factor);
     spend(count * work::iteration);
-    spend((count + 1) * (variables * rows / 16) * work::solved_rows);
+    spend((count + 1) * (variables * rows / 48) * work::solved_rows);
   }
 
   /// Spends all units: no further examination is allowed.
