@@ -3,6 +3,7 @@
 // time of any call. Each call is tried three times; the shortest counts, to exclude other load on
 // the machine. Prints the table of docs/safety.md.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -11,14 +12,19 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/fixtures/random.h"
+#include "keepout/fixtures/robots.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/index/wide_bvh.h"
+#include "keepout/robot/instrument_constraint.h"
 #include "keepout/simd_target.h"
+#include "keepout/solvers/active_set.h"
 
 namespace keepout {
 namespace {
@@ -74,14 +80,15 @@ struct Scene {
   bool with_guides = false;
 };
 
-/// Returns sixteen balls around a place; some do not contain it.
-std::vector<Guide> balls_about(const Vec3& place) {
+/// Returns sixteen balls around a place, for a point of a chain or a tip; some do not contain it.
+std::vector<Guide> balls_about(const Vec3& place, const std::optional<LinkPoint>& point = {}) {
   std::vector<Guide> guides;
   for (std::size_t g = 0; g < Guide::most; ++g) {
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(g) / Guide::most;
     const Vec3 beside(2.0 * std::cos(angle), 2.0 * std::sin(angle), 0.3);
     const double radius = g % 3 == 0 ? 2.04 : 2.03;
-    guides.push_back(Guide::point("ball", Region::ball(place + beside, radius)));
+    const Region ball = Region::ball(place + beside, radius);
+    guides.push_back(point ? Guide::point("ball", *point, ball) : Guide::point("ball", ball));
   }
   return guides;
 }
@@ -149,8 +156,9 @@ struct Longest {
 
 using Call = std::function<std::string_view()>;
 
-/// Takes the shortest of three tries into account.
-void measure(MotionConstraint& guard, const Call& call, Longest& longest) {
+/// Takes the shortest of three tries into account. Guard: MotionConstraint or InstrumentConstraint.
+template <class Guard>
+void measure(Guard& guard, const Call& call, Longest& longest) {
   double least = 1e300;
   for (int attempt = 0; attempt < 3; ++attempt) {
     guard.forget();
@@ -164,9 +172,20 @@ void measure(MotionConstraint& guard, const Call& call, Longest& longest) {
   longest.us = std::max(longest.us, least);
 }
 
+void add(const Longest& one, Longest& all) {
+  all.work_units = std::max(all.work_units, one.work_units);
+  all.us = std::max(all.us, one.us);
+  for (const auto& [status, count] : one.statuses) all.statuses[status] += count;
+}
+
 void print(const std::string& name, const Longest& steps, const Longest& polytopes) {
-  std::printf("| %s | %zu | %.0f | %zu | %.0f |", name.c_str(), steps.work_units, steps.us,
-              polytopes.work_units, polytopes.us);
+  const auto print_one = [](const Longest& one) {
+    if (one.statuses.empty()) return std::printf(" - | - |");
+    return std::printf(" %zu | %.0f |", one.work_units, one.us);
+  };
+  std::printf("| %s |", name.c_str());
+  print_one(steps);
+  print_one(polytopes);
   for (const auto& [status, count] : steps.statuses) std::printf(" %s %d", status.c_str(), count);
   std::printf(" |\n");
   std::fflush(stdout);
@@ -196,11 +215,156 @@ void measure(const Scene& scene, Longest& of_steps, Longest& of_polytopes) {
         guard, [&] { return name(guard.free_polytope(tip, desired.norm()).status); }, polytopes);
   }
   print(scene.name, steps, polytopes);
-  for (const auto& [one, all] : {std::pair(&steps, &of_steps), {&polytopes, &of_polytopes}}) {
-    all->work_units = std::max(all->work_units, one->work_units);
-    all->us = std::max(all->us, one->us);
-    for (const auto& [status, count] : one->statuses) all->statuses[status] += count;
+  add(steps, of_steps);
+  add(polytopes, of_polytopes);
+}
+
+/// A psm among meshes, which start where its joints are at `straight`.
+struct InstrumentScene {
+  std::string name;
+  std::vector<Surface> surfaces;
+  InstrumentOptions options = {};
+  double longest = 5.0;  // of the desired displacements [length]
+  double speed = 0.0;    // of the meshes [length/s]
+  bool with_guides = false;
+};
+
+constexpr std::array<double, 6> straight{0.1, -0.1, 120.0, 0.2, 0.0, 0.0};
+
+/// Returns a triangulated tube around a segment, rough by `rough`, open at both ends. [length]
+void add_tube(const Vec3& from, const Vec3& to, double radius, double edge, double rough,
+              Random& random, Surface& surface) {
+  const Vec3 along = (to - from).normalized();
+  const Vec3 u = along.unitOrthogonal(), v = along.cross(u);
+  const auto around = static_cast<VertexId>(std::ceil(2.0 * std::numbers::pi * radius / edge));
+  const auto rings = static_cast<VertexId>(std::ceil((to - from).norm() / edge)) + 1;
+  const auto first = static_cast<VertexId>(surface.vertices.size());
+  for (VertexId i = 0; i < rings; ++i) {
+    for (VertexId j = 0; j < around; ++j) {
+      const double angle = 2.0 * std::numbers::pi * j / around;
+      const double r = radius + rough * random.uniform();
+      surface.vertices.push_back(from + edge * i * along +
+                                 r * (std::cos(angle) * u + std::sin(angle) * v));
+    }
   }
+  for (VertexId i = 0; i + 1 < rings; ++i) {
+    for (VertexId j = 0; j < around; ++j) {
+      const VertexId a = first + i * around + j, b = first + i * around + (j + 1) % around;
+      surface.triangles.push_back({a, b, a + around});
+      surface.triangles.push_back({b, b + around, a + around});
+    }
+  }
+}
+
+/// Returns tubes around the bodies of the psm, `gap` from their surfaces, along `length` of the
+/// shaft. [length]
+Surface sheath(double edge, double gap, double rough, double length) {
+  const Instrument instrument = psm();
+  ChainState state;
+  instrument.chain().forward_kinematics(straight, state);
+  Random random(3);
+  Surface surface;
+  for (std::size_t b = 0; b < instrument.bodies().size(); ++b) {
+    const Body& body = instrument.bodies()[b];
+    const Vec3 to = state.at(body.points.back().link, body.points.back().position);
+    const Vec3 from = state.at(body.points.front().link, body.points.front().position);
+    // Starts beyond the end of the thicker body before it.
+    const double part = b == 0 ? length : (to - from).norm() - instrument.bodies()[b - 1].radius;
+    if (!(part > 0.0)) continue;
+    add_tube(to - part * (to - from).normalized(), to, body.radius + gap, edge, rough, random,
+             surface);
+  }
+  return surface;
+}
+
+/// Returns a surface moved so that its origin is `ahead` of the tip of the psm. [length]
+Surface ahead_of_tip(Surface surface, double ahead) {
+  ChainState state;
+  const Instrument instrument = psm();
+  instrument.chain().forward_kinematics(straight, state);
+  const Body& jaw = instrument.bodies().back();
+  const Vec3 tip = state.at(jaw.points.back().link, jaw.points.back().position);
+  const Vec3 back = (state.at(jaw.points.front().link, jaw.points.front().position) - tip);
+  const Mat3 turn = rotation_between(Vec3::UnitZ(), back).toRotationMatrix();
+  for (Vec3& vertex : surface.vertices) {
+    vertex = tip - ahead * back.normalized() + turn * vertex;
+  }
+  return surface;
+}
+
+std::vector<InstrumentScene> instrument_scenes() {
+  std::vector<InstrumentScene> all;
+  const auto add = [&](std::string name, Surface surface, const InstrumentOptions& options = {}) {
+    all.push_back({"psm, " + std::move(name), {std::move(surface)}, options});
+  };
+  constexpr double gap = 0.25, rough = 0.05;
+  add("sheath of edges of 2 mm", sheath(2.0, gap, rough, 60.0));
+  add("of 0.7 mm", sheath(0.7, gap, rough, 60.0));
+  add("of 0.35 mm", sheath(0.35, gap, rough, 60.0));
+  add("of 0.35 mm, short", sheath(0.35, gap, rough, 20.0));
+  add("of 0.2 mm, short", sheath(0.2, gap, rough, 10.0));
+  add("of 0.1 mm, short", sheath(0.1, gap, rough, 4.0));
+  add("of 0.7 mm, too close", sheath(0.7, 0.1, rough, 60.0));
+  add("of 0.35 mm, too close", sheath(0.35, 0.1, rough, 20.0));
+  add("of 0.7 mm, margin 2 mm", sheath(0.7, 2.05, rough, 60.0), {.margin = 2.0});
+  add("of 0.7 mm, slowed down within 5 mm", sheath(0.7, gap, rough, 60.0), {.slowing_within = 5.0});
+  add("of 0.7 mm, 100 refinements", sheath(0.7, gap, rough, 60.0), {.refinements = 100});
+  all.push_back({"psm, of 0.7 mm, motions of 0.5 mm", {sheath(0.7, gap, rough, 60.0)}, {}, 0.5});
+  all.push_back({"psm, of 0.7 mm, 16 guides", {sheath(0.7, gap, rough, 60.0)}});
+  all.back().with_guides = true;
+  for (const double edge : {2.0, 1.0, 0.5}) {
+    all.push_back({"psm, 8 sheaths of " + std::to_string(edge).substr(0, 3) + " mm, moving",
+                   std::vector<Surface>(8, sheath(edge, 0.5, rough, 30.0)),
+                   {},
+                   0.5,
+                   100.0});
+  }
+  for (const VertexId faces : {4'000u, 20'000u}) {
+    add("tip of a cone, " + std::to_string(faces) + " faces",
+        ahead_of_tip(make_cone(faces, 1.0), 1.25));
+  }
+  add("200,000 triangles crossing each other", ahead_of_tip(soup(200'000, 3.0), 0.0));
+  add("2 M small ones", ahead_of_tip(soup(2'000'000, 0.02), 0.0));
+  add("10,000 times the same triangle", ahead_of_tip(copies(10'000), 1.25));
+  return all;
+}
+
+void measure(const InstrumentScene& scene, Longest& of_steps) {
+  InstrumentOptions options = scene.options;
+  options.period = 0.1;
+  InstrumentConstraint guard(psm(), std::make_unique<ActiveSet>(), options);
+  for (const Surface& surface : scene.surfaces) {
+    const auto mesh = std::make_shared<const Mesh>(surface);
+    guard.add_mesh(mesh, std::make_shared<const WideBvh>(mesh));
+  }
+  Random random(1);
+  Longest steps;
+  for (int trial = 0; trial < 150; ++trial) {
+    std::array<double, 6> q = straight;
+    for (double& position : q) position += std::pow(10.0, random.uniform(-8.0, -2.0));
+    if (scene.with_guides) {
+      ChainState state;
+      guard.instrument().chain().forward_kinematics(q, state);
+      const LinkPoint tip = guard.instrument().bodies().back().points.back();
+      guard.set_guides(balls_about(state.at(tip.link, tip.position), tip));
+    }
+    const double length = scene.longest * random.uniform();
+    const Twist desired{.linear = length * random.direction(),
+                        .angular = 0.04 * length * random.direction()};
+    Twist velocity{.linear = scene.speed * random.direction(),
+                   .angular = 0.01 * scene.speed * random.direction()};
+    measure(
+        guard,
+        [&] {
+          for (std::size_t m = 0; scene.speed > 0.0 && m < guard.mesh_count(); ++m) {
+            guard.place(m, {}, (m % 2 == 0) == (trial % 2 == 0) ? velocity : Twist{});
+          }
+          return name(guard.step(q, desired).status);
+        },
+        steps);
+  }
+  print(scene.name, steps, {});
+  add(steps, of_steps);
 }
 
 }  // namespace
@@ -215,6 +379,7 @@ int main() try {
       "|---|--:|--:|--:|--:|---|\n");
   Longest steps, polytopes;
   for (const Scene& scene : scenes()) measure(scene, steps, polytopes);
+  for (const InstrumentScene& scene : instrument_scenes()) measure(scene, steps);
   print("**all**", steps, polytopes);
   return 0;
 } catch (const std::exception& error) {

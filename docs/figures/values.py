@@ -209,9 +209,22 @@ def verify_robot(record):
         yield "p99", number(first["step_us"]["p99"], 2)
         for p in ("p50", "p99"):
             yield f"{p}_ratio", number(first["step_us"][p] / first["point_us"][p], 2)
+    yield "rates", rate_times(timed)
     yield "by_step_length", step_lengths(record["rows"])
     yield "undershot_mm", number(max(-min(row["least_beyond_mm"] for row in record["rows"]
                                           if row["least_beyond_mm"] is not None), 0.0), 2)
+
+
+def rate_times(rows):
+    """Returns the times in contact and free, by the length of a step and the rate of the cycles."""
+    timed = [row for row in rows if row.get("contact_us")]
+    keys = ("contact_us", "free_us")
+    return table(
+        ["mesh", "step, at most", "cycle rate", "speed, at most", "cycles",
+         *(f"{key.removesuffix('_us')}, µs: p50 / p99 / p99.9 / longest" for key in keys)],
+        [[row["mesh"], f"{500 * row['speed']:g} µm, {20 * row['speed']:g} mrad", f"{number(1.0 / row['cycle_s'])} Hz",
+          f"{number(0.5 * row['speed'] / row['cycle_s'])} mm/s", f"{row['cycles']:,}",
+          *(" / ".join(number(time) for time in row[key].values()) for key in keys)] for row in timed])
 
 
 def step_lengths(rows):

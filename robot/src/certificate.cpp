@@ -10,12 +10,6 @@
 #include "keepout/activation/tolerances.h"
 
 namespace keepout {
-namespace {
-
-constexpr std::size_t work_of_separation = 1;  // in work units
-
-}  // namespace
-
 Certificate::Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion,
                          NearSet& near, double demand, double tolerance, Budget& budget) noexcept
     : body_(body),
@@ -37,9 +31,10 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
   Obstacle first;
   latest_ = PointMotion::last_knot;
   const double out_of_reach = radius_ + demand_ + displacement;
+  budget_.spend((triangles.size() / 16) * work::listed_again);
   for (NearTriangle& triangle : triangles) {
     if (triangle.is_measured && triangle.at_start.distance >= out_of_reach) continue;
-    budget_.spend(1);
+    budget_.spend(work::judged);
     if (budget_.is_spent()) return {0, nullptr};
     if (is_covered(triangle)) continue;
     near_.measure(triangle, budget_);
@@ -68,7 +63,7 @@ Certificate::Obstacle Certificate::judge(std::span<NearTriangle> triangles,
 
 const Gap& Certificate::gap_at(Place& place, const Triangle& corners) noexcept {
   if (place.is_known) return place.gap;
-  budget_.spend(work_of_gap(points_.size()));
+  budget_.spend(work::gap(points_.size()));
   CorePositions core;
   place.gap = gap(motion_.core_at(body_, place.knot, core), corners);
   place.is_known = true;
@@ -95,7 +90,7 @@ double Certificate::least_height(const Vec3& normal, int lo, int hi) noexcept {
 
 bool Certificate::separates(const Vec3& normal, const NearTriangle& triangle, int lo,
                             int hi) noexcept {
-  budget_.spend(work_of_separation);
+  budget_.spend(work::separation);
   const double least = least_height(normal, lo, hi);
   const double behind = support(*triangle.corners, normal);
   if (!(least - behind >= radius_ + due_plus_rounding_ - plane_rounding * tolerance_)) return false;

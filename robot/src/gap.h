@@ -16,9 +16,6 @@ struct Gap {
   Vec3 contact = Vec3::Zero();  // the nearest point of the core; zero if they touch [length]
 };
 
-/// Returns the work units of a gap, for a core with `points` points: see Budget.
-constexpr std::size_t work_of_gap(std::size_t points) noexcept { return points > 2 ? 12 : 3; }
-
 /// Returns the least height of a core over a triangle along a normal. [length]
 double height_along(const Vec3& normal, std::span<const Vec3> core,
                     const Triangle& triangle) noexcept;

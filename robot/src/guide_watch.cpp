@@ -9,12 +9,6 @@
 #include "keepout/activation/tolerances.h"
 
 namespace keepout {
-namespace {
-
-constexpr std::size_t work_of_guide = 2;  // in work units
-
-}  // namespace
-
 void GuideWatch::open() noexcept {
   const ChainState& chain = memory_.trial_motion.chain_at_start();
   for (std::size_t g = 0; g < memory_.guides.size(); ++g) {
@@ -33,7 +27,7 @@ void GuideWatch::open() noexcept {
     is_recovering_ = is_recovering_ || is_recovering(g);
     memory_.guide_states[g] = {.excess = excess};
   }
-  memory_.budget.spend(work_of_guide * memory_.guides.size());
+  memory_.budget.spend(memory_.guides.size() * work::guide);
 }
 
 bool GuideWatch::is_recovering(std::size_t g) const noexcept {
@@ -77,7 +71,7 @@ GuideWatch::Sample GuideWatch::sample(std::size_t g, int knot) noexcept {
 int GuideWatch::proved_until(std::size_t g, int lo, const Sample& at_lo, int hi,
                              const Sample& at_hi) noexcept {
   Budget& budget = memory_.budget;
-  budget.spend(work_of_guide);
+  budget.spend(work::guide);
   if (budget.is_spent()) return lo;
   const Guide& guide = memory_.guides[g].guide;
   const double span = static_cast<double>(hi - lo) / PointMotion::last_knot;

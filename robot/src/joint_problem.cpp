@@ -222,8 +222,7 @@ SolveStatus JointProblem::solve_once(const JointTask& task, std::span<const Row>
                             task.damping};
   solution = {};
   const SolveStatus solved = memory_.solver.solve(problem, solution);
-  memory_.budget.spend(4 + static_cast<std::size_t>(std::max(solution.iterations, 0)) *
-                               (2 + count / 4));
+  memory_.budget.spend_solve(n, count, solution.iterations);
   return solved;
 }
 

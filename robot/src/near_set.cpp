@@ -65,10 +65,13 @@ bool NearSet::gather(Neighborhood& near, std::span<const Vec3> core, double radi
   TriangleBuffer& candidates = near.candidates();
   candidates.clear();
   near.index().collect_near({from_, to_, radius + beyond_}, candidates);
-  budget.spend(16 + candidates.size());
+  budget.spend(work::search);
+  budget.spend((candidates.size() / 8) * work::collected);
   // Does not call Budget::mark_overflow(), because the caller may search again within a smaller
   // radius.
-  if (candidates.overflowed() || budget.is_spent()) return false;
+  if (candidates.overflowed()) return false;
+  budget.spend(candidates.size() * work::candidate);
+  if (budget.is_spent()) return false;
   const Mesh& mesh = near.mesh();
   // All triangles that matter touch the ball of this radius about the core.
   size_ = (to_ - from_).norm() + 2.0 * (radius + beyond_) + mesh.longest_edge();
@@ -120,7 +123,7 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
   if (distance > listed_below_ && !ids_.empty()) {
     found_.clear();
     const NearScreen screen = screen_within(distance);
-    budget.spend(1 + ids_.size() / (4 * NearBlock::lanes));
+    budget.spend((1 + ids_.size() / NearBlock::lanes) * work::screened);
     for (std::size_t first = 0; first < ids_.size(); first += NearBlock::lanes) {
       std::uint32_t lanes = may_be_near(blocks_[first / NearBlock::lanes], screen);
       for (; lanes != 0; lanes &= lanes - 1) {
@@ -134,7 +137,7 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
         found_.push_back({at_least, ids_[i], static_cast<std::uint32_t>(i)});
       }
     }
-    budget.spend(found_.size());
+    budget.spend(found_.size() * work::listed);
     // All triangles listed before are nearer than these.
     std::sort(found_.begin(), found_.end());
     for (const Found& one : found_) {
@@ -153,7 +156,7 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
 
 void NearSet::measure(NearTriangle& triangle, Budget& budget) noexcept {
   if (triangle.is_measured) return;
-  budget.spend(work_of_gap(now_.size()));
+  budget.spend(work::gap(now_.size()));
   triangle.at_start = gap(now_, *triangle.corners);
   *triangle.normal = triangle.at_start.normal;
   triangle.is_measured = true;

@@ -12,10 +12,12 @@ namespace keepout {
 
 PairWatch::Opening PairWatch::open() noexcept {
   memory_.degraded.clear();
+  memory_.budget.spend(work::cycle);
   Opening opening;
   for (std::size_t p = 0; p < size(); ++p) {
     CorePositions core;
     PairMemory& pair = memory_.pairs[p];
+    memory_.budget.spend(work::pair);
     pair.triangles.start_listing(motion(p).core_at(pair.body, 0, core));
     pair.full_demand = 0.0;
     pair.clearance_fraction = 1.0;
@@ -156,6 +158,7 @@ void PairWatch::update_bounds() noexcept {
 Status PairWatch::judge(std::size_t p, std::span<const Row> rows,
                         Certificate::Obstacle& obstacle) noexcept {
   PairMemory& pair = memory_.pairs[p];
+  memory_.budget.spend(work::pair);
   obstacle = {.knot = 0};
   pair.displacement = motion(p).largest_displacement(pair.body);
   const double needed = radius(p) + demand(p) + pair.displacement;
@@ -262,7 +265,7 @@ Status PairWatch::ensure_known(std::size_t p, double needed) noexcept {
 NearTriangle* PairWatch::find(std::size_t p, TriangleId id) noexcept {
   if (!is_ok(ensure_known(p, vicinity(p)))) return nullptr;
   const std::span<NearTriangle> nearby = nearer_than(p, vicinity(p));
-  memory_.budget.spend(1 + nearby.size() / 64);
+  memory_.budget.spend((1 + nearby.size() / 16) * work::listed_again);
   for (NearTriangle& triangle : nearby) {
     if (triangle.id != id) continue;
     memory_.pairs[p].triangles.measure(triangle, memory_.budget);

@@ -4,12 +4,6 @@
 #include <algorithm>
 
 namespace keepout {
-namespace {
-
-constexpr std::size_t work_of_kinematics = 4;  // in work units: about a third of a microsecond
-
-}  // namespace
-
 PointMotion::PointMotion(const Instrument& instrument, Budget& budget)
     : instrument_(&instrument), budget_(&budget), positions_(last_knot + 1) {
   straight_.fill(Vec3::Zero());
@@ -18,7 +12,7 @@ PointMotion::PointMotion(const Instrument& instrument, Budget& budget)
 void PointMotion::begin_cycle(std::span<const double> q) noexcept {
   ++number_;
   std::copy(q.begin(), q.end(), q_.begin());
-  budget_->spend(work_of_kinematics);
+  budget_->spend(work::kinematics);
   instrument_->chain().forward_kinematics(q, start_);
   fill(start_, positions_[0]);
 }
@@ -29,7 +23,7 @@ void PointMotion::set_trial(const JointVector& increment, CertifiedMotion which)
   which_ = which;
   const std::span<const LinkPoint> points = instrument_->points();
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
-  budget_->spend(1 + points.size() / 4);
+  budget_->spend((1 + points.size() / 4) * work::four_points);
   for (std::size_t p = 0; p < points.size(); ++p) {
     const Vec3& here = points_at_start()[p];
     if (which == CertifiedMotion::actual) {
@@ -68,7 +62,7 @@ const ChainState& PointMotion::chain_at(int knot) noexcept {
 /// Returns the chain at a fraction of the motion. Computes it unless it is the last one computed.
 const ChainState& PointMotion::chain_at_fraction(double fraction) noexcept {
   if (number_of_state_ == number_ && fraction_of_state_ == fraction) return state_;
-  budget_->spend(work_of_kinematics);
+  budget_->spend(work::kinematics);
   const auto n = static_cast<std::size_t>(instrument_->chain().size());
   JointVector q;
   for (std::size_t k = 0; k < n; ++k) q[k] = q_[k] + fraction * increment_[k];

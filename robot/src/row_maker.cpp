@@ -115,14 +115,11 @@ double RowMaker::height_at_end(const Row& row) noexcept {
 }
 
 Gap RowMaker::gap_at(std::size_t pair, const NearTriangle& triangle, int knot) noexcept {
-  constexpr std::size_t work_of_turning = 5;  // in work units
-  if (knot == 0 && triangle.is_measured) {
-    memory_.budget.spend(work_of_turning);
-    return triangle.at_start;
-  }
+  memory_.budget.spend(work::row);
+  if (knot == 0 && triangle.is_measured) return triangle.at_start;
   CorePositions core;
   const std::span<const Vec3> points = pairs_.motion(pair).core_at(pairs_.body(pair), knot, core);
-  memory_.budget.spend(work_of_gap(points.size()) + work_of_turning);
+  memory_.budget.spend(work::gap(points.size()));
   return gap(points, *triangle.corners);
 }
 

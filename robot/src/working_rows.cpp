@@ -49,7 +49,7 @@ void WorkingRows::add_recovery_rows(std::size_t p) noexcept {
   const double distance = pairs_.radius(p) + pairs_.row_margin(p);
   const auto nearby = pairs_.nearer_than(p, distance);
   for (int count = 0; count < most_recovery_rows && !budget.is_spent(); ++count) {
-    budget.spend(1 + nearby.size() * (1 + memory_.rows.size()) / 32);
+    budget.spend((1 + nearby.size() * (1 + memory_.rows.size()) / 32) * work::listed_again);
     // The nearest triangle from which no row pulls the body away.
     const NearTriangle* nearest = nullptr;
     for (const NearTriangle& triangle : nearby) {

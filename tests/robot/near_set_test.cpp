@@ -63,6 +63,22 @@ TEST(NearSet, TellsAllThatIsNearOnceAndAllocatesNothing) {
   EXPECT_GT(listed_of, test::trials(20'000u));
 }
 
+// The time of a search with empty caches must be paid before triangles are read.
+TEST(NearSet, ReadsNoCandidateThatTheBudgetDoesNotPay) {
+  const auto mesh = mesh_of("gear");
+  const std::vector<Vec3> core{Vec3::Zero()};
+  const std::size_t all = mesh->triangle_count();
+  const std::size_t needed = work::search + (all / 8) * work::collected + all * work::candidate;
+  for (const std::size_t work_units : {std::size_t{1}, needed / 2, needed, needed + 1}) {
+    Budget budget(work_units);
+    Neighborhood near(mesh, std::make_shared<WideBvh>(mesh), all, budget);
+    NearSet set(near.room(), 0.0);
+    EXPECT_EQ(set.gather(near, core, 1e3, budget), work_units > needed) << work_units;
+    EXPECT_EQ(set.radius() >= 0.0, work_units > needed) << work_units;
+    EXPECT_EQ(set.size(), work_units > needed ? all : 0) << work_units;
+  }
+}
+
 // Each triangle surrounds the foot of the perpendicular from the core, so the plane that the screen
 // tries is the best one. Only the slack for rounding then keeps the triangle.
 TEST(NearScreen, PassesOverNoTriangleWithinTheDistance) {

@@ -27,7 +27,7 @@ class Attack {
   virtual bool is_done() const = 0;
 
   Tally row;
-  Times step_times = {}, point_times = {};  // of the steps, see Tally
+  Times step_times = {}, contact_times = {}, free_times = {}, point_times = {};  // see Tally
 };
 using Attacks = std::vector<std::unique_ptr<Attack>>;
 

@@ -24,6 +24,8 @@ Next run(Attack& attack, const Advanced& advanced) {
     most = next == Next::go_on ? attack.begin() : 0;
   }
   row.step = attack.step_times.timing();
+  row.contact = attack.contact_times.timing();
+  row.free = attack.free_times.timing();
   row.point = attack.point_times.timing();
   row.seconds = microseconds_since(start) * 1e-6;
   return next;

@@ -57,6 +57,7 @@ struct Campaign {
   std::vector<std::string> scenarios = {};  // of scenarios(); empty: the usual ones
   std::uint64_t cycles = 200'000;
   std::vector<double> speeds{1.0, 5.0};  // multiples of the operator's motion at speed 1
+  double rate = 0.0;                     // of the cycles [Hz]; 0: see options_of
   CertifiedMotion motion = CertifiedMotion::actual;
   double margin = 0.2;         // [mm]
   std::uint64_t searched = 0;  // one of this many blocked cycles is searched for a better motion;
@@ -89,8 +90,8 @@ struct Campaign {
   std::uint64_t length(std::size_t meshes) const;
 };
 
-/// Returns the options of a robot in a campaign. The period is long enough for the velocity limits
-/// to admit a tenth of a radian and 2.5 mm in a cycle at speed 1.
+/// Returns the options of a robot in a campaign. Without a rate, the period is long enough for the
+/// velocity limits to admit a tenth of a radian and 2.5 mm in a cycle at speed 1.
 InstrumentOptions options_of(const Campaign& campaign, const Chain& chain, double speed);
 
 /// The number of steps of a trajectory. A new tip is placed after a breach, and if the tip is
@@ -129,6 +130,8 @@ struct Tally {
   std::uint64_t rows = 0;  // that limited motions, in total
   std::uint64_t most_work_units = 0;
   Timing step = {};              // [µs]
+  Timing contact = {};           // of them, those that a body's row limited [µs]
+  Timing free = {};              // the others [µs]
   Timing point = {};             // certified step of a ball at the tip, for comparison [µs]
   double excess = 0.0;           // sum over all samples
   std::uint64_t samples = 0;     // blocked cycles that were searched for a better motion

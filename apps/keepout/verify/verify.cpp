@@ -117,6 +117,11 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
           ->check(number_within(1e-3, 1e3, "a multiple from 0.001 to 1000", "NUMBER"))
           ->delimiter(',')
           ->capture_default_str(),
+      command
+          .add_option("--rate", campaign.rate,
+                      "Rate of the cycles in Hz; default: as the joints' velocity limits admit the "
+                      "speed")
+          ->check(number_within(1e-3, 1e6, "a rate from 0.001 to 1000000 Hz", "NUMBER")),
       command.add_option("--motion", campaign.motion, "The motion that is certified")
           ->transform(one_of<CertifiedMotion>(certified_motion_names))
           ->default_str("actual"),

@@ -86,6 +86,17 @@ void measure_certified_steps(SpeedRun& run) {
                 in_contact(run, on, {.clearance = 5.0}), contact));
   run.add(ratio("certified in contact, margin .2 mm", "motion 1-5 mm / motion .05-.2 mm",
                 at_most(3.0), in_contact(run, on, {.shortest = 1.0, .longest = 5.0}), contact));
+
+  constexpr MotionKind hand{.shortest = 1e-3, .longest = 0.05};
+  const std::string at_1_khz = "certified at 1 kHz, tool at 1-50 mm/s, margin .2 mm, ";
+  constexpr const char* to_longer = "motion .001-.05 mm / motion .05-.2 mm";
+  run.add(
+      ratio(at_1_khz + "in contact", to_longer, at_most(1.0), in_contact(run, on, hand), contact));
+  run.show("certified, free space at 1 kHz");
+  const std::vector<Motion> slow = free_motions(on, run.effort.steps, {}, hand, run.random());
+  run.add(ratio(at_1_khz + "in free space", to_longer, at_most(1.0),
+                time_certified(run, on, "free space, motion 0.001-0.05 mm", hand.clearance, slow),
+                run.free_side));
 }
 
 void measure_unrelated_states(SpeedRun& run) {

@@ -53,7 +53,7 @@ bool Neighborhood::gather(const Ball& ball) noexcept {
 bool Neighborhood::collect(const Ball& ball) noexcept {
   candidates_.clear();
   index_->collect(ball, candidates_);
-  budget_->spend(work_of_hit * candidates_.size());
+  budget_->spend(candidates_.size() * work::hit);
   if (candidates_.overflowed()) budget_->mark_overflow();
   return !candidates_.overflowed() && !budget_->is_spent();
 }
@@ -92,7 +92,8 @@ std::optional<Hit> find_nearest_by_queries(const Mesh& mesh, const SpatialIndex&
   for (int round = 0; round < most_rounds && !budget.is_spent(); ++round) {
     candidates.clear();
     index.collect({point, radius}, candidates);
-    budget.spend(1 + work_of_hit * candidates.size());
+    budget.spend(work::nearest_box);
+    budget.spend(candidates.size() * work::hit);
     if (candidates.overflowed()) {
       crowded = radius;
     } else if (const auto best = nearest_of(mesh, {point, radius}, candidates.view())) {

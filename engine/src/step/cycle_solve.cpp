@@ -43,18 +43,6 @@ Vec3 clipped_to_ball(Vec3 z, const Vec3& target) noexcept {
   return z;
 }
 
-/// Returns the work units of a solve. Each iteration visits all rows. The first one factorizes the
-/// Jacobian in n^3 operations, of which about 512 take as long as a unit. `solution.iterations` is
-/// also set if the solve failed.
-std::size_t work_of(const StepProblem& program, const Solution& solution) noexcept {
-  constexpr std::size_t numbers_in_a_unit = 48;  // sixteen planes of three numbers
-  const auto numbers = static_cast<std::size_t>(program.rows.rows() * program.rows.cols());
-  const auto variables = static_cast<std::size_t>(program.rows.cols());
-  const auto iterations = static_cast<std::size_t>(std::max(solution.iterations, 0));
-  return variables * variables * variables / 512 +
-         (1 + iterations) * (4 + numbers / numbers_in_a_unit);
-}
-
 }  // namespace
 
 /// Returns the nearest motion that planes and guides allow. If a guide has no further half-space to
@@ -66,7 +54,7 @@ Cycle::Trial Cycle::solve() noexcept {
   if (is_bare && input_.is_projected && memory_.guides.empty()) return {.motion = input_.target};
   Trial trial = solve_relaxing();
   while (trial.motion && !memory_.guides.allow(*trial.motion)) {
-    budget_.spend(1);
+    budget_.spend(work::guide);
     if (!memory_.guides.exclude(*trial.motion)) break;
     trial = solve_relaxing();
   }
@@ -112,7 +100,8 @@ Cycle::Trial Cycle::solve_once() noexcept {
   const StepProblem program = memory_.program_for(request_, input_.target, options_.damping);
   Solution solution;
   const SolveStatus solved = solver_.solve(program, solution);
-  budget_.spend(work_of(program, solution));
+  budget_.spend_solve(static_cast<std::size_t>(program.rows.cols()),
+                      static_cast<std::size_t>(program.rows.rows()), solution.iterations);
   if (solved != SolveStatus::optimal) return {.failure = status_of(solved)};
   if (solution.u.size() != static_cast<std::size_t>(program.jacobian.cols())) {
     return {.failure = Status::unsolved};

@@ -166,7 +166,9 @@ class RobotAttempt {
     const Twist desired = wanted(state.flange().position);
     const BenchClock::time_point start = BenchClock::now();
     const InstrumentStep step = subject_->step(positions_, desired);
-    attack_.step_times.add(microseconds_since(start));
+    const double time = microseconds_since(start);
+    attack_.step_times.add(time);
+    (step.rows > 0 ? attack_.contact_times : attack_.free_times).add(time);
     if (point_) {
       const BenchClock::time_point after = BenchClock::now();
       point_->step({.tip = state.flange().position, .desired = desired.linear});
@@ -318,6 +320,10 @@ InstrumentOptions options_of(const Campaign& campaign, const Chain& chain, doubl
   InstrumentOptions options{.margin = campaign.margin,
                             .band = std::min(0.002, 0.05 * campaign.margin),
                             .certified = campaign.motion};
+  if (campaign.rate > 0.0) {
+    options.period = 1.0 / campaign.rate;
+    return options;
+  }
   for (int k = 1; k <= chain.size(); ++k) {
     const double needed = chain.joint(k).kind == JointKind::revolute ? 0.1 : 2.5;
     options.period = std::max(options.period, speed * needed / chain.joint(k).limits.velocity);

@@ -84,6 +84,8 @@ const Columns<Tally>& robot_columns() {
       {"rounds_max", &Tally::most_rounds, "max", 3, &count_text},
       {"rows_mean", per(&Tally::cycles, &Tally::rows), "rows", 5, &figure_text<2>},
       {"step_us", &Tally::step, "us p50/p99/p99.9/max", 22, &times_text},
+      {"contact_us", &Tally::contact, "contact us p50/p99/p99.9/max", 28, &times_text},
+      {"free_us", &Tally::free, "free us p50/p99/p99.9/max", 25, &times_text},
       {"point_us", &Tally::point, "point us p50/p99/p99.9/max", 26, &times_text},
       {"looks_max", &Tally::most_work_units, "looks", 8, &count_text},
       {"excess_mean", per(&Tally::samples, &Tally::excess), "excess", 7, &figure_text<2>},
@@ -111,7 +113,8 @@ than without motion. cut: motions shortened to the proved part; none: no motion.
 of the cost that a search could save, in searched blocked cycles; useful: more than 5 %; movable:
 the search executed a tenth of the command with the full margin. recov.: a body was closer than a
 margin just set; in 500: of these, recovered within 500 cycles. point us: time of the certified
-step of a ball at the tip, for comparison. Lengths in mm.
+step of a ball at the tip, for comparison. contact us: time of the cycles in which the mesh or a
+guide limited the motion; free us: of the others. Lengths in mm.
 )";
 
 }  // namespace
@@ -169,6 +172,8 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
                                                             : enumerated(campaign.scenarios, ",")},
                     {"cycles", grouped(campaign.cycles)},
                     {"speed", enumerated(speeds, ",")},
+                    {"rate", campaign.rate > 0.0 ? trimmed(campaign.rate) + " Hz"
+                                                 : "as the joints' velocity limits admit"},
                     {"motion", is_actual ? "actual" : "linearized"},
                     {"margin", trimmed(campaign.margin) + " mm"},
                     {"seed", std::to_string(campaign.seed)},

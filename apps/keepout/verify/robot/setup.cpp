@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "keepout/error.h"
+#include "operators/attacker.h"
 
 namespace keepout::app {
 namespace {
@@ -208,8 +209,13 @@ std::optional<RobotSetup> draw_setup(
     setup.options.orientation_weight = 0.0;
   }
   if (scenario.attacked != Attacked::instrument) setup.options.damping = 0.0;
+  // Slow motions start nearer, so that they come into contact.
+  constexpr double cycles_to_contact = 500.0;
+  const double ahead = std::min(is_of_slides ? 4.0 : 20.0,
+                                setup.options.margin + setup.robot.judged().bodies.back().radius +
+                                    cycles_to_contact * speed * fastest_way);
   const auto start = find_start(*setup.meshes[0].scene, setup.robot, scenario.begin,
-                                setup.options.margin, random, is_of_slides ? 4.0 : 20.0);
+                                setup.options.margin, random, ahead);
   if (!start) return std::nullopt;
   setup.start = *start;
   const oracle::JudgedRobot judged = setup.robot.judged();

@@ -6,16 +6,16 @@
 #include <limits>
 #include <utility>
 
+#include "keepout/index/work.h"
 #include "keepout/status.h"
 
 namespace keepout {
 
-/// The work budget of a control cycle, in work units. Counts are the same on every processor, but
-/// depend on the caches that an index keeps between cycles (TraversalCache). A unit is about the
-/// time to examine sixteen boxes or triangles in single precision, one triangle in double
-/// precision, or sixteen planes. Longer work counts by the constants work_of_*. (Not counted: the
-/// nodes that TraversalCache::cover opens, at most 32 per call, with at most two calls when a
-/// traversal begins.)
+/// The work budget of a control cycle, in work units, for tips and instruments. Each kind of work
+/// counts by its weight (work.h), so that a unit takes about the same time in each cycle. Counts
+/// are the same on every processor, but depend on the caches that an index keeps between cycles
+/// (TraversalCache). (Not counted: the nodes that TraversalCache::cover opens, at most 32 per call,
+/// with at most two calls when a traversal begins.)
 ///
 /// Each part of a cycle spends units before or after its work, and stops once all are spent. No
 /// motion is accepted that could depend on triangles not examined.
@@ -37,6 +37,16 @@ class Budget {
 
   /// Spends work units.
   void spend(std::size_t work_units) noexcept { left_ -= static_cast<std::int64_t>(work_units); }
+
+  /// Spends the units of a quadratic program. Each iteration visits all rows. The first one
+  /// factorizes the Jacobian. `iterations` is also set if the solver failed.
+  void spend_solve(std::size_t variables, std::size_t rows, int iterations) noexcept {
+    const auto count = static_cast<std::size_t>(iterations > 0 ? iterations : 0);
+    spend(work::solve);
+    spend((variables * variables * variables / 64) * work::factor);
+    spend(count * work::iteration);
+    spend((count + 1) * (variables * rows / 48) * work::solved_rows);
+  }
 
   /// Spends all units: no further examination is allowed.
   void spend_all() noexcept { left_ = 0; }

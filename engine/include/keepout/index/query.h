@@ -21,9 +21,6 @@ struct Hit {
   ClosestPoint closest;  // relative to the ball's center
 };
 
-/// The work to find a hit, mostly cache misses. [work units, see Budget]
-inline constexpr std::size_t work_of_hit = 4;
-
 /// A list of hits with a fixed capacity.
 using HitBuffer = Buffer<Hit>;
 

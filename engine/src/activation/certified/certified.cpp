@@ -27,7 +27,6 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
         trial_(trial),
         length_(trial.norm()),
         planes_(planes),
-        work_of_planes_(1 + planes.size() / 16),
         too_close_(too_close),
         passage_(passage) {}
 
@@ -39,15 +38,11 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
   }
 
  private:
-  // In work units.
-  static constexpr std::size_t work_of_a_triangle = 2;
-  static constexpr std::size_t work_of_contact = 6;
-
   /// Returns the time after which contacts do not matter.
   double latest() const noexcept { return passage_.is_too_close ? 0.0 : passage_.contact.time; }
 
   void examine(TriangleId triangle, std::uint32_t& note, const Triangle* corners) noexcept {
-    budget_.spend(work_of_planes_);
+    budget_.spend((1 + planes_.size() / 16) * work::coverage);
     const bool is_known = note != MotionTraversal::no_note;
     if (is_known) corners = &prepared_[note].corners();
     if (terms_.is_covered(*corners, trial_, planes_)) return;
@@ -57,7 +52,7 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
         budget_.spend_all();
         return;
       }
-      budget_.spend(work_of_a_triangle);
+      budget_.spend(work::triangle);
       prepared_.push(PreparedTriangle(*corners, triangle));
       note = static_cast<std::uint32_t>(prepared_.size() - 1);
     }
@@ -69,7 +64,7 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
       return;
     }
     if (terms_.is_clear_at_once(prepared, trial_)) return;
-    budget_.spend(work_of_contact);
+    budget_.spend(work::contact);
     // The time of contact is cheaper to find than a proof of clearance, and most triangles that
     // come this far are hit. The time is a lower bound (Lemma 6), so a contact that is later than
     // an earlier one does not matter. Without an earlier contact, latest() is beyond the end of the
@@ -100,7 +95,6 @@ class CertifiedRule::ContactSearch final : public TriangleVisitor {
   const Vec3& trial_;
   double length_;
   std::span<const HalfSpace> planes_;
-  std::size_t work_of_planes_;
   double too_close_;
   Passage& passage_;
 };
@@ -229,7 +223,7 @@ void CertifiedRule::choose_walls(const PreparedTriangle& first, double too_close
   for (const PreparedTriangle* next = &first; next != nullptr; next = nearest(is_new)) {
     walls_.push(*next);
     if (walls_.size() == most_walls) return;
-    budget().spend(1 + prepared_.size() / 8);
+    budget().spend((1 + prepared_.size() / 8) * work::wall);
   }
 }
 
@@ -283,7 +277,8 @@ bool CertifiedRule::relax(HalfSpaceBuffer& planes) noexcept {
 bool CertifiedRule::relinearize(const RuleInput& input, std::span<const HalfSpace> planes,
                                 HalfSpaceBuffer& next) noexcept {
   bool changed = false;
-  budget().spend(planes.size() * (4 + prepared_.size() / 64));
+  budget().spend(planes.size() * work::plane);
+  budget().spend(planes.size() * (prepared_.size() / 64) * work::scan);
   for (const HalfSpace& plane : planes) {
     if (is_idle(plane, input)) continue;
     HalfSpace turned = plane;

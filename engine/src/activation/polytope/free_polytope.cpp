@@ -156,9 +156,7 @@ std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hi
 
 Status FreePolytope::separate(const Query& query, std::span<const Hit> hits, Budget& budget,
                               HalfSpaceBuffer& planes) noexcept {
-  // In work units. Most of the work of a hit is memory access to its corners, and sorting.
-  constexpr std::size_t work_of_plane = 24;
-  budget.spend(2 * work_of_hit * hits.size());
+  budget.spend(hits.size() * work::polytope_hit);
   if (budget.is_spent()) return Status::out_of_budget;
   is_left_.fill(true);
   std::size_t latest = 0;  // neighbors tend to be behind the same plane
@@ -173,11 +171,11 @@ Status FreePolytope::separate(const Query& query, std::span<const Hit> hits, Bud
     if (latest < planes.size() && is_behind(planes[latest])) continue;
     const HalfSpace* const behind = std::find_if(planes.begin(), planes.end(), is_behind);
     latest = static_cast<std::size_t>(behind - planes.begin());
-    budget.spend(2 * latest);
+    budget.spend(latest * work::polytope_test);
     if (behind != planes.end()) continue;
 
     const std::optional<HalfSpace> plane = plane_for(query, hit, seen);
-    budget.spend(work_of_plane);
+    budget.spend(work::polytope_plane);
     if (!plane) return Status::touching;
     if (planes.size() == planes.capacity()) return Status::over_capacity;
     planes.push(*plane);

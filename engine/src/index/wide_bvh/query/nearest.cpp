@@ -87,10 +87,6 @@ HWY_INLINE void decide(const LeafBlock& leaf, std::size_t lane, const WideBvh::T
   best = {t, BallScreen({ball.center, distance}, tree.mesh().bounds(), tree.frame())};
 }
 
-// In work units (Budget): mostly cache misses.
-constexpr std::size_t work_of_box = 3;
-constexpr std::size_t work_of_decision = 3;
-
 /// Compares the triangles of a leaf with the best one. The likely nearest comes first, so that few
 /// others need a decision.
 HWY_INLINE void search_leaf(const LeafBlock& leaf, const WideBvh::Tree& tree, Budget& budget,
@@ -99,12 +95,12 @@ HWY_INLINE void search_leaf(const LeafBlock& leaf, const WideBvh::Tree& tree, Bu
   std::uint32_t left = no_farther(leaf, best.screen, likely);
   if (left == 0) return;
   const double before = best.screen.ball.radius;
-  budget.spend(work_of_decision);
+  budget.spend(work::nearest_decision);
   decide(leaf, likely, tree, best);
   const std::uint32_t asked = std::uint32_t{1} << likely;
   if (best.screen.ball.radius < before) left = no_farther(leaf, best.screen, likely);
   for (left &= ~asked; left != 0; left &= left - 1) {
-    budget.spend(work_of_decision);
+    budget.spend(work::nearest_decision);
     decide(leaf, static_cast<std::size_t>(std::countr_zero(left)), tree, best);
   }
 }
@@ -134,7 +130,7 @@ HWY_INLINE bool search_boxes(const WideBvh::Tree& tree, Budget& budget, const Is
   while (waiting > 0) {
     const Waiting next = stack[--waiting];
     if (is_beyond(next.distance)) continue;
-    budget.spend(work_of_box);
+    budget.spend(work::nearest_box);
     if (budget.is_spent()) return false;
     if ((next.what & NodeBlock::leaf_bit) != 0) {
       search_leaf(tree.leaves()[next.what & ~NodeBlock::leaf_bit]);
@@ -188,7 +184,7 @@ TriangleId nearest_from_afar(const WideBvh::Tree& tree, const Vec3& point, Budge
     }
   };
   const auto search_leaf = [&](const LeafBlock& leaf) {
-    budget.spend(LeafBlock::lanes);
+    budget.spend(LeafBlock::lanes * work::nearest_decision);
     for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
       const TriangleId t = leaf.triangle(lane);
       const double distance = closest_point(tree.mesh().triangle(t), point).distance;

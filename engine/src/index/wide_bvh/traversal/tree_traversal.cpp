@@ -11,13 +11,6 @@ namespace {
 constexpr std::size_t most_waiting = 4096;
 constexpr std::size_t most_deferred = 1024;  // below suspects_bit, like the numbers of nodes
 
-// In work units, in proportion to their times: see Budget.
-constexpr std::size_t work_of_boxes = 1;
-constexpr std::size_t work_of_cylinders = 3;
-constexpr std::size_t work_of_leaf = 4;
-constexpr std::size_t work_of_suspects = 1;
-constexpr std::size_t work_of_sharpening = 4;
-
 // Newton steps each time that suspects are sharpened.
 constexpr int steps_of_sharpening = 2;
 
@@ -142,11 +135,11 @@ void TreeTraversal::descend(std::uint32_t box) noexcept {
 template <class Cylinders>
 void TreeTraversal::enter(const NodeBlock& node, Cylinders&& cylinders) noexcept {
   BoxEntries entries;
-  budget_.spend(work_of_boxes);
+  budget_.spend(work::boxes);
   enter_boxes(node, float_tip_, motion_.data(), levels_, entries);
   // Cylinders cost less than opening more boxes than this.
   if (are_more(entries.reached, is_long_ ? 1 : 4)) {
-    budget_.spend(work_of_cylinders);
+    budget_.spend(work::cylinders);
     enter_cylinders(cylinders(), float_tip_, motion_.data(), levels_, entries);
   }
   for (std::uint32_t reached = entries.reached; reached != 0; reached &= reached - 1) {
@@ -173,7 +166,7 @@ void TreeTraversal::inspect(std::uint32_t number) noexcept {
   SeenLeaf& seen = filled_leaf(number);
   Deferred& found = deferred_[deferred_size_];
   found.leaf_number = number;
-  budget_.spend(work_of_suspects);
+  budget_.spend(work::suspects);
   std::uint32_t begun = find_suspects(seen.filter, motion_.data(), until(), found.suspects);
   if ((begun | found.suspects.mask) == 0) return;
   meets_nothing_ = false;
@@ -211,7 +204,7 @@ void TreeTraversal::resume(std::uint32_t number) noexcept {
 /// Searches for better proofs for the suspects that may be met before `latest_`.
 void TreeTraversal::sharpen(Deferred& deferred) noexcept {
   const LeafBlock& block = tree_.leaves()[deferred.leaf_number];
-  budget_.spend(work_of_sharpening);
+  budget_.spend(work::sharpening);
   --deferred.sharpenings_left;
   sharpen_suspects(block, float_tip_, motion_.data(), levels_, until(), steps_of_sharpening,
                    filled_leaf(deferred.leaf_number).filter, deferred.suspects);
@@ -248,7 +241,7 @@ Triangle TreeTraversal::corners(std::uint32_t number, std::size_t lane) const no
 TreeTraversal::SeenLeaf& TreeTraversal::filled_leaf(std::uint32_t number) noexcept {
   SeenLeaf& seen = leaves_[number % most_leaves];
   if (seen.number == number && seen.filled_in == generation_) return seen;
-  budget_.spend(work_of_leaf);
+  budget_.spend(work::leaf);
   const LeafBlock& block = tree_.leaves()[number];
   seen.number = number;
   seen.filled_in = generation_;
