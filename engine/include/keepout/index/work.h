@@ -8,8 +8,9 @@
 namespace keepout::work {
 
 /// The nominal time of a work unit: the median of instruments' cycles on an AMD EPYC, on AVX2 and
-/// AVX-512. Weights are from least squares over recorded cycles. A candidate has the weight of
-/// empty caches, because the budget must bound the worst cycle. [ns]
+/// AVX-512. The weights of the certified rule and of instruments are from least squares over
+/// recorded cycles, near earlier estimates. Those of hulls, guides and queries are estimates. A
+/// candidate has the weight of empty caches, because the budget must bound the worst cycle. [ns]
 inline constexpr double unit_ns = 30.0;
 
 // Traversals of an index along a motion.
