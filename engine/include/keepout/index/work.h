@@ -21,8 +21,8 @@ inline constexpr std::size_t suspects = 1;    // a filter of sixteen triangles, 
 inline constexpr std::size_t sharpening = 6;  // the more accurate filter
 
 // Searches for the nearest triangle, and queries.
-inline constexpr std::size_t nearest_box = 3;       // a node or a leaf; mostly cache misses
-inline constexpr std::size_t nearest_decision = 3;  // a triangle in double
+inline constexpr std::size_t nearest_box = 4;       // a node or a leaf; mostly cache misses
+inline constexpr std::size_t nearest_decision = 5;  // a triangle in double
 inline constexpr std::size_t hit = 4;               // a candidate; mostly cache misses
 
 // The certified rule.
