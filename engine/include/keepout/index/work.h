@@ -8,8 +8,9 @@
 namespace keepout::work {
 
 /// The nominal time of a work unit: the median of instruments' cycles on an AMD EPYC, on AVX2 and
-/// AVX-512. Weights are from least squares over recorded cycles. A candidate has the weight of
-/// empty caches, because the budget must bound the worst cycle. [ns]
+/// AVX-512. The weights of the certified rule and of instruments are from least squares over
+/// recorded cycles, near earlier estimates. Those of hulls, guides and queries are estimates. A
+/// candidate has the weight of empty caches, because the budget must bound the worst cycle. [ns]
 inline constexpr double unit_ns = 30.0;
 
 // Traversals of an index along a motion.
@@ -20,8 +21,8 @@ inline constexpr std::size_t suspects = 1;    // a filter of sixteen triangles, 
 inline constexpr std::size_t sharpening = 6;  // the more accurate filter
 
 // Searches for the nearest triangle, and queries.
-inline constexpr std::size_t nearest_box = 3;       // a node or a leaf; mostly cache misses
-inline constexpr std::size_t nearest_decision = 3;  // a triangle in double
+inline constexpr std::size_t nearest_box = 4;       // a node or a leaf; mostly cache misses
+inline constexpr std::size_t nearest_decision = 5;  // a triangle in double
 inline constexpr std::size_t hit = 4;               // a candidate; mostly cache misses
 
 // The certified rule.
