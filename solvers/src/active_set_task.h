@@ -200,7 +200,7 @@ class TaskSpace {
   Matrix<N> block_;    // rows of J that are being added to R
   Vector<N> tail_;     // their part of d
   double condition_ = 0;
-  // What was factored last.
+  // The task that was factored last.
   std::vector<double> factored_;  // d, then J
   double factored_damping_ = 0;
   int factored_variables_ = 0;  // 0: nothing

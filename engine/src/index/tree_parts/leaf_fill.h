@@ -34,7 +34,7 @@ struct alignas(64) LeafPoints {
   static constexpr std::size_t lanes = 32;
 
   float position[3][lanes];  // [axis][lane]; unused lanes repeat other positions
-  bool is_known = false;     // false if the leaf's corners are to be used instead
+  bool is_known = false;     // false: use the leaf's corners instead
 };
 
 /// Writes the corners of a mesh's triangles to leaves. Coordinates that are floats are stored as

@@ -81,7 +81,8 @@ void enter_boxes(const NodeBlock& boxes, const FloatTip& tip, const float* motio
                  const FloatLevels& levels, BoxEntries& entries) noexcept;
 
 /// Improves the entries of the boxes that are reached, with the directions from their cylinders to
-/// the nearest points of the motion, and then to the points where the motion enters so far.
+/// the nearest points of the motion. Then it does so with the points where the motion enters so
+/// far.
 void enter_cylinders(const CylinderBlock& cylinders, const FloatTip& tip, const float* motion,
                      const FloatLevels& levels, BoxEntries& entries) noexcept;
 
@@ -107,7 +108,7 @@ void fill_filter(const LeafBlock& leaf, const FloatTip& tip, const FloatLevels& 
 struct Suspects {
   alignas(64) float time[LeafBlock::lanes];
   std::uint32_t mask;
-  std::uint32_t earliest;  // the suspect of least time, unless there is none
+  std::uint32_t earliest;  // the suspect of least time; any number without suspects
 
   /// Removes a suspect.
   void remove(std::uint32_t lane) noexcept;
@@ -121,7 +122,7 @@ std::uint32_t find_suspects(const LeafFilter& filter, const float* motion, float
 
 /// Searches for better proofs for the suspects: delays some, and removes those that the motion does
 /// not meet up to the time `latest`. Makes `steps` Newton steps, each from a suspect's time so far.
-/// Where a step finds a normal along which the motion moves away, the proofs before it cover the
+/// A step may find a normal along which the motion moves away. Then the proofs before it cover the
 /// beginning of the motion, and this one the rest. A step costs more than find_suspects.
 void sharpen_suspects(const LeafBlock& leaf, const FloatTip& tip, const float* motion,
                       const FloatLevels& levels, float latest, int steps, LeafFilter& filter,
