@@ -17,7 +17,7 @@ void BruteForce::collect(const Ball& ball, TriangleBuffer& candidates) const noe
 }
 
 TriangleId BruteForce::nearest(const Vec3& point, Budget& budget) const noexcept {
-  budget.spend(mesh().triangle_count() * work::nearest_decision);
+  budget.spend(mesh().triangle_count() * work::nearest_in_order);
   if (budget.is_spent()) return no_triangle;
   TriangleId best = 0;
   double least = closest_point(mesh().triangle(best), point).distance;

@@ -23,6 +23,7 @@ inline constexpr std::size_t sharpening = 6;  // the more accurate filter
 // Searches for the nearest triangle, and queries.
 inline constexpr std::size_t nearest_box = 4;       // a node or a leaf; mostly cache misses
 inline constexpr std::size_t nearest_decision = 5;  // a triangle in double
+inline constexpr std::size_t nearest_in_order = 1;  // the same without cache misses
 inline constexpr std::size_t hit = 4;               // a candidate; mostly cache misses
 
 // The certified rule.
