@@ -44,7 +44,9 @@ inline std::vector<double> moved(std::vector<double> q, const InstrumentStep& st
 
 /// Returns the base of a psm that points straight down to a place, with its port `height` above it.
 inline Pose port_over(const Vec3& place, double height) {
-  const ChainState state = test::state_of(psm().chain(), std::vector<double>{0, 0, 100, 0, 0, 0});
+  const Instrument instrument = psm();
+  const ChainState state =
+      test::state_of(instrument.chain(), std::vector<double>{0, 0, 100, 0, 0, 0});
   const Vec3 way = state.flange().position.normalized();
   return {place + Vec3(0, 0, height), rotation_between(way, -Vec3::UnitZ()).toRotationMatrix()};
 }
