@@ -63,7 +63,8 @@ bool is_tied(const Chain& chain, const std::vector<double>& q, const InstrumentS
 TEST(Limits, NameEveryCauseAndOnlyCauses) {
   const LinkPoint jaw{6, Vec3(0, 10.2, 0)};
   const std::vector<double> start{0.1, -0.1, 60.0, 0.2, 0.1, -0.2};
-  const ChainState state = test::state_of(robot_without({}).chain(), start);
+  const Instrument robot = robot_without({});
+  const ChainState state = test::state_of(robot.chain(), start);
   const std::vector<Guide> guides{Guide::point(
       "corridor", jaw, Region::slab(state.at(jaw.link, jaw.position), Vec3(1, 0.2, 0), 8.0))};
   struct Cause {
