@@ -17,7 +17,7 @@ namespace keepout::crtk {
 
 /// A transport whose middleware runs in threads of its own, one that receives and one that sends.
 /// The middleware locks and allocates; the thread that calls deliver() and send() does not. The
-/// threads start with the first deliver().
+/// receiving thread starts with the first deliver(), after all topics are known.
 class QueuedTransport final : public Transport, Inbox {
  public:
   explicit QueuedTransport(std::unique_ptr<Transport> middleware);
@@ -27,6 +27,7 @@ class QueuedTransport final : public Transport, Inbox {
   int advertise(const std::string& topic, Kind kind, bool is_kept) override;
   /// Passes on what the receiving thread has received.
   void deliver(Inbox& inbox, double wait) override;
+  /// Returns false if too many messages wait for the middleware.
   bool send(int topic, const Message& message) override;
   void show(int topic, const std::string& frame, const Shape& shape) override;
   int publishers(int subscription) override;
