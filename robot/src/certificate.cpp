@@ -127,6 +127,14 @@ bool Certificate::is_covered(const NearTriangle& triangle, int lo, int hi) const
   return height >= radius_ + due_plus_rounding_ - plane_rounding * tolerance_;
 }
 
+/// Like is_covered(), but also by planes of its halves, of their halves, and so on.
+bool Certificate::is_covered_in_parts(const NearTriangle& triangle, int lo, int hi) const noexcept {
+  if (is_covered(triangle, lo, hi)) return true;
+  if (hi - lo == 1) return false;
+  const int middle = (lo + hi) / 2;
+  return is_covered_in_parts(triangle, lo, middle) && is_covered_in_parts(triangle, middle, hi);
+}
+
 /// Tries to prove the sub-interval by planes that are known, and by the gap at lo.
 bool Certificate::is_proved_from(const NearTriangle& triangle, Place& lo,
                                  const Place& hi) noexcept {
@@ -164,10 +172,11 @@ int Certificate::proved_until(const NearTriangle& triangle, Place& lo, Place& hi
   if (lo.knot > latest_ || budget_.is_spent()) return lo.knot;
   if (is_proved_from(triangle, lo, hi)) return hi.knot;
   Place middle{.knot = (lo.knot + hi.knot) / 2};
+  if (hi.knot - lo.knot > 1 && is_covered_in_parts(triangle, lo.knot, middle.knot) &&
+      is_covered_in_parts(triangle, middle.knot, hi.knot)) {
+    return hi.knot;
+  }
   if (hi.knot - lo.knot == PointMotion::last_knot) {
-    const bool are_halves_covered =
-        is_covered(triangle, lo.knot, middle.knot) && is_covered(triangle, middle.knot, hi.knot);
-    if (are_halves_covered) return hi.knot;
     // If another triangle ends the proof earlier, only the sub-interval before its knot matters.
     if (latest_ < middle.knot) {
       Place until{.knot = static_cast<int>(std::bit_ceil(static_cast<unsigned>(latest_) + 1U))};

@@ -69,6 +69,7 @@ class Certificate {
   bool separates(const Vec3& normal, const NearTriangle& triangle, int lo, int hi) noexcept;
   bool is_covered(const NearTriangle& triangle) const noexcept;
   bool is_covered(const NearTriangle& triangle, int lo, int hi) const noexcept;
+  bool is_covered_in_parts(const NearTriangle& triangle, int lo, int hi) const noexcept;
   bool is_proved_from(const NearTriangle& triangle, Place& lo, const Place& hi) noexcept;
   bool is_proved_to(const NearTriangle& triangle, const Place& lo, Place& hi) noexcept;
   int proved_until(const NearTriangle& triangle, Place& lo, Place& hi) noexcept;
