@@ -172,9 +172,10 @@ int Certificate::proved_until(const NearTriangle& triangle, Place& lo, Place& hi
   if (lo.knot > latest_ || budget_.is_spent()) return lo.knot;
   if (is_proved_from(triangle, lo, hi)) return hi.knot;
   Place middle{.knot = (lo.knot + hi.knot) / 2};
-  if (hi.knot - lo.knot > 1 && is_covered_in_parts(triangle, lo.knot, middle.knot) &&
-      is_covered_in_parts(triangle, middle.knot, hi.knot)) {
-    return hi.knot;
+  // Planes that are known cost less than a gap.
+  if (hi.knot - lo.knot > 1 && is_covered_in_parts(triangle, lo.knot, middle.knot)) {
+    if (is_covered_in_parts(triangle, middle.knot, hi.knot)) return hi.knot;
+    return proved_until(triangle, middle, hi);
   }
   if (hi.knot - lo.knot == PointMotion::last_knot) {
     // If another triangle ends the proof earlier, only the sub-interval before its knot matters.

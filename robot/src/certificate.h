@@ -18,9 +18,9 @@ namespace keepout {
 /// curvature of the parabola. A plane proves the body clear on a sub-interval under two conditions.
 /// The triangle, grown by the due clearance, is behind the plane. The parabolas of all points of
 /// the body are in front of it. A sub-interval is also proved if the distance at its start exceeds
-/// the largest displacement. Other sub-intervals are halved, down to the grid of PointMotion. A
-/// plane that proves a sub-interval for one triangle is tried for the next triangles, which are
-/// often its neighbors.
+/// the largest displacement. Other sub-intervals are halved, down to the grid of PointMotion.
+/// Planes that prove a sub-interval or its parts for one triangle are tried for the next triangles,
+/// which are often its neighbors.
 class Certificate {
  public:
   /// The obstacle to a proof. By default there is no obstacle. Knot 0 without a triangle: the
