@@ -38,8 +38,11 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
   }
   require_rounding_to_nearest();
   require_mesh_in_range(*mesh);
-  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
-                                        budget);
+  // One more than the budget pays for: collecting so many spends it.
+  const std::size_t paid =
+      Capacity::work_units_or_default(capacity.work_units, *index) / work::hit + 1;
+  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index),
+                                        std::min(capacity.triangles, paid), budget);
 }
 
 /// Returns the capacity, enlarged for the nodes of the options. Throws Error for options or a
