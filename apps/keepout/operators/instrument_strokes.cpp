@@ -120,7 +120,6 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
         {home.position + way + bias + tremor.at(static_cast<double>(cycle) * cycle_seconds),
          turn * home.rotation});
   }
-  stroke.random = random;
   return stroke;
 }
 

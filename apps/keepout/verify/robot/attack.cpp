@@ -84,7 +84,7 @@ class RobotAttempt {
         judged_(setup_.robot.judged()),
         chain_(setup_.robot.make(setup_.start.base).chain()),
         subject_(campaign.make_subject(setup_)),
-        judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
+        judge_(judged_scene(setup_), chain_, setup_.start.positions, setup_.options,
                subject_->tolerance()),
         attacker_(*setup_.meshes[0].scene, random, setup_.speed),
         positions_(setup_.start.positions) {
@@ -199,6 +199,7 @@ class RobotAttempt {
       ++tally_.in_mesh;
       tally_.deepest = std::max(tally_.deepest, -verdict.least);
     }
+    tally_.undecided += verdict.is_undecided ? 1 : 0;
     if (verdict.limits_broken) tally_.count(Breach::limits_broken);
     if (verdict.is_guide_left) tally_.count(Breach::guide_left);
     tally_.least_beyond = std::min(tally_.least_beyond, verdict.beyond);

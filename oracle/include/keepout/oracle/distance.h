@@ -56,6 +56,16 @@ struct Bracket {
 /// exact_distance() must decide.
 Bracket bracket_distance(const Segment& segment, const Triangle& triangle) noexcept;
 
+/// A bracket, and the direction from the triangle to the other set along which they are about
+/// `estimate` apart.
+struct Gap {
+  Bracket distance;
+  Vec3 direction;  // of any length; 0 if there is none
+};
+
+/// Like bracket_distance(), but also returns the direction.
+Gap gap_between(const Segment& segment, const Triangle& triangle) noexcept;
+
 /// Like bracket_distance(), but always narrow: calls exact_distance() if double arithmetic does not
 /// suffice. low and estimate are 0 if and only if the two touch. Preconditions: as
 /// exact_distance().

@@ -39,6 +39,8 @@ class Hull {
 
   /// Returns a lower bound of the distance from a point, cheap and rounded. [length]
   double least_distance(const Vec3& point) const noexcept;
+  /// Returns a vector from a point to a near point of the hull; of a segment to the nearest one.
+  Vec3 way_from(const Vec3& point) const noexcept;
 
   /// Returns a narrow bracket of the distance from a triangle. It is 0 if and only if they touch,
   /// or the triangle is inside by more than rounding. If the distance is certainly more than
@@ -46,7 +48,13 @@ class Hull {
   Bracket distance(const Triangle& triangle,
                    double enough = std::numeric_limits<double>::infinity()) const;
 
+  /// Like distance(triangle), but in double arithmetic: wide in the cases that
+  /// bracket_distance() does not decide. Also returns the direction from the triangle to the hull.
+  Gap gap(const Triangle& triangle) const noexcept;
+
  private:
+  template <class Between>
+  Bracket least(const Triangle& triangle, double enough, const Between& between) const;
   Vec3 direction_from(const Triangle& triangle) const noexcept;
   bool contains(const Vec3& point) const noexcept;
 

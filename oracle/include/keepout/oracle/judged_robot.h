@@ -67,6 +67,10 @@ struct LinkFrame {
 /// link 0. Precondition: one position for each row [rad or length].
 std::vector<LinkFrame> place(const JudgedRobot& robot, const Pose& base,
                              std::span<const double> positions);
+/// Like place(robot, base, positions), but writes to `links`, one more than rows. Does not
+/// allocate.
+void place(const JudgedRobot& robot, const Pose& base, std::span<const double> positions,
+           std::span<LinkFrame> links) noexcept;
 
 /// Returns the segment from a body's first point to its last one.
 Segment axis_of(const JudgedBody& body, std::span<const LinkFrame> links);
