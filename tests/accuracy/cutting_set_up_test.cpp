@@ -37,9 +37,9 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
                                    .radius = half_width,
                                    .band = corridor.band()};
   Random random(1);
-  oracle::RobotJudge judge({oracle::judged_psm(),
+  oracle::RobotJudge judge({monitor::judged_psm(),
                             chain.base(),
-                            {{std::make_shared<const oracle::TriangleTree>(mesh)}},
+                            {{std::make_shared<const monitor::TriangleTree>(mesh)}},
                             {judged}},
                            chain, q, guard.options(), guard.tolerance());
   const double kept = guard.options().margin - guard.options().band - 3.0 * guard.tolerance();

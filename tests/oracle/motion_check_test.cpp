@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares the judge's proofs of whole motions with dense samples of the motion.
-#include "keepout/oracle/motion_check.h"
+#include "keepout/monitor/motion_check.h"
 
 #include <Eigen/Geometry>
 #include <cmath>

@@ -100,9 +100,9 @@ keepout::Pose base_of(const Json& head) {
 }
 
 /// Opens the jaw, the last body, by an angle: then it is two bodies. [deg]
-void open_jaw(keepout::oracle::JudgedRobot& robot, double opening) {
+void open_jaw(keepout::monitor::JudgedRobot& robot, double opening) {
   if (opening == 0.0) return;
-  const keepout::oracle::JudgedBody jaw = robot.bodies.back();
+  const keepout::monitor::JudgedBody jaw = robot.bodies.back();
   robot.bodies.pop_back();
   for (const double half : {-0.5, 0.5}) {
     const double angle = half * opening * std::numbers::pi / 180.0;
@@ -126,9 +126,9 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
   const keepout::Instrument instrument = robot.make(base_of(head));
   const double tolerance =
       keepout::make_instrument_constraint(mesh, instrument, {.options = options}).tolerance();
-  keepout::oracle::JudgedRobot judged = robot.judged();
+  keepout::monitor::JudgedRobot judged = robot.judged();
   open_jaw(judged, head.value("opening", 0.0));
-  const auto tree = std::make_shared<const keepout::oracle::TriangleTree>(mesh);
+  const auto tree = std::make_shared<const keepout::monitor::TriangleTree>(mesh);
   const std::size_t joints = static_cast<std::size_t>(instrument.chain().size());
   std::optional<keepout::oracle::RobotJudge> judge;
   std::vector<double> positions;
@@ -136,7 +136,7 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
   std::size_t cycles = 0, jumps = 0, below = 0, in_mesh = 0, limits = 0, held = 0;
   double nearest = std::numeric_limits<double>::infinity(), way = 0.0, turn = 0.0;
   const auto jaw_now = [&]() -> Vec3 {
-    const keepout::oracle::Segment jaw = judge->axis(judged.bodies.size() - 1);
+    const keepout::monitor::Segment jaw = judge->axis(judged.bodies.size() - 1);
     return (jaw.to - jaw.from).normalized();
   };
   const auto tip_now = [&] { return judge->axis(judged.bodies.size() - 1).to; };

@@ -99,7 +99,7 @@ cycles that broke a joint limit; guides, if any: cycles that left a guide by mor
 
 /// Returns the depth of the deepest point of a segment inside a closed surface, accurate to 0.01
 /// mm. Negative if no point of the segment is inside. [mm]
-double deepest(const oracle::SafetyOracle& surface, const oracle::Segment& segment) {
+double deepest(const oracle::SafetyOracle& surface, const monitor::Segment& segment) {
   const auto depth_at = [&](double t) {
     const Vec3 point = segment.from + t * (segment.to - segment.from);
     const double distance = surface.distance(point);
@@ -261,7 +261,7 @@ class GuardedInstrument final : public SimulatedTool {
     cycle.is_breach = verdict.limits_broken || verdict.is_undecided;
     cycle.is_guide_left = verdict.is_guide_left;
     for (std::size_t b = 0; b < robot_.bodies.size(); ++b) {
-      const oracle::Segment axis = judge_->axis(b);
+      const monitor::Segment axis = judge_->axis(b);
       cycle.begins[b] = axis.from;
       cycle.places[b] = axis.to;
       cycle.clearances[b] = std::min(judge_->least()[b], clearance_inside(b, axis));
@@ -360,7 +360,7 @@ class GuardedInstrument final : public SimulatedTool {
  private:
   /// Returns the negative depth of a body whose axis is inside the surface, in part or as a whole.
   /// Infinite if the axis is outside, or the surface has no inside. [mm]
-  double clearance_inside(std::size_t body, const oracle::Segment& axis) const {
+  double clearance_inside(std::size_t body, const monitor::Segment& axis) const {
     const double radius = joints_->instrument().bodies()[body].radius;
     const oracle::SafetyOracle& surface = on_->scene.oracle();
     const bool is_cut = judge_->least()[body] <= -radius;

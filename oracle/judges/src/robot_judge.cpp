@@ -105,7 +105,7 @@ void RobotJudge::place(std::size_t mesh, const Pose& pose, const Twist& velocity
 
 Segment RobotJudge::axis(std::size_t body) const {
   const JudgedRobot& robot = meshes_.front().oracle.robot();
-  return axis_of(robot.bodies[body], oracle::place(robot, base_, positions_));
+  return axis_of(robot.bodies[body], monitor::place(robot, base_, positions_));
 }
 
 bool RobotJudge::is_recovered() const noexcept {
@@ -136,7 +136,7 @@ void RobotJudge::measure(std::span<const double> next, double share) {
 /// Measures the depths of all guides at these positions.
 void RobotJudge::measure_guides(std::span<const double> positions) {
   if (guides_.empty()) return;
-  const auto links = oracle::place(meshes_[0].oracle.robot(), base_, positions);
+  const auto links = monitor::place(meshes_[0].oracle.robot(), base_, positions);
   for (std::size_t g = 0; g < guides_.size(); ++g) {
     distances_[meshes_.size() * bodies_ + g] = -excess(guides_[g], links);
   }
@@ -227,7 +227,8 @@ void RobotJudge::sample(std::span<const double> next, double at) {
 void RobotJudge::advance(std::span<const double> next) {
   bool is_measured = check_.poses() > 0;  // the motion is finite
   for (std::size_t i = 0; i < due_.size() && is_measured; ++i) {
-    const std::optional<double> clearance = check_.end_clearance(i, margin(i / bodies_));
+    const std::optional<double> clearance =
+        check_.clearance(MotionCheck::End::end, i, margin(i / bodies_));
     is_measured = clearance.has_value();
     distances_[i] = clearance.value_or(0.0);
   }

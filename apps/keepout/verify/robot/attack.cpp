@@ -45,10 +45,10 @@ struct Missed {
   double moving, standing;
 };
 
-Missed missed(const RobotSetup& setup, const oracle::JudgedRobot& robot,
+Missed missed(const RobotSetup& setup, const monitor::JudgedRobot& robot,
               std::span<const double> from, std::span<const double> to, const Twist& desired) {
-  const auto before = oracle::place(robot, setup.start.base, from);
-  const auto after = oracle::place(robot, setup.start.base, to);
+  const auto before = monitor::place(robot, setup.start.base, from);
+  const auto after = monitor::place(robot, setup.start.base, to);
   const Vec3& flange = setup.robot.flange.position;
   const Vec3 way = after.back().at(flange) - before.back().at(flange);
   const Mat3 turned = (after.back().axes * before.back().axes.transpose()).cast<double>();
@@ -241,7 +241,7 @@ class RobotAttempt {
   Tally& tally_;
   Random& random_;
   RobotSetup setup_;
-  oracle::JudgedRobot judged_;
+  monitor::JudgedRobot judged_;
   Chain chain_;
   std::unique_ptr<RobotSubject> subject_;
   std::optional<MotionConstraint> point_;  // a ball at the tip alone, timed for comparison

@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "keepout/oracle/judged_robot.h"
-#include "keepout/oracle/motion_check.h"
+#include "keepout/monitor/judged_robot.h"
+#include "keepout/monitor/motion_check.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 

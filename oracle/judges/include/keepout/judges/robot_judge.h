@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "keepout/geometry/twist.h"
+#include "keepout/monitor/motion_check.h"
 #include "keepout/oracle/instrument_oracle.h"
 #include "keepout/oracle/judged_guide.h"
-#include "keepout/oracle/motion_check.h"
 #include "keepout/robot/instrument_options.h"
 #include "keepout/robot/instrument_step.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/oracle/motion_check.h"
+#include "keepout/monitor/motion_check.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 // The number of triangles to fetch at once, in multiples of those that are in reach. More would
@@ -24,7 +24,7 @@ constexpr std::uint64_t of_a_gap = 2;
 /// Returns a bound of the rounding error of a height or distance between a core and a point.
 /// [length]
 double rounding_of(const Hull& core, const Vec3& point) noexcept {
-  return 0x1p-46 * (core.center().lpNorm<1>() + core.radius() + point.lpNorm<1>());
+  return 0x1p-46 * ((core.center() - point).lpNorm<1>() + core.radius());
 }
 
 /// Returns the largest displacement of all points of a core, which is that of a corner. [length]
@@ -70,13 +70,14 @@ Pose MeshMotion::at(double s) const noexcept {
 }
 
 MotionCheck::MotionCheck(std::span<const std::shared_ptr<const TriangleTree>> trees,
-                         const JudgedRobot& robot, const Pose& base)
+                         const JudgedRobot& robot, const Pose& base, std::size_t most_triangles)
     : trees_(trees.begin(), trees.end()),
       robot_(robot),
       base_(base),
       surroundings_(trees.size() * robot.bodies.size()),
       slots_(2 + of_a_level * levels),
-      positions_(robot.table.size()) {
+      positions_(robot.table.size()),
+      most_triangles_(most_triangles) {
   PoseAt slot;
   for (const JudgedBody& body : robot_.bodies) {
     first_point_.push_back(slot.points.size());
@@ -98,6 +99,10 @@ MotionCheck::MotionCheck(std::span<const std::shared_ptr<const TriangleTree>> tr
   }
   std::ranges::fill(slots_, slot);
   bends_.resize(slot.points.size());
+  end_.reserve(positions_.size());
+  if (most_triangles == unlimited) return;
+  found_.reserve(most_triangles);
+  for (Surroundings& around : surroundings_) around.neighbors.reserve(most_triangles);
 }
 
 bool MotionCheck::spend(std::uint64_t units) noexcept {
@@ -200,17 +205,21 @@ bool MotionCheck::surround(Surroundings& around, const Hull& core, double reach)
   around.shift = moved(around.points, core.points());
   if (reach + around.shift < around.known) return true;
   around.shift = 0.0;
-  around.known = reach + around.slack;
+  around.points.assign(core.points().begin(), core.points().end());
+  around.neighbors.clear();
   const bool is_segment = core.points().size() < 3;
   const Segment middle = is_segment ? Segment{core.points().front(), core.points().back()}
                                     : Segment{core.center(), core.center()};
   const auto mesh = static_cast<std::size_t>(&around - surroundings_.data()) / robot_.bodies.size();
   const TriangleTree& tree = *trees_[mesh];
-  found_.clear();
-  tree.collect_within(around.known + (is_segment ? 0.0 : core.radius()), middle, found_);
-  around.points.assign(core.points().begin(), core.points().end());
-  around.neighbors.clear();
-  if (!spend(2 * found_.size())) {
+  const auto find = [&](double slack) {
+    around.known = reach + slack;
+    found_.clear();
+    return tree.collect_within(around.known + (is_segment ? 0.0 : core.radius()), middle, found_,
+                               {most_triangles_, &work_});
+  };
+  const bool is_found = find(around.slack) || find(0.0);
+  if (!is_found || !spend(2 * found_.size())) {
     around.known = -1.0;
     return false;
   }
@@ -324,12 +333,11 @@ Clearance MotionCheck::check_pair(std::size_t number, double due) {
   return Clearance::kept;
 }
 
-std::optional<double> MotionCheck::end_clearance(std::size_t pair, double reach) {
-  const Hull& core = slots_[at_end].cores[pair];
+std::optional<double> MotionCheck::clearance(End end, std::size_t pair, double reach) {
+  const Hull& core = slots_[end == End::start ? at_start : at_end].cores[pair];
   const double radius = robot_.bodies[pair % robot_.bodies.size()].radius;
   Surroundings& around = surroundings_[pair];
-  work_ = unlimited;
-  surround(around, core, reach + radius);
+  if (!surround(around, core, reach + radius)) return std::nullopt;
   double nearest = reach + radius;
   bool is_found = false;
   bool is_narrow = true;
@@ -352,6 +360,7 @@ std::optional<double> MotionCheck::end_clearance(std::size_t pair, double reach)
   if (around.nearest < around.neighbors.size()) measure(around.neighbors[around.nearest]);
   for (const Neighbor& neighbor : around.neighbors) {
     if (neighbor.low - around.shift > nearest) break;
+    if (!spend(of_a_gap)) return std::nullopt;
     measure(neighbor);
   }
   if (!is_narrow) return std::nullopt;
@@ -387,4 +396,4 @@ MotionFinding MotionCheck::check(const InstrumentMotion& motion, std::span<const
   return finding;
 }
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

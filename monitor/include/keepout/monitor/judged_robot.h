@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "keepout/geometry/pose.h"
-#include "keepout/oracle/distance.h"
+#include "keepout/monitor/distance.h"
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 
 /// A row of a Denavit-Hartenberg table in Craig's convention: a rotation about x, a displacement
 /// along x, a rotation about z, a displacement along z. The joint turns about z or slides along z.
@@ -75,4 +75,4 @@ void place(const JudgedRobot& robot, const Pose& base, std::span<const double> p
 /// Returns the segment from a body's first point to its last one.
 Segment axis_of(const JudgedBody& body, std::span<const LinkFrame> links);
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

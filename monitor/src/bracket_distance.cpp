@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "keepout/oracle/distance.h"
+#include "keepout/monitor/distance.h"
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 // All positions are relative to the segment's start, so an offset of the world costs one rounding
@@ -177,11 +177,4 @@ Bracket bracket_distance(const Segment& segment, const Triangle& triangle) noexc
   return gap_between(segment, triangle).distance;
 }
 
-Bracket narrow_distance(const Segment& segment, const Triangle& triangle) {
-  const Bracket bracket = bracket_distance(segment, triangle);
-  if (bracket.narrow()) return bracket;
-  const double distance = exact_distance(segment, triangle, 0.0).distance;
-  return {distance * (1.0 - 0x1p-50), distance, distance * (1.0 + 0x1p-50)};
-}
-
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/oracle/travel.h"
+#include "keepout/monitor/travel.h"
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstddef>
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 // Fewer than a hundred roundings of positive numbers.
@@ -48,4 +48,4 @@ double least_between(double a, double b, double bend) noexcept {
   return a - half * u * u;
 }
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "keepout/geometry/twist.h"
-#include "keepout/oracle/hull.h"
-#include "keepout/oracle/judged_robot.h"
-#include "keepout/oracle/travel.h"
-#include "keepout/oracle/triangle_tree.h"
+#include "keepout/monitor/hull.h"
+#include "keepout/monitor/judged_robot.h"
+#include "keepout/monitor/travel.h"
+#include "keepout/monitor/triangle_tree.h"
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 
 /// The motion of a mesh in a cycle: its pose at the start, and its displacement.
 struct MeshMotion {
@@ -65,21 +65,26 @@ class MotionCheck {
   static constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
   static constexpr int levels = 20;  // of halving
 
-  /// `trees`: of the meshes. `base`: the pose of link 0. Throws std::invalid_argument for a body
-  /// without points or with more than Hull::most_points.
+  /// `trees`: of the meshes. `base`: the pose of link 0. `most_triangles`: near a body; if there
+  /// may be more, a check is undecided. With a limit, all memory is allocated here, and checks
+  /// allocate nothing. Throws std::invalid_argument for a body without points or with more than
+  /// Hull::most_points.
   MotionCheck(std::span<const std::shared_ptr<const TriangleTree>> trees, const JudgedRobot& robot,
-              const Pose& base);
+              const Pose& base, std::size_t most_triangles = unlimited);
 
   /// Decides if each pair keeps its due clearance: the distance of the body's surface. Pairs are
   /// numbered mesh by mesh. A pair that is due -infinity is not examined. Stops at the first pair
-  /// that loses its clearance. Takes at most about `work` units of 0.1 µs. [length]
+  /// that loses its clearance. Takes at most `work` units, of about 0.1 µs each. Trusts positions
+  /// and poses to be exact: a due clearance must be lower by their rounding. [length]
   MotionFinding check(const InstrumentMotion& motion, std::span<const double> due,
                       std::uint64_t work = unlimited);
 
-  /// Returns the clearance of a pair at the end of the last motion; infinite if it is more than
+  enum class End : std::uint8_t { start, end };
+  /// Returns the clearance of a pair at an end of the last motion; infinite if it is more than
   /// `reach`. Accurate to 1e-9 of the distance of the core; empty if double arithmetic does not
-  /// suffice for that. Precondition: the last motion was finite. [length]
-  std::optional<double> end_clearance(std::size_t pair, double reach);
+  /// suffice for that, or if the work of the last check ends. Precondition: the last motion was
+  /// finite. [length]
+  std::optional<double> clearance(End end, std::size_t pair, double reach);
 
   /// Returns the number of poses of the last check, its ends included.
   std::size_t poses() const noexcept { return poses_; }
@@ -151,10 +156,11 @@ class MotionCheck {
   std::vector<double> end_;    // of the last motion
   std::vector<double> bends_;  // M of all points of bodies
   std::vector<TriangleId> found_;
+  std::size_t most_triangles_;
   InstrumentMotion motion_ = {};
   std::uint64_t work_ = 0;  // left
   std::size_t poses_ = 0;
   double lost_at_ = 0.0;
 };
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

@@ -4,9 +4,9 @@
 #include <span>
 
 #include "keepout/geometry/shapes.h"
-#include "keepout/oracle/judged_robot.h"
+#include "keepout/monitor/judged_robot.h"
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 
 /// A joint at one time of a motion, and its change in the whole motion.
 struct JointLine {
@@ -46,4 +46,4 @@ Travel travel(std::span<const JointLine> start, std::span<const JointLine> end, 
 /// derivative.
 double least_between(double a, double b, double bend) noexcept;
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/oracle/judged_robot.h"
+#include "keepout/monitor/judged_robot.h"
 
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 using Real = LinkFrame::Real;
@@ -28,6 +28,7 @@ void screw(LinkFrame& frame, int axis, Real angle, Real way) {
 void screw(LinkFrame& frame, const Vec3& axis, Real angle, Real way) {
   const Eigen::Matrix<Real, 3, 1> unit = axis.cast<Real>();
   frame.origin += way * (frame.axes * unit);
+  if (angle == 0) return;
   Eigen::Matrix<Real, 3, 3> across;
   across << 0, -unit.z(), unit.y(), unit.z(), 0, -unit.x(), -unit.y(), unit.x(), 0;
   const Eigen::Matrix<Real, 3, 3> turn = Eigen::Matrix<Real, 3, 3>::Identity() +
@@ -101,4 +102,4 @@ JudgedRobot judged_seven_joint_arm() {
                      {{shaft_end, {7, Vec3(0.0, 0.0, 308.0)}}, 2.0}}};
 }
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

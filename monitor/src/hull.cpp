@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/oracle/hull.h"
+#include "keepout/monitor/hull.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 // A fraction of the cube of the hull's size: a smaller volume is treated as flat.
@@ -173,9 +173,9 @@ Bracket Hull::least(const Triangle& triangle, double enough, const Between& betw
   return least;
 }
 
-Bracket Hull::distance(const Triangle& triangle, double enough) const {
-  return least(triangle, enough, [](const Segment& segment, const Triangle& other, bool) {
-    return narrow_distance(segment, other);
+Bracket Hull::distance(const Triangle& triangle, BracketFunction between, double enough) const {
+  return least(triangle, enough, [between](const Segment& segment, const Triangle& other, bool) {
+    return between(segment, other);
   });
 }
 
@@ -194,4 +194,4 @@ Gap Hull::gap(const Triangle& triangle) const noexcept {
   return nearest;
 }
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor
