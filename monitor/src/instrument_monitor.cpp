@@ -78,10 +78,12 @@ class MeshesMonitor final : public InstrumentMonitor {
   /// demands.
   bool is_enough(const MonitoredMotion::OfPair& pair, std::size_t p, double tolerance) noexcept {
     if (pair.target == none || pair.certified >= pair.target) return true;
-    const std::optional<double> start =
-        check_.clearance(MotionCheck::End::start, p, pair.target + pair.band);
+    const double radius = robot_.bodies[p % robot_.bodies.size()].radius;
+    const std::optional<Bracket> start =
+        check_.core_distance(MotionCheck::End::start, p, radius + pair.target + pair.band);
     if (!start) return false;
-    return pair.certified >= std::min(pair.target, *start - pair.band) - allowance * tolerance;
+    const double demanded = std::min(pair.target, start->low - radius - pair.band);
+    return pair.certified >= demanded - allowance * tolerance;
   }
 
   JudgedRobot robot_;

@@ -333,38 +333,37 @@ Clearance MotionCheck::check_pair(std::size_t number, double due) {
   return Clearance::kept;
 }
 
-std::optional<double> MotionCheck::clearance(End end, std::size_t pair, double reach) {
+std::optional<Bracket> MotionCheck::core_distance(End end, std::size_t pair, double reach) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
   const Hull& core = slots_[end == End::start ? at_start : at_end].cores[pair];
-  const double radius = robot_.bodies[pair % robot_.bodies.size()].radius;
   Surroundings& around = surroundings_[pair];
-  if (!surround(around, core, reach + radius)) return std::nullopt;
-  double nearest = reach + radius;
-  bool is_found = false;
-  bool is_narrow = true;
+  if (!surround(around, core, reach)) return std::nullopt;
+  Bracket nearest{infinity, infinity, infinity};
   Vec3 direction = around.direction;
   const auto measure = [&](const Neighbor& neighbor) {
-    if (!(core.least_distance(neighbor.center) - neighbor.radius <= nearest)) return;
-    const double enough = nearest + rounding_of(core, neighbor.center);
-    if (least_height(core, neighbor.triangle, direction) > enough ||
+    const double enough = std::min(reach, nearest.high) + rounding_of(core, neighbor.center);
+    if (core.least_distance(neighbor.center) - neighbor.radius > enough ||
+        least_height(core, neighbor.triangle, direction) > enough ||
         least_height(core, neighbor.triangle, core.way_from(neighbor.center)) > enough) {
       return;
     }
     const Gap gap = core.gap(neighbor.triangle);
-    is_narrow = is_narrow && gap.distance.narrow();
-    if (gap.distance.estimate > nearest) return;
-    is_found = true;
-    nearest = gap.distance.estimate;
+    const bool is_nearer = gap.distance.estimate < nearest.estimate;
+    nearest = {std::min(nearest.low, gap.distance.low),
+               std::min(nearest.estimate, gap.distance.estimate),
+               std::min(nearest.high, gap.distance.high)};
+    if (!is_nearer) return;
     around.nearest = static_cast<std::size_t>(&neighbor - around.neighbors.data());
     direction = gap.direction;
   };
   if (around.nearest < around.neighbors.size()) measure(around.neighbors[around.nearest]);
   for (const Neighbor& neighbor : around.neighbors) {
-    if (neighbor.low - around.shift > nearest) break;
+    if (neighbor.low - around.shift > std::min(reach, nearest.high)) break;
     if (!spend(of_a_gap)) return std::nullopt;
     measure(neighbor);
   }
-  if (!is_narrow) return std::nullopt;
-  return is_found ? nearest - radius : std::numeric_limits<double>::infinity();
+  if (nearest.low > reach) return Bracket{infinity, infinity, infinity};
+  return nearest;
 }
 
 MotionFinding MotionCheck::check(const InstrumentMotion& motion, std::span<const double> due,

@@ -43,8 +43,10 @@ class MeshTipMonitor final : public TipMonitor {
     if (!(required > unpromised_within * tau)) return false;
     if (keeps(required)) return true;
     // A tip that starts closer must not come closer.
-    const std::optional<double> start = check_->clearance(MotionCheck::End::start, 0, required);
-    return start && *start<required&& * start> unpromised_within * tau && keeps(*start);
+    const std::optional<Bracket> start =
+        check_->core_distance(MotionCheck::End::start, 0, required);
+    return start && start->low < required && start->low > unpromised_within * tau &&
+           keeps(start->low);
   }
 
   void follow(std::shared_ptr<const Mesh> mesh) override {

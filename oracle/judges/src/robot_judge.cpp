@@ -227,10 +227,13 @@ void RobotJudge::sample(std::span<const double> next, double at) {
 void RobotJudge::advance(std::span<const double> next) {
   bool is_measured = check_.poses() > 0;  // the motion is finite
   for (std::size_t i = 0; i < due_.size() && is_measured; ++i) {
-    const std::optional<double> clearance =
-        check_.clearance(MotionCheck::End::end, i, margin(i / bodies_));
-    is_measured = clearance.has_value();
-    distances_[i] = clearance.value_or(0.0);
+    const double radius = meshes_[0].oracle.robot().bodies[i % bodies_].radius;
+    const double reach = radius + margin(i / bodies_);
+    const std::optional<Bracket> distance = check_.core_distance(MotionCheck::End::end, i, reach);
+    is_measured = distance && (distance->low == infinity || distance->narrow());
+    if (is_measured) {
+      distances_[i] = distance->estimate <= reach ? distance->estimate - radius : infinity;
+    }
   }
   if (is_measured) {
     measure_guides(next);
