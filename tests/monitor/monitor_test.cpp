@@ -257,7 +257,7 @@ TEST(InstrumentMonitor, ConfirmsEachCycleBesideMeshesThatMove) {
     guard.place(
         0, {Vec3(0.0, 0.0, 3.0 * std::sin(time)), Mat3::Identity()},
         {.linear = Vec3(0.0, 0.0, 0.6 * std::cos(time)), .angular = 0.02 * random.direction()});
-    guard.place(1, {Vec3(30.0, 0.0, 40.0), Mat3::Identity()}, {.linear = random.direction()});
+    guard.place(1, {Vec3(80.0, 0.0, 0.0), Mat3::Identity()}, {.linear = random.direction()});
   });
   EXPECT_TRUE(statuses.contains(Status::limited));
 }
