@@ -150,8 +150,8 @@ class MotionCheckOnEveryShape : public testing::TestWithParam<Shape> {};
 INSTANTIATE_TEST_SUITE_P(MotionCheck, MotionCheckOnEveryShape, testing::ValuesIn(shapes()),
                          by_name);
 
-// Where a sample is too close, the clearance must be lost. Where dense samples leave enough for
-// what can be between them, it must be kept.
+// The clearance must be lost if a sample is too close. It must be kept if dense samples leave
+// enough for the motion between them.
 TEST_P(MotionCheckOnEveryShape, AgreesWithDenseSamples) {
   constexpr int samples = 200;
   const auto mesh = mesh_of(GetParam().make());
@@ -184,7 +184,7 @@ TEST_P(MotionCheckOnEveryShape, AgreesWithDenseSamples) {
     const auto at = [&](double due) { return check.check(drawn.motion(), {{due}}).clearance; };
     EXPECT_EQ(at(least + 1e-9 * size), Clearance::lost);
     EXPECT_EQ(at(least - longest - 1e-9 * size), Clearance::kept);
-    // Anything between is lost only if a pose is closer, and kept only if none is.
+    // Between these, the clearance is lost only if a pose is closer.
     const double due = least - random.uniform(0.0, 0.1) * longest;
     const MotionFinding finding = check.check(drawn.motion(), {{due}});
     if (finding.clearance != Clearance::lost) continue;

@@ -44,7 +44,7 @@ Bracket bracket_distance(const Segment& segment, const Triangle& triangle) noexc
 /// `estimate` apart.
 struct Gap {
   Bracket distance;
-  Vec3 direction;  // of any length; 0 if there is none
+  Vec3 direction;  // of any length; 0 if unknown
 };
 
 /// Like bracket_distance(), but also returns the direction.

@@ -20,15 +20,15 @@ struct MonitorCapacity {
   std::uint64_t work = 65'536;     // of a motion, in units of about 0.1 µs
 };
 
-/// Returns a monitor of a tip beside a mesh: it confirms a motion if MotionCheck proves that the
+/// Returns a monitor of a tip beside a mesh. It confirms a motion if MotionCheck proves that the
 /// tip stays min(required clearance, its distance at the start) - 4 tau away. Tau is that of
 /// docs/certified-step.md. The monitor has a tree of its own: O(n log n) to make, and again in
 /// follow(). A tip within 8 tau of the surface is never confirmed.
 std::unique_ptr<TipMonitor> make_tip_monitor(std::shared_ptr<const Mesh> mesh,
                                              const MonitorCapacity& capacity = {});
 
-/// Returns a monitor of an instrument beside meshes: it confirms a motion if MotionCheck proves for
-/// each pair the certified clearance - 4 tolerances, on the whole true motion of joints and meshes.
+/// Returns a monitor of an instrument beside meshes. It confirms a motion if MotionCheck proves the
+/// certified clearance - 4 tolerances of each pair, on the whole true motion.
 /// The certified clearance of a pair that is not degraded must be at least
 /// min(margin - band, distance at the start - band). While all meshes stand still, each pair must
 /// have a certified clearance.

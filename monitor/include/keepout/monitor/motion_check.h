@@ -80,9 +80,9 @@ class MotionCheck {
                       std::uint64_t work = unlimited);
 
   enum class End : std::uint8_t { start, end };
-  /// Returns the distance of a pair's core from the mesh at an end of the last motion; infinite if it
-  /// is more than `reach`. Empty if the work of the last check ends. Precondition: the last motion
-  /// was finite. [length]
+  /// Returns the distance of a pair's core from the mesh at an end of the last motion; infinite if
+  /// it is more than `reach`. Empty if the work of the last check ends. Precondition: the last
+  /// motion was finite. [length]
   std::optional<Bracket> core_distance(End end, std::size_t pair, double reach);
 
   /// Returns the number of poses of the last check, its ends included.

@@ -43,7 +43,7 @@ double excess(const JudgedGuide& guide, std::span<const LinkFrame> links);
 /// moves. So the bounds of MotionCheck hold for it, with its sign reversed. The guided point of a
 /// remote center moves along the segment too. Let its fraction of the segment change by v in a part
 /// of the motion of the length w. The point whose fraction changes linearly has the second
-/// derivative M + 2 v / w (P of the first end + P of the second), and is no nearer to the origin.
+/// derivative M + 2 v / w (P of the first end + P of the second). It is no nearer to the origin.
 MotionFinding check_guide(const JudgedGuide& guide, const JudgedRobot& robot, const Pose& base,
                           const InstrumentMotion& motion, double most);
 

@@ -40,8 +40,8 @@ class InstrumentMonitor {
  public:
   virtual ~InstrumentMonitor() = default;
 
-  /// Returns true if each body, on the whole true motion, maintains the certified clearance less a
-  /// few tolerances, and if this clearance is not less than the distance at the start demands.
+  /// Returns true if each body maintains its certified clearance, less a few tolerances, on the
+  /// whole true motion. This clearance must not be less than the distance at the start demands.
   /// Returns false otherwise, and if the monitor cannot decide. Must not allocate, lock, throw or
   /// print.
   virtual bool confirms(const MonitoredMotion& motion) noexcept = 0;
