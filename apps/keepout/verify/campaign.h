@@ -116,8 +116,9 @@ struct Tally {
   std::array<std::uint64_t, status_count> statuses{};
   std::array<std::uint64_t, oracle::breach_kinds> breaches{};
   std::uint64_t first_breach = 0;  // number of the first cycle with a breach; 0 without breach
-  std::uint64_t in_mesh = 0;  // breaches of the clearance in which the mesh reached into a body
-  double deepest = 0.0;       // in those cycles [mm]
+  std::uint64_t in_mesh = 0;    // breaches of the clearance in which the mesh reached into a body
+  double deepest = 0.0;         // in those cycles [mm]
+  std::uint64_t undecided = 0;  // cycles that the judge neither proved nor refuted
   /// The smallest distance beyond the guaranteed one, as a length and in tolerances. Infinite if
   /// nothing came near. For tips, only steps that must maintain their clearance count. [length]
   double least_beyond = infinity;

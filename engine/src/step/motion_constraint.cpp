@@ -109,6 +109,7 @@ void MotionConstraint::follow(std::shared_ptr<const Mesh> moved,
       neighborhood_of(moved, std::move(index), rule_.get(), solver_.get(), capacity_, *budget_);
   FreePolytope polytope(moved, near->room());
   const bool has_same_triangles = std::ranges::equal(moved->triangles(), mesh().triangles());
+  if (monitor_ != nullptr) monitor_->follow(moved);
   if (!has_same_triangles) has_sides_ = inside_ == Inside::escape && is_watertight(*moved);
   *neighborhood_ = std::move(*near);
   polytope_ = std::move(polytope);
@@ -129,6 +130,13 @@ void MotionConstraint::set_guides(std::vector<Guide> guides) {
   TipGuides prepared(std::move(guides));
   reserve_solver(prepared.guides().size());
   memory_->guides = std::move(prepared);
+}
+
+void MotionConstraint::set_monitor(std::unique_ptr<TipMonitor> monitor) {
+  if (monitor != nullptr && rule_->guards_a_tool()) {
+    throw Error("a monitor confirms the motions of a ball: the rule guards a whole tool");
+  }
+  monitor_ = std::move(monitor);
 }
 
 std::span<const Guide> MotionConstraint::guides() const noexcept {
@@ -199,10 +207,18 @@ Step MotionConstraint::escape_or_cycle(const Motion& request, SideWatch& sides,
     if (auto inside = step_of_tip_inside(*neighborhood_, request, options_, *memory_))
       return *inside;
   }
-  const Step step = Cycle(*rule_, *solver_, *memory_, *budget_, options_, request, times).run();
+  Step step = Cycle(*rule_, *solver_, *memory_, *budget_, options_, request, times).run();
   if (step.status == Status::touching && classifies(sides)) {
     if (auto escape = escape_from_surface(*neighborhood_, request, options_, *memory_))
       return *escape;
+  }
+  const bool must_confirm = monitor_ != nullptr && step.ok() && !step.motion.isZero(0.0);
+  if (must_confirm && !monitor_->confirms(request.tip, request.tip + step.motion, options_)) {
+    step.status = Status::unconfirmed;
+    step.motion.setZero();
+    step.increment = {};
+    step.active = {};
+    step.limits = {};
   }
   sides.after(request, step, options_, mesh());
   return step;

@@ -45,10 +45,10 @@ struct Missed {
   double moving, standing;
 };
 
-Missed missed(const RobotSetup& setup, const oracle::JudgedRobot& robot,
+Missed missed(const RobotSetup& setup, const monitor::JudgedRobot& robot,
               std::span<const double> from, std::span<const double> to, const Twist& desired) {
-  const auto before = oracle::place(robot, setup.start.base, from);
-  const auto after = oracle::place(robot, setup.start.base, to);
+  const auto before = monitor::place(robot, setup.start.base, from);
+  const auto after = monitor::place(robot, setup.start.base, to);
   const Vec3& flange = setup.robot.flange.position;
   const Vec3 way = after.back().at(flange) - before.back().at(flange);
   const Mat3 turned = (after.back().axes * before.back().axes.transpose()).cast<double>();
@@ -84,7 +84,7 @@ class RobotAttempt {
         judged_(setup_.robot.judged()),
         chain_(setup_.robot.make(setup_.start.base).chain()),
         subject_(campaign.make_subject(setup_)),
-        judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
+        judge_(judged_scene(setup_), chain_, setup_.start.positions, setup_.options,
                subject_->tolerance()),
         attacker_(*setup_.meshes[0].scene, random, setup_.speed),
         positions_(setup_.start.positions) {
@@ -199,6 +199,7 @@ class RobotAttempt {
       ++tally_.in_mesh;
       tally_.deepest = std::max(tally_.deepest, -verdict.least);
     }
+    tally_.undecided += verdict.is_undecided ? 1 : 0;
     if (verdict.limits_broken) tally_.count(Breach::limits_broken);
     if (verdict.is_guide_left) tally_.count(Breach::guide_left);
     tally_.least_beyond = std::min(tally_.least_beyond, verdict.beyond);
@@ -240,7 +241,7 @@ class RobotAttempt {
   Tally& tally_;
   Random& random_;
   RobotSetup setup_;
-  oracle::JudgedRobot judged_;
+  monitor::JudgedRobot judged_;
   Chain chain_;
   std::unique_ptr<RobotSubject> subject_;
   std::optional<MotionConstraint> point_;  // a ball at the tip alone, timed for comparison

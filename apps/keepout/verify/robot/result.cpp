@@ -71,6 +71,7 @@ const Columns<Tally>& robot_columns() {
       {"limits_broken", breaches(Breach::limits_broken), "limits", 6, &count_text},
       {"guides_left", breaches(Breach::guide_left), "guides", 6, &count_text},
       {"strayed", breaches(Breach::strayed), "strayed", 7, &count_text},
+      {"undecided", &Tally::undecided, "undec.", 6, &count_text},
       {"first_breach",
        [](const Tally& t) { return t.first_breach > 0 ? Json(t.first_breach) : Json(nullptr); }},
       {"least_beyond_mm", finite(&Tally::least_beyond), "least", 9, &number_text<"%.2e">},
@@ -103,11 +104,12 @@ const Columns<Tally>& robot_columns() {
 }
 
 constexpr const char* robot_legend =
-    R"(below: cycles that came closer than guaranteed; an independent judge examines 15 poses of each
-cycle. in mesh: of these, cycles in which the mesh reached into a body. limits: cycles that broke a
-joint limit. guides: cycles that left a guide by more than guaranteed. strayed: cycles of status
-free that ended farther from the command than without motion. least: smallest clearance beyond the
-guaranteed one, in mm and in tolerances, of which 3 are rounding; guide: the same for guides.
+    R"(below: cycles that came closer than guaranteed; an independent judge proves the whole motion of
+each cycle. in mesh: of these, cycles in which the mesh reached into a body. limits: cycles that
+broke a joint limit. guides: cycles that left a guide by more than guaranteed. strayed: cycles of
+status free that ended farther from the command than without motion. undec.: cycles that the judge
+neither proved nor refuted. least: smallest clearance beyond the guaranteed one at the ends of
+motions, in mm and in tolerances, of which 3 are rounding; guide: the same for guides.
 blocked: cycles that executed less than 5 % of the command; worse: cycles farther from the command
 than without motion. cut: motions shortened to the proved part; none: no motion. excess: fraction
 of the cost that a search could save, in searched blocked cycles; useful: more than 5 %; movable:
@@ -124,7 +126,7 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
   const Json sums = total_of(rows);
   Json total{{"mesh", "total"}};
   for (const char* key : {"cycles", "below", "in_mesh", "deepest_mm", "limits_broken",
-                          "guides_left", "strayed", "least_beyond_tau"}) {
+                          "guides_left", "strayed", "undecided", "least_beyond_tau"}) {
     total[key] = sums[key];
   }
   std::uint64_t broken = 0, blocked = 0;
@@ -139,6 +141,9 @@ CampaignResult result_of_instruments(const Campaign& campaign, const Findings& f
   total.update(
       {{"blocked", blocked}, {"searched", sums["excess_samples"]}, {"movable", sums["movable"]}});
   const std::uint64_t starts = sums["starts"].get<std::uint64_t>();
+  if (const auto open = sums["undecided"].get<std::uint64_t>(); open > 0) {
+    account.push_back("The judge could not decide " + counted(open, "cycle") + ".");
+  }
   if (broken == 0 && starts > 0) account.push_back(rate_bound(starts));
   const bool is_actual = campaign.motion == CertifiedMotion::actual;
   if (!is_actual)
