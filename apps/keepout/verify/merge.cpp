@@ -11,14 +11,28 @@
 namespace keepout::app {
 namespace {
 
+bool is_of_instruments(const Json& record) { return record.at("keepout_record") == "verify_robot"; }
+
 /// Returns the name of a property that differs although all shards of a campaign share it; empty if
 /// there is no difference.
 std::string difference(const Json& a, const Json& b) {
   using Named = std::pair<const char*, const char*>;
-  for (const auto& [key, what] : {Named{"version", "versions of keepout"}, Named{"seed", "seeds"},
-                                  Named{"steps", "numbers of steps"}, Named{"index", "indices"},
-                                  Named{"shard_count", "numbers of shards"}}) {
+  for (const auto& [key, what] :
+       {Named{"keepout_record", "kinds"}, Named{"version", "versions of keepout"},
+        Named{"seed", "seeds"}, Named{"index", "indices"},
+        Named{"shard_count", "numbers of shards"},
+        Named{"settings", is_of_instruments(a) ? "settings" : "numbers of steps"}}) {
     if (a.at(key) != b.at(key)) return what;
+  }
+  if (is_of_instruments(a)) {
+    // A shard that was stopped lacks its last rows.
+    const Json &some = a.at("rows"), &others = b.at("rows");
+    for (std::size_t i = 0; i < std::min(some.size(), others.size()); ++i) {
+      for (const char* key : {"mesh", "triangles", "scenario", "speed"}) {
+        if (some[i].at(key) != others[i].at(key)) return "rows";
+      }
+    }
+    return {};
   }
   const Json &some = a.at("meshes"), &others = b.at("meshes");
   const auto same_name = [](const Json& one, const Json& other) {
@@ -56,13 +70,9 @@ bool are_possible(const Json& row) {
 
 /// Returns true if the numbers of a record agree with each other.
 bool is_sound(const Json& record) {
-  const Json& meshes = record.at("meshes");
   const Json& count = record.at("shard_count");
   const auto& shards = record.at("shards");
-  if (!is_count(count) || count > Shard::most || shards.empty() ||
-      !std::all_of(meshes.begin(), meshes.end(), &are_possible)) {
-    return false;
-  }
+  if (!is_count(count) || count > Shard::most || shards.empty()) return false;
   std::vector<bool> is_there(count.get<std::size_t>());
   for (const Json& shard : shards) {
     const Json& index = shard.at("index");
@@ -72,6 +82,12 @@ bool is_sound(const Json& record) {
     is_there[index.get<std::size_t>() - 1] = true;
   }
   // Another program may have changed the order of members, and the sum of the seconds is rounded.
+  if (is_of_instruments(record)) {
+    const nlohmann::json again = finished(record, tallies_of(record)).record;
+    return again == nlohmann::json(record);
+  }
+  const Json& meshes = record.at("meshes");
+  if (!std::all_of(meshes.begin(), meshes.end(), &are_possible)) return false;
   nlohmann::json total = record.at("total"), sum = total_of(meshes);
   total["seconds"] = sum["seconds"];
   return total == sum && record.at("steps_done") == sum["steps"];
@@ -82,14 +98,16 @@ Json read(const std::filesystem::path& path) {
   const Error damaged(path.string() + ": is not a whole result of 'keepout verify --json'");
   try {
     const Json record = Json::parse(file);
-    if (!fault_of(record).empty() || record.at("keepout_record") != "verify") throw damaged;
-    const int written = record.at("campaign_format").get<int>();
+    if (!fault_of(record).empty()) throw damaged;
+    if (record.at("keepout_record") != "verify" && !is_of_instruments(record)) throw damaged;
+    const int written = record.value("campaign_format", 0);
     if (written != campaign_format) {
       throw Error(path.string() + ": written by another version of keepout verify (format " +
                   std::to_string(written) + ", not " + std::to_string(campaign_format) + ")");
     }
     if (!is_sound(record)) throw damaged;
-    return finished(record).record;  // throws if a member is missing
+    // Throws if a member is missing.
+    return is_of_instruments(record) ? record : finished(record).record;
   } catch (const Json::exception&) {
     throw damaged;
   }
@@ -127,6 +145,25 @@ CampaignResult merged(const std::vector<std::filesystem::path>& files, const std
     parts.push_back(part);
   }
   Json sum = parts.front();
+  std::ranges::sort(shards, {}, [](const Json& s) { return s.at("index").get<std::uint64_t>(); });
+  sum["shards"] = shards;
+  sum["command"] = command;
+  sum["date"] = date_now();
+  if (is_of_instruments(sum)) {
+    std::vector<Tally> rows;
+    for (const Json& part : parts) {
+      const std::vector<Tally> more = tallies_of(part);
+      for (std::size_t i = 0; i < more.size(); ++i) {
+        if (i < rows.size()) {
+          add(rows[i], more[i]);
+        } else {
+          rows.push_back(more[i]);
+        }
+      }
+    }
+    if (parts.size() > 1) sum["machine"] = nullptr;
+    return finished(std::move(sum), rows);
+  }
   for (std::size_t i = 1; i < parts.size(); ++i) {
     for (std::size_t m = 0; m < sum["meshes"].size(); ++m) {
       add(sum["meshes"][m], parts[i]["meshes"][m]);
@@ -134,10 +171,6 @@ CampaignResult merged(const std::vector<std::filesystem::path>& files, const std
     append(sum["breaches"], parts[i]["breaches"], most_breaches);
     append(sum["anomalies"], parts[i]["anomalies"], most_anomalies);
   }
-  std::ranges::sort(shards, {}, [](const Json& s) { return s.at("index").get<std::uint64_t>(); });
-  sum["shards"] = shards;
-  sum["command"] = command;
-  sum["date"] = date_now();
   return finished(std::move(sum));
 }
 

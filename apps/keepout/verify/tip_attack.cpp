@@ -106,6 +106,7 @@ class TipAttack final : public Attack {
         arenas_(arenas),
         arena_(arena),
         findings_(findings),
+        trajectories_(trajectory_count(campaign.steps, steps_of_a_trajectory)),
         next_(from(campaign.shard.index - 1)) {}
 
   std::uint64_t begin() override {
@@ -129,6 +130,7 @@ class TipAttack final : public Attack {
   }
 
   bool cycle(std::uint64_t number) override {
+    row.now = trajectory_ * steps_of_a_trajectory + number + 1;
     Scene& scene = scenes_[scene_];
     Guard& guard = *guards_[scene_];
     if (!tip_) {
@@ -156,13 +158,13 @@ class TipAttack final : public Attack {
     return true;
   }
 
-  bool is_done() const override { return next_ >= trajectory_count(campaign_.steps); }
+  bool is_done() const override { return next_ >= trajectories_; }
 
  private:
   /// Returns the first trajectory of the shard on this mesh, at or after the given one. A list of
   /// all would take memory in proportion to the steps of the campaign.
   std::uint64_t from(std::uint64_t trajectory) const noexcept {
-    while (trajectory < trajectory_count(campaign_.steps) &&
+    while (trajectory < trajectories_ &&
            random_of(campaign_.seed, trajectory).below(arenas_.size()) != arena_) {
       trajectory += campaign_.shard.count;
     }
@@ -184,6 +186,7 @@ class TipAttack final : public Attack {
   std::span<const Arena> arenas_;
   std::size_t arena_;
   Findings& findings_;
+  std::uint64_t trajectories_;    // of all meshes and shards
   std::uint64_t next_;            // the number of the next trajectory on this mesh
   std::uint64_t trajectory_ = 0;  // the current one
   std::vector<Scene> scenes_;

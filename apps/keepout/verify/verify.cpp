@@ -45,14 +45,21 @@ std::vector<Arena> arenas_of(const VerifyOptions& options, std::vector<std::stri
 
 CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   const Campaign& campaign = options;
-  const std::uint64_t trajectories = trajectory_count(campaign.steps);
-  if (!campaign.is_of_instruments() && campaign.shard.count > trajectories) {
-    throw Error("--shard: there are only " + std::to_string(trajectories) + " trajectories of " +
-                std::to_string(steps_of_a_trajectory) +
-                " steps to distribute; use fewer shards or more steps");
-  }
   std::vector<std::string> missing;
   std::vector<Arena> arenas = arenas_of(options, missing);
+  const bool is_of_tips = !campaign.is_of_instruments();
+  const bool is_drawn = campaign.robot.empty() || !arenas.front().load;
+  const std::uint64_t length = is_of_tips ? steps_of_a_trajectory
+                               : is_drawn ? cycles_of_a_drawn_trajectory
+                                          : cycles_of_a_trajectory;
+  const std::uint64_t trajectories =
+      trajectory_count(is_of_tips ? campaign.steps : campaign.cycles, length);
+  if (campaign.shard.count > trajectories) {
+    const std::string steps = is_of_tips ? "steps" : "cycles";
+    throw Error("--shard: there are only " + std::to_string(trajectories) + " trajectories of " +
+                std::to_string(length) + " " + steps + " to distribute; use fewer shards or more " +
+                steps);
+  }
   for (const std::string& mesh : missing) out << "note: " << mesh << '\n';
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   for (Arena& arena : arenas) {
@@ -146,9 +153,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
           "--shard", [&](const std::string& text) { campaign.shard = shard_of(text); },
           "Run part I of N of the campaign")
       ->type_name("I/N")
-      ->default_str("1/1")
-      ->excludes(named)
-      ->excludes(chosen);
+      ->default_str("1/1");
   add_plugins(command);
   add_part(command, "--index", campaign.index, index_names(), index_backends,
            "Index that finds triangles");
