@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <fstream>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "keepout/error.h"
@@ -90,6 +92,14 @@ bool is_sound(const Json& record) {
   if (!std::all_of(meshes.begin(), meshes.end(), &are_possible)) return false;
   nlohmann::json total = record.at("total"), sum = total_of(meshes);
   total["seconds"] = sum["seconds"];
+  for (const char* which : {"breaches", "anomalies"}) {
+    for (const Json& incident : record.at(which)) {
+      if (!incident.at("mesh").is_string() || !is_count(incident.at("trajectory")) ||
+          !is_count(incident.at("cycle"))) {
+        return false;
+      }
+    }
+  }
   return total == sum && record.at("steps_done") == sum["steps"];
 }
 
@@ -113,35 +123,48 @@ Json read(const std::filesystem::path& path) {
   }
 }
 
-/// Appends incidents up to the largest recorded number.
-void append(Json& to, const Json& from, std::size_t most) {
-  for (const Json& incident : from) {
-    if (to.size() < most) to.push_back(incident);
-  }
+/// Returns the first incidents of all parts, in the order in which one machine finds them.
+Json first_incidents(const std::vector<Json>& parts, const char* which, std::size_t most) {
+  std::vector<Json> all;
+  for (const Json& part : parts) all.insert(all.end(), part[which].begin(), part[which].end());
+  const Json& meshes = parts.front()["meshes"];
+  const auto place = [&](const Json& incident) {
+    const auto same = [&](const Json& row) { return row["mesh"] == incident["mesh"]; };
+    return std::tuple(std::ranges::find_if(meshes, same) - meshes.begin(),
+                      incident["trajectory"].get<std::uint64_t>(),
+                      incident["cycle"].get<std::uint64_t>());
+  };
+  std::ranges::stable_sort(all, {}, place);
+  all.resize(std::min(all.size(), most));
+  return all;
 }
 
 }  // namespace
 
 CampaignResult merged(const std::vector<std::filesystem::path>& files, const std::string& command) {
   std::vector<Json> parts, shards;
+  std::map<Json, std::filesystem::path> file_of;  // by the index of a shard
+  Json common;                                    // the first part, with the triangles of all
   for (const std::filesystem::path& file : files) {
     const Json part = read(file);
-    const auto same_index = [](const Json& one, const Json& other) {
-      return one.at("index") == other.at("index");
-    };
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const std::string both = files[i].string() + " and " + file.string();
-      if (const std::string what = difference(parts[i], part); !what.empty()) {
-        throw Error(both + " are not of one campaign: their " + what + " differ");
-      }
-      const Json& before = parts[i].at("shards");
-      const auto twice = std::ranges::find_first_of(before, part.at("shards"), same_index);
-      if (twice != before.end()) {
-        throw Error(both + " both contain shard " + twice->at("index").dump() + "/" +
-                    part.at("shard_count").dump() + ": it would count twice");
-      }
+    if (parts.empty()) common = part;
+    if (const std::string what = difference(common, part); !what.empty()) {
+      throw Error(files.front().string() + " and " + file.string() +
+                  " are not of one campaign: their " + what + " differ");
     }
-    for (const Json& shard : part.at("shards")) shards.push_back(shard);
+    for (std::size_t m = 0; !is_of_instruments(part) && m < part["meshes"].size(); ++m) {
+      Json& triangles = common["meshes"][m]["triangles"];
+      triangles = std::max(triangles, part["meshes"][m]["triangles"]);
+    }
+    for (const Json& shard : part.at("shards")) {
+      const auto [other, is_new] = file_of.emplace(shard.at("index"), file);
+      if (!is_new) {
+        throw Error(other->second.string() + " and " + file.string() + " both contain shard " +
+                    shard.at("index").dump() + "/" + part.at("shard_count").dump() +
+                    ": it would count twice");
+      }
+      shards.push_back(shard);
+    }
     parts.push_back(part);
   }
   Json sum = parts.front();
@@ -168,9 +191,9 @@ CampaignResult merged(const std::vector<std::filesystem::path>& files, const std
     for (std::size_t m = 0; m < sum["meshes"].size(); ++m) {
       add(sum["meshes"][m], parts[i]["meshes"][m]);
     }
-    append(sum["breaches"], parts[i]["breaches"], most_breaches);
-    append(sum["anomalies"], parts[i]["anomalies"], most_anomalies);
   }
+  sum["breaches"] = first_incidents(parts, "breaches", most_breaches);
+  sum["anomalies"] = first_incidents(parts, "anomalies", most_anomalies);
   return finished(std::move(sum));
 }
 

@@ -33,9 +33,9 @@ bool is_expected(Status failure, const Setup& setup) noexcept {
 
 /// Returns the record of a breach, or of a step without a motion. `what`: the breach, or the status
 /// of the step.
-Json incident(std::string_view what, const Scene& scene, std::uint64_t trajectory,
-              std::uint64_t cycle, const Setup& setup, const Motion& motion, const Step& step,
-              const TipVerdict& verdict) {
+Json incident(std::string_view what, const std::string& mesh, const Scene& scene,
+              std::uint64_t trajectory, std::uint64_t cycle, const Setup& setup,
+              const Motion& motion, const Step& step, const TipVerdict& verdict) {
   std::vector<double> jacobian, row_matrix, row_bounds;
   if (motion.jacobian) {
     const double* const first = motion.jacobian->data();
@@ -48,6 +48,7 @@ Json incident(std::string_view what, const Scene& scene, std::uint64_t trajector
     row_bounds.assign(motion.rows->bounds(), motion.rows->bounds() + rows);
   }
   Json finding{{"what", what},
+               {"mesh", mesh},
                {"scene", scene.name()},
                {"trajectory", trajectory},
                {"cycle", cycle},
@@ -146,7 +147,7 @@ class TipAttack final : public Attack {
     const auto note = [&](std::string_view what, Json& incidents, std::size_t most) {
       if (incidents.size() >= most) return;
       incidents.push_back(
-          incident(what, scene, trajectory_, number, tip_->setup, motion, step, verdict));
+          incident(what, row.mesh, scene, trajectory_, number, tip_->setup, motion, step, verdict));
     };
     if (!step.ok() && !is_expected(step.status, tip_->setup)) {
       note(name(step.status), findings_.anomalies, most_anomalies);

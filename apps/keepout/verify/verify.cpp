@@ -81,6 +81,24 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   return result_of(campaign, findings);
 }
 
+/// Returns the files, and instead of each folder the records in it.
+std::vector<std::filesystem::path> records_in(const std::vector<std::filesystem::path>& paths) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& path : paths) {
+    if (!std::filesystem::is_directory(path)) {
+      files.push_back(path);
+      continue;
+    }
+    const std::size_t before = files.size();
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+    }
+    if (files.size() == before) throw Error(path.string() + ": the folder has no record");
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
+  }
+  return files;
+}
+
 /// Returns the shard that "I/N" describes.
 Shard shard_of(const std::string& text) {
   std::istringstream in(text);
@@ -162,7 +180,9 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   });
   options.files.add_to(command);
   CLI::Option* merge =
-      command.add_option("--merge", options.merge, "Add up the results of a campaign's shards")
+      command
+          .add_option("--merge", options.merge,
+                      "Add up the results of a campaign's shards: records, or folders of records")
           ->type_name("FILES");
   for (CLI::Option* option : of_a_run) merge->excludes(option);
   command.footer(
@@ -179,16 +199,16 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
 int verify(const VerifyOptions& options, std::ostream& out) {
   std::vector<NamedPath> inputs;
   for (const auto& mesh : options.meshes) inputs.push_back({"MESH", file_of_mesh(mesh)});
-  for (const auto& file : options.merge) inputs.push_back({"--merge", file});
+  const std::vector<std::filesystem::path> merge = records_in(options.merge);
+  for (const auto& file : merge) inputs.push_back({"--merge", file});
   for (const NamedPath& file : robot_inputs(options.robot, options.bodies)) inputs.push_back(file);
   OutputFiles outputs(inputs,
                       {{"--out", options.files.page}, {"--json", options.files.kept_json()}});
-  const CampaignResult result =
-      options.merge.empty() ? run(options, out) : merged(options.merge, options.command);
+  const CampaignResult result = merge.empty() ? run(options, out) : merged(merge, options.command);
   result.print(out);  // before writing: a full disk must not hide the verdict
   write_record(outputs, result.record, options.files);
   if (result.is_broken) return EXIT_FAILURE;
-  if (!options.merge.empty()) {
+  if (!merge.empty()) {
     if (result.record.at("complete").get<bool>()) return EXIT_SUCCESS;
     std::cerr << "keepout: the campaign is incomplete: --merge needs the finished record of every "
                  "shard\n";
