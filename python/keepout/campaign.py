@@ -141,8 +141,9 @@ def run_shards(campaign: Campaign, pool: concurrent.futures.Executor, task: Any,
             if _is_whole(record, shard, campaign.shards):
                 _write(campaign.file(shard), record)
                 done += 1
-                breaches += status != 0
-                campaign.log(f"shard {shard}: {json.loads(record)['headline']}")
+                headline = json.loads(record)["headline"]
+                breaches += not headline.startswith(("No breach", "Nothing"))
+                campaign.log(f"shard {shard}: {headline}")
             elif (status < 0 or status in (130, 137, 143)) and tries[shard] < TRIES:
                 campaign.log(f"shard {shard}: its program was ended (status {status}); running it again")
                 begin(shard)
