@@ -127,7 +127,9 @@ def run_shards(campaign: Campaign, pool: concurrent.futures.Executor, task: Any,
     campaign.log(f"{kept} of {campaign.shards} shards are finished; running the others")
     for shard in left:
         begin(shard)
-    started, done, breaches = time.monotonic(), 0, 0
+    on_terminal = sys.stderr.isatty()
+    started = shown = time.monotonic()
+    done = breaches = 0
     while running:
         finished, _ = concurrent.futures.wait(running, timeout=10, return_when=concurrent.futures.FIRST_COMPLETED)
         for future in finished:
@@ -151,11 +153,14 @@ def run_shards(campaign: Campaign, pool: concurrent.futures.Executor, task: Any,
                 said = errors.strip() or printed.strip() or f"exit status {status}"
                 campaign.log(f"shard {shard}: {said}")
                 raise CampaignError(f"shard {shard}/{campaign.shards}: {said}")
-        if not quiet:
-            rest = (time.monotonic() - started) / done * (len(left) - done) if done else 0
-            print(f"{kept + done} of {campaign.shards} shards"
-                  + (f", {rest / 60:.0f} min left" if rest >= 60 else f", {rest:.0f} s left" if rest else "")
-                  + (f", {breaches} with a breach" if breaches else ""), file=sys.stderr, flush=True)
+        if not quiet and (on_terminal or not running or time.monotonic() - shown >= 10):
+            shown = time.monotonic()
+            rest = (shown - started) / done * (len(left) - done) if done else 0
+            line = f"{kept + done} of {campaign.shards} shards" + (
+                f", {rest / 60:.0f} min left" if rest >= 60 else f", {rest:.0f} s left" if rest else "") + (
+                f", {breaches} with a breach" if breaches else "")
+            print(f"\r\033[K{line}" if on_terminal else line, end="" if on_terminal and running else "\n",
+                  file=sys.stderr, flush=True)
 
 
 def main(arguments: list[str]) -> int:
