@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import concurrent.futures
 import contextlib
+import logging
 import multiprocessing
 import signal
 from collections.abc import Callable, Iterator
@@ -103,6 +104,7 @@ def cluster(address: str) -> Iterator[concurrent.futures.Executor]:
     except (OSError, ValueError, TypeError) as fault:
         raise WorkersError(f"--dask: no scheduler answers at '{address}' within {PATIENCE} s ({fault}). Start one with "
                            "'dask scheduler', and workers with 'dask worker ADDRESS'") from None
+    logging.getLogger("asyncio").setLevel(logging.CRITICAL)  # Dask leaves futures of cancelled tasks behind
     with client:
         pool = client.get_executor(pure=False)
         try:
