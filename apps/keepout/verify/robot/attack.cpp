@@ -277,7 +277,7 @@ class RobotAttack final : public Attack {
       *loaded_ = std::make_shared<Scene>(std::move(scenes.front()));
     }
     if (*loaded_) row.triangles = (*loaded_)->mesh()->triangle_count();
-    // If the first trajectory has no start, the row is given up, in every shard.
+    // A row whose first trajectory has no start ends, in every shard.
     if (!is_begun_ && !is_done()) {
       random_ = random_of(0);
       if (!draw()) {
@@ -321,7 +321,7 @@ class RobotAttack final : public Attack {
     return Random(of_seed.bits() ^ trajectory);
   }
 
-  /// Draws a start; empty if none is found.
+  /// Draws a setup. Returns nothing if several draws find no start.
   std::optional<RobotSetup> draw() {
     const auto draw_mesh = [&](Random& random) {
       return *loaded_ ? *loaded_ : arena_.draw(random);
