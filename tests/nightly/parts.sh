@@ -1,7 +1,6 @@
-# The parts of the tests: each is a function part_NAME, with its title in the comment above it. ./test runs `release`
-# and `asan` at short length; `./test --long` runs all of them, in this order, and writes a page (tests/nightly).
-# A part ends with status 77 if the machine or the tree lacks what it needs (`skip`). The page shows each line
-# `figure: ...` that a part prints.
+# The parts of the tests. Each is a function part_NAME with a title in the comment above it. ./test runs `release` and
+# `asan` at short length. `./test --long` runs all parts in this order, and writes a page (tests/nightly). A part ends
+# with status 77 if the machine or the tree lacks what it needs. The page shows each line `figure: ...` that it prints.
 # SPDX-License-Identifier: BSD-3-Clause
 #
 # Set before: root, length (short or long), minutes (for each part without an end of its own), results (a directory
@@ -50,6 +49,7 @@ run_tests() {
 until_the_end() {
   local seed
   seed=$(date +%Y%m%d)0000
+  SECONDS=0
   while [ $SECONDS -lt $((60 * minutes)) ]; do
     seed=$((seed + 1))
     say "seed $seed"
@@ -125,7 +125,8 @@ part_simd() {
   build release same_steps_test
   output=$(KEEPOUT_ALL_TRIALS=1 "$program") || { printf '%s\n' "$output"; return 1; }
   printf '%s\n' "$output"
-  echo "figure: on $(grep -o 'targets: .*' <<< "$output" | head -1), $(grep -c 'OK .*OfKind' <<< "$output") kinds of step"
+  echo "figure: $(grep -c 'OK .*OfKind' <<< "$output") kinds of step, for $(
+    grep -owE 'avx512bw|avx2|sse4_2|ssse3|sse2|asimd' /proc/cpuinfo | sort -u | xargs)"
   [ "$(uname -m)" = x86_64 ] || return 0
   if ! command -v qemu-x86_64-static >/dev/null; then
     echo "figure: emulated processors skipped: qemu-x86_64-static is missing"
