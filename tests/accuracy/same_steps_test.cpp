@@ -67,7 +67,20 @@ std::string recorded(const std::string& name, const char* path = KEEPOUT_STEPS) 
   return "";
 }
 
+/// Returns true if the C library rounds sines as on the machine of the records.
+bool has_the_sines_of_the_records() {
+#if defined(__GLIBC__) && defined(__x86_64__)
+  return __builtin_cpu_supports("fma");
+#elif defined(__GLIBC__) && defined(__aarch64__)
+  return true;  // glibc compiles the same code for FMA
+#else
+  return false;
+#endif
+}
+constexpr const char* other_sines = "sines are rounded differently without glibc or without FMA";
+
 TEST(SameSteps, OfTips) {
+  if (!has_the_sines_of_the_records()) GTEST_SKIP() << "of other shapes: " << other_sines;
   Fingerprint fingerprint;
   int limited = 0;
   for (const char* name : meshes) {
@@ -142,18 +155,6 @@ void add_stroke(int stroke, bool meshes_move, bool is_guided, Fingerprint& finge
   }
 }
 
-/// Returns true if the C library rounds sines as on the machine of the records.
-bool has_the_sines_of_the_records() {
-#if defined(__GLIBC__) && defined(__x86_64__)
-  return __builtin_cpu_supports("fma");
-#elif defined(__GLIBC__) && defined(__aarch64__)
-  return true;  // glibc compiles the same code for FMA
-#else
-  return false;
-#endif
-}
-constexpr const char* other_sines = "sines are rounded differently without glibc or without FMA";
-
 TEST(SameSteps, OfInstruments) {
   if (!has_the_sines_of_the_records()) GTEST_SKIP() << other_sines;
   Fingerprint fingerprint;
@@ -189,14 +190,15 @@ struct Tally {
 constexpr int rounds = 200;
 constexpr int steps_of_round = 500;
 
-/// A mesh, its index, and motions near the mesh: four fifths of them in contact.
+/// A mesh, its index, and motions near the mesh: four fifths of them in contact. Vertices are
+/// rounded to float, because other sines give some shapes other last bits.
 struct Scene {
   std::shared_ptr<const Mesh> mesh;
   std::shared_ptr<const WideBvh> index;
   std::vector<Motion> motions;
 
   Scene(int round, double clearance)
-      : mesh(mesh_of(make_shape(meshes[static_cast<std::size_t>(round / 2) % 4]))),
+      : mesh(mesh_of(as_floats(make_shape(meshes[static_cast<std::size_t>(round / 2) % 4])))),
         index(std::make_shared<const WideBvh>(mesh)) {
     Random random(static_cast<std::uint64_t>(1000 + round));
     motions =

@@ -55,7 +55,8 @@ def machine():
 def extract(log, status):
     """Returns the notes of a part (figures, or why it was skipped), and the output to show."""
     text = log.read_text(encoding="utf-8", errors="replace")
-    notes = re.findall(r"^figure: (.*)", text, re.M)
+    notes = [re.sub(r"\d{5,}", lambda number: f"{int(number[0]):,}", figure)
+             for figure in re.findall(r"^figure: (.*)", text, re.M)]
     notes += re.findall(r"^\d+% tests passed, \d+ tests failed out of \d+", text, re.M)
     notes += re.findall(r"^\d+ (?:FAILED|SKIPPED) TESTS?", text, re.M)
     if skipped := re.findall(r"^\[  SKIPPED \] (\S+)$|^\s*\d+ - (\S+) \((?:Skipped|Disabled)\)", text, re.M):

@@ -17,7 +17,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 PARTS = """
 require_options_of_ctest() { [ "${1:-}" != --nonsense ]; }
 # part release: prints its options
-part_release() { echo "figure: 12 steps with $*, $length, $minutes minutes"; }
+part_release() { echo "figure: 12345 steps with $*, $length, $minutes minutes"; }
 # part asan: fails
 part_asan() { echo "error: 1 < 2 & 3"; return 3; }
 # part arm64: needs a program
@@ -72,11 +72,11 @@ def test_the_page_has_each_part_and_the_output_of_a_failure(tree):
     status, output, results, page = run(tree, "--without", "slow", "--minutes", "7")
     assert status == 1
     assert statuses(results) == {"release": "passed", "asan": "failed", "arm64": "skipped"}
-    assert results["release"]["notes"] == ["12 steps with , long, 7 minutes"]
+    assert results["release"]["notes"] == ["12,345 steps with , long, 7 minutes"]
     assert results["arm64"]["notes"] == ["a program is missing"]
     assert "4 parts: 1 failed, 1 passed, 1 skipped, 1 not run." in output
     assert "<pre>error: 1 &lt; 2 &amp; 3</pre>" in page
-    for text in ("12 steps with", "a program is missing", "not run", "prints its options", "GiB"):
+    for text in ("12,345 steps with", "a program is missing", "not run", "prints its options", "GiB"):
         assert text in page
     assert not re.search(r"https?://|@import|\bsrc=", page)  # one file
 
@@ -88,7 +88,7 @@ def test_the_exit_status_is_0_if_all_parts_passed_or_were_skipped(tree):
 def test_options_of_ctest_go_to_two_parts(tree):
     status, _, results, _ = run(tree, "-R", "index")
     assert status == 1 and [*results] == ["release", "asan"]
-    assert results["release"]["notes"] == ["12 steps with -R index, long, 30 minutes"]
+    assert results["release"]["notes"] == ["12,345 steps with -R index, long, 30 minutes"]
     assert run(tree, "--nonsense")[0] == 1
 
 
