@@ -113,8 +113,8 @@ Vec3 Hull::direction_from(const Triangle& triangle) const noexcept {
   Vec3 way = points_[0] - triangle[0];
   for (int i = 0; i < steps; ++i) {
     const auto lower = [&](const Vec3& a, const Vec3& b) { return way.dot(a) < way.dot(b); };
-    const Vec3 corner =
-        *std::ranges::min_element(points_, lower) - *std::ranges::max_element(triangle, lower);
+    const Vec3 corner = *std::min_element(points_.begin(), points_.end(), lower) -
+                        *std::max_element(triangle.begin(), triangle.end(), lower);
     const Vec3 step = corner - way;
     const double gain = -way.dot(step);
     if (!(gain > 1e-12 * way.squaredNorm())) break;
@@ -145,7 +145,7 @@ Bracket Hull::least(const Triangle& triangle, double enough, const Between& betw
     heights[i] = along.dot(points_[i] - center_) - rounding;
     lowest = std::min(lowest, heights[i]);
   }
-  const double highest = std::ranges::max(of_corners);
+  const double highest = *std::max_element(of_corners.begin(), of_corners.end());
   if (lowest - highest > enough) return {lowest - highest, length, length + rounding};
 
   double high = length + rounding;
