@@ -137,7 +137,11 @@ void add_stroke(int stroke, bool meshes_move, bool is_guided, Fingerprint& finge
   const Vec3 middle = (there[0] + there[1] + there[2]) / 3.0;
   InstrumentConstraint guard = guard_of(mesh, robot, {.margin = 0.3});
   Twist velocity;
-  if (meshes_move) velocity.linear = random.uniform(0.0, 30.0) * random.direction();
+  // Separate statements here and below, because compilers differ in the order of evaluation.
+  if (meshes_move) {
+    velocity.linear = random.direction();
+    velocity.linear *= random.uniform(0.0, 30.0);
+  }
   ASSERT_EQ(
       guard.place(0, {tip + random.uniform(2.0, 6.0) * along - turned * middle, turned}, velocity),
       Status::free);
@@ -146,8 +150,9 @@ void add_stroke(int stroke, bool meshes_move, bool is_guided, Fingerprint& finge
                                    Region::ball(tip, 3.0))});
   }
   for (int cycle = 0; cycle < cycles_of_stroke; ++cycle) {
-    const Twist desired{.linear = 0.4 * (along + random.direction()).normalized(),
-                        .angular = random.uniform(0.0, 0.01) * random.direction()};
+    Twist desired{.linear = 0.4 * (along + random.direction()).normalized()};
+    desired.angular = random.direction();
+    desired.angular *= random.uniform(0.0, 0.01);
     const InstrumentStep step = guard.step(q, desired);
     fingerprint.add(step);
     limited += step.status == Status::limited ? 1 : 0;
