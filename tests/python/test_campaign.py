@@ -17,6 +17,7 @@ patience = 300  # [s]
 
 tips = ["cube", "gear", "--steps", "20500", "--seed", "3"]
 instruments = ["cortex", "--robot", "psm", "--cycles", "6500", "--speed", "5", "--scenario", "approach,raised"]
+unsafe = ["cortex", "--robot", "psm", "--cycles", "8000", "--speed", "20", "--scenario", "approach", "--motion", "linearized"]
 hostile = ["--scenario", "approach,stuck", "--cycles", "900", "--speed", "1"]
 
 
@@ -52,9 +53,10 @@ def shards_in(folder):
     return sorted((folder / "keepout-campaign" / "shards").glob("*.json"))
 
 
-@pytest.mark.parametrize("arguments, shards", [(tips, (1, 7)), (instruments, (3, 2)), (hostile, (3, 2))])
+@pytest.mark.parametrize("arguments, shards", [(tips, (1, 7)), (instruments, (3, 2)), (unsafe, (4, 1)), (hostile, (3, 2))])
 def test_shards_are_the_whole(tmp_path, arguments, shards):
     verify(tmp_path, *arguments, "--json", "whole.json")
+    assert (json.loads((tmp_path / "whole.json").read_text())["headline"].startswith("No breach")) == (arguments is not unsafe)
     for count in shards:
         run(tmp_path, *arguments, "--shards", str(count), "--jobs", "2", "--folder", str(count), "--json", "r.json")
         assert results(tmp_path / "r.json") == results(tmp_path / "whole.json")
