@@ -70,7 +70,7 @@ Pose MeshMotion::at(double s) const noexcept {
 }
 
 MotionCheck::MotionCheck(std::span<const std::shared_ptr<const TriangleTree>> trees,
-                         const JudgedRobot& robot, const Pose& base, std::size_t most_triangles)
+                         const JudgedRobot& robot, const Pose& base, std::uint64_t most_triangles)
     : trees_(trees.begin(), trees.end()),
       robot_(robot),
       base_(base),
@@ -97,12 +97,13 @@ MotionCheck::MotionCheck(std::span<const std::shared_ptr<const TriangleTree>> tr
     surroundings_[i].points.assign(first, last);
     slot.cores.emplace_back(surroundings_[i].points);
   }
-  std::ranges::fill(slots_, slot);
+  for (PoseAt& each : slots_) each = slot;
   bends_.resize(slot.points.size());
   end_.reserve(positions_.size());
   if (most_triangles == unlimited) return;
-  found_.reserve(most_triangles);
-  for (Surroundings& around : surroundings_) around.neighbors.reserve(most_triangles);
+  const auto most = static_cast<std::size_t>(most_triangles);
+  found_.reserve(most);
+  for (Surroundings& around : surroundings_) around.neighbors.reserve(most);
 }
 
 bool MotionCheck::spend(std::uint64_t units) noexcept {
@@ -233,9 +234,12 @@ bool MotionCheck::surround(Surroundings& around, const Hull& core, double reach)
     const double low = core.least_distance(center) - radius;
     if (low <= around.known) around.neighbors.push_back({triangle, center, radius, low});
   }
-  std::ranges::sort(around.neighbors, {}, &Neighbor::low);
+  std::sort(around.neighbors.begin(), around.neighbors.end(),
+            [](const Neighbor& one, const Neighbor& other) { return one.low < other.low; });
   const std::size_t count = around.neighbors.size();
-  const auto in_reach = std::ranges::upper_bound(around.neighbors, reach, {}, &Neighbor::low);
+  const auto in_reach = std::upper_bound(
+      around.neighbors.begin(), around.neighbors.end(), reach,
+      [](double distance, const Neighbor& neighbor) { return distance < neighbor.low; });
   const auto needed =
       std::max<std::size_t>(usual, static_cast<std::size_t>(in_reach - around.neighbors.begin()));
   if (count > many * needed) around.slack = std::max(least_slack, 0.5 * around.slack);

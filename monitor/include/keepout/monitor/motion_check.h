@@ -70,7 +70,7 @@ class MotionCheck {
   /// allocate nothing. Throws std::invalid_argument for a body without points or with more than
   /// Hull::most_points.
   MotionCheck(std::span<const std::shared_ptr<const TriangleTree>> trees, const JudgedRobot& robot,
-              const Pose& base, std::size_t most_triangles = unlimited);
+              const Pose& base, std::uint64_t most_triangles = unlimited);
 
   /// Decides if each pair keeps its due clearance: the distance of the body's surface. Pairs are
   /// numbered mesh by mesh. A pair that is due -infinity is not examined. Stops at the first pair
@@ -155,7 +155,7 @@ class MotionCheck {
   std::vector<double> end_;    // of the last motion
   std::vector<double> bends_;  // M of all points of bodies
   std::vector<TriangleId> found_;
-  std::size_t most_triangles_;
+  std::uint64_t most_triangles_;
   InstrumentMotion motion_ = {};
   std::uint64_t work_ = 0;  // left
   std::size_t poses_ = 0;
