@@ -77,19 +77,53 @@ HWY_INLINE void look_up(const Corners* triangles, const LeafBlock& leaf, Corners
   }
 }
 
-template <class Number>
+/// Returns true if two corners of a triangle have the same x. Then their order may depend on digits
+/// that rounding removes. Otherwise rounding, which is monotonic, keeps their order.
+HWY_INLINE bool has_tie(const Place<float>& a, const Place<float>& b, const Place<float>& c) {
+  const auto tie = hn::Or(hn::Eq(a.x, b.x), hn::Or(hn::Eq(b.x, c.x), hn::Eq(c.x, a.x)));
+  return !hn::AllFalse(Lanes<float>(), tie);
+}
+
+/// Fills a leaf from the doubles of its vertices.
 HWY_INLINE void fill_leaf(const Vec3* vertices, const CornersOfLeaf& corners, const Vec3& origin,
                           const LeafBlock& from, LeafBlock& leaf) {
   std::uint32_t odd = 0;
-  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(Lanes<Number>())) {
-    Place<Number> place[3];
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(Lanes<double>())) {
+    Place<double> place[3];
     for (std::size_t c = 0; c < 3; ++c) {
       read([&](std::size_t lane) -> const Vec3& { return vertices[corners[first + lane][c]]; },
            place[c]);
     }
-    odd |= write_in_order<Number>(place[0], place[1], place[2], origin, first, leaf);
+    odd |= write_in_order<double>(place[0], place[1], place[2], origin, first, leaf);
   }
   write_tags(from, odd, leaf);
+}
+
+/// Fills a leaf from the floats of its corners, which read_place(first lane, corner, place) reads.
+/// Returns false if the order of corners depends on digits that floats lack.
+template <class Read>
+HWY_INLINE bool fill_leaf(const Read& read_place, bool are_exact, const LeafBlock& from,
+                          LeafBlock& leaf) {
+  std::uint32_t odd = 0;
+  for (std::size_t first = 0; first < LeafBlock::lanes; first += hn::Lanes(Lanes<float>())) {
+    Place<float> place[3];
+    for (std::size_t c = 0; c < 3; ++c) read_place(first, c, place[c]);
+    if (!are_exact && has_tie(place[0], place[1], place[2])) return false;
+    odd |= write_in_order<float>(place[0], place[1], place[2], Vec3::Zero(), first, leaf);
+  }
+  write_tags(from, odd, leaf);
+  return true;
+}
+
+HWY_INLINE void fill_leaf(const Vec3* vertices, const CornersOfLeaf& corners,
+                          const LeafFrame& frame, const LeafBlock& from, LeafBlock& leaf) {
+  const auto read_place = [&](std::size_t first, std::size_t c, Place<float>& place) HWY_ATTR {
+    read([&](std::size_t lane) -> const Vec3& { return vertices[corners[first + lane][c]]; },
+         frame.origin, place);
+  };
+  if (!fill_leaf(read_place, frame.is_exact(), from, leaf)) {
+    fill_leaf(vertices, corners, frame.origin, from, leaf);
+  }
 }
 
 /// Fetches a vertex, which may be in two cache lines.
@@ -104,9 +138,8 @@ constexpr std::size_t sources_ahead = 24;
 
 /// Without prefetching, the processor would wait for nearly every read. So the triangle numbers of
 /// a leaf are fetched many leaves ahead, then its triangles, then its vertices.
-template <class Number>
-HWY_INLINE void fill_leaves(const Mesh& mesh, const Vec3& origin, std::span<const LeafBlock> leaves,
-                            std::size_t first, std::size_t last, LeafBlock* to) {
+void FillLeaves(const Mesh& mesh, const LeafFrame& frame, std::span<const LeafBlock> leaves,
+                std::size_t first, std::size_t last, LeafBlock* to) {
   const Corners* triangles = mesh.triangles().data();
   const Vec3* vertices = mesh.vertices().data();
   CornersOfLeaf looked_up[vertices_ahead];
@@ -116,7 +149,7 @@ HWY_INLINE void fill_leaves(const Mesh& mesh, const Vec3& origin, std::span<cons
   }
   for (std::size_t i = first; i < last; ++i) {
     CornersOfLeaf& its = looked_up[i % vertices_ahead];
-    fill_leaf<Number>(vertices, its, origin, leaves[i], *to++);
+    fill_leaf(vertices, its, frame, leaves[i], *to++);
     if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
     if (i + triangles_ahead < leaves.size() && is_full(leaves[i + triangles_ahead])) {
       const LeafBlock& ahead = leaves[i + triangles_ahead];
@@ -131,16 +164,6 @@ HWY_INLINE void fill_leaves(const Mesh& mesh, const Vec3& origin, std::span<cons
       }
     }
   }
-}
-
-void FillFromFloats(const Mesh& mesh, std::span<const LeafBlock> leaves, std::size_t first,
-                    std::size_t last, LeafBlock* to) {
-  fill_leaves<float>(mesh, Vec3::Zero(), leaves, first, last, to);
-}
-
-void FillFromDoubles(const Mesh& mesh, const Vec3& origin, std::span<const LeafBlock> leaves,
-                     std::size_t first, std::size_t last, LeafBlock* to) {
-  fill_leaves<double>(mesh, origin, leaves, first, last, to);
 }
 
 constexpr std::size_t width = hn::MaxLanes(Lanes<float>());
@@ -160,9 +183,10 @@ HWY_INLINE hn::Vec<Lanes<float>> table_lookup(const float (&table)[LeafPoints::l
   return found;
 }
 
-/// Reads each vertex of a leaf once, and distributes it to the corners in registers.
-HWY_INLINE void fill_leaf(const Vec3* vertices, const LeafVertices& its, const LeafBlock& from,
-                          LeafPoints& points, LeafBlock& leaf) {
+/// Reads each vertex of a leaf once, and distributes it to the corners in registers. Returns false
+/// if the order of corners depends on digits that floats lack.
+HWY_INLINE bool fill_leaf(const Vec3* vertices, const LeafVertices& its, const LeafFrame& frame,
+                          const LeafBlock& from, LeafPoints& points, LeafBlock& leaf) {
   const Lanes<float> d;
   const hn::RebindToUnsigned<Lanes<float>> entries;
   const hn::Rebind<std::uint8_t, Lanes<float>> bytes;
@@ -173,42 +197,37 @@ HWY_INLINE void fill_leaf(const Vec3* vertices, const LeafVertices& its, const L
           const std::size_t entry = first + lane;
           return vertices[its.vertex[entry < LeafVertices::most ? entry : 0]];
         },
-        place);
+        frame.origin, place);
     hn::Store(place.x, d, points.position[0] + first);
     hn::Store(place.y, d, points.position[1] + first);
     hn::Store(place.z, d, points.position[2] + first);
   }
   points.is_known = true;
-  std::uint32_t odd = 0;
-  for (std::size_t first = 0; first < LeafBlock::lanes; first += width) {
-    Place<float> place[3];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto entry = hn::PromoteTo(entries, hn::LoadU(bytes, its.corner[c] + first));
-      place[c] = {table_lookup(points.position[0], entry), table_lookup(points.position[1], entry),
-                  table_lookup(points.position[2], entry)};
-    }
-    odd |= write_in_order<float>(place[0], place[1], place[2], Vec3::Zero(), first, leaf);
-  }
-  write_tags(from, odd, leaf);
+  const auto look_up_place = [&](std::size_t first, std::size_t c, Place<float>& place) HWY_ATTR {
+    const auto entry = hn::PromoteTo(entries, hn::LoadU(bytes, its.corner[c] + first));
+    place = {table_lookup(points.position[0], entry), table_lookup(points.position[1], entry),
+             table_lookup(points.position[2], entry)};
+  };
+  return fill_leaf(look_up_place, frame.is_exact(), from, leaf);
 }
 
-void FillFromVertices(const Mesh& mesh, const LeafVertices* known,
+void FillFromVertices(const Mesh& mesh, const LeafFrame& frame, const LeafVertices* known,
                       std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
                       LeafBlock* to, LeafPoints* points) {
   const Vec3* vertices = mesh.vertices().data();
-  for (std::size_t i = first; i < last; ++i) {
+  for (std::size_t i = first; i < last; ++i, ++to, ++points) {
     if (i + sources_ahead < leaves.size()) hwy::Prefetch(leaves[i + sources_ahead].tagged_triangle);
     if (i + vertices_ahead < leaves.size()) {
       for (const VertexId v : known[i + vertices_ahead].vertex) fetch(vertices[v]);
     }
-    if (width >= 8 && known[i].is_complete()) [[likely]] {
-      fill_leaf(vertices, known[i], leaves[i], *points++, *to++);
+    points->is_known = false;
+    if (width >= 8 && known[i].is_complete() &&
+        fill_leaf(vertices, known[i], frame, leaves[i], *points, *to)) [[likely]] {
       continue;
     }
     CornersOfLeaf corners;
     look_up(mesh.triangles().data(), leaves[i], corners);
-    fill_leaf<float>(vertices, corners, Vec3::Zero(), leaves[i], *to++);
-    points++->is_known = false;
+    fill_leaf(vertices, corners, frame, leaves[i], *to);
   }
 }
 
@@ -249,8 +268,7 @@ HWY_AFTER_NAMESPACE();
 
 namespace keepout {
 
-HWY_EXPORT(FillFromFloats);
-HWY_EXPORT(FillFromDoubles);
+HWY_EXPORT(FillLeaves);
 HWY_EXPORT(FillFromVertices);
 HWY_EXPORT(AreFloats);
 HWY_EXPORT(CopyLeaves);
@@ -295,22 +313,13 @@ LeafFill::LeafFill(const Mesh& mesh, unsigned threads) : mesh_(mesh) {
 
 void LeafFill::fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
                     LeafBlock* to) const noexcept {
-  if (frame_.is_exact()) {
-    HWY_DYNAMIC_DISPATCH(FillFromFloats)(mesh_, leaves, first, last, to);
-  } else {
-    HWY_DYNAMIC_DISPATCH(FillFromDoubles)(mesh_, frame_.origin, leaves, first, last, to);
-  }
+  HWY_DYNAMIC_DISPATCH(FillLeaves)(mesh_, frame_, leaves, first, last, to);
 }
 
 void LeafFill::fill(std::span<const LeafBlock> leaves, std::size_t first, std::size_t last,
                     LeafBlock* to, const LeafVertices* vertices,
                     LeafPoints* points) const noexcept {
-  if (frame_.is_exact()) {
-    HWY_DYNAMIC_DISPATCH(FillFromVertices)(mesh_, vertices, leaves, first, last, to, points);
-  } else {
-    for (std::size_t i = 0; i < last - first; ++i) points[i].is_known = false;
-    fill(leaves, first, last, to);
-  }
+  HWY_DYNAMIC_DISPATCH(FillFromVertices)(mesh_, frame_, vertices, leaves, first, last, to, points);
 }
 
 void name_triangles(std::span<const Center> centers, LeafBlock& leaf) noexcept {

@@ -66,61 +66,74 @@ HWY_INLINE void store(const Place<double>& place, const Vec3& origin,
   write(place.z, 2);
 }
 
+#if HWY_TARGET != HWY_SCALAR
+/// Returns two coordinates, from `axis` on, of every second of the vertices from `lane` on.
+template <std::size_t Count, class VertexOf>
+HWY_INLINE auto every_second(const VertexOf& vertex_of, std::size_t lane, std::size_t axis) {
+  const hn::CappedTag<double, Count> d;
+  if constexpr (Count == 2) {
+    return hn::LoadU(d, vertex_of(lane).data() + axis);
+  } else {
+    const auto low = every_second<Count / 2>(vertex_of, lane, axis);
+    const auto high = every_second<Count / 2>(vertex_of, lane + Count / 2, axis);
+    return hn::Combine(d, high, low);
+  }
+}
+
 /// Reads a vertex for each lane: vertex_of(lane). Vertices are read one after the other, and their
-/// coordinates are separated afterwards.
+/// coordinates are separated in registers.
 template <class VertexOf>
 HWY_INLINE void read(const VertexOf& vertex_of, Place<double>& place) {
   const Lanes<double> d;
   constexpr std::size_t lanes = hn::MaxLanes(Lanes<double>());
-  HWY_ALIGN double read[lanes][4];
-  for (std::size_t lane = 0; lane < lanes; ++lane) {
-    const Vec3& from = vertex_of(lane);
-    read[lane][0] = from.x();
-    read[lane][1] = from.y();
-    read[lane][2] = from.z();
-    read[lane][3] = 0.0;
-  }
-  hn::Vec<Lanes<double>> unused;
-  hn::LoadInterleaved4(d, read[0], place.x, place.y, place.z, unused);
+  const auto even = every_second<lanes>(vertex_of, 0, 0);
+  const auto odd = every_second<lanes>(vertex_of, 1, 0);
+  place.x = hn::InterleaveLower(d, even, odd);
+  place.y = hn::InterleaveUpper(d, even, odd);
+  place.z = hn::InterleaveUpper(d, every_second<lanes>(vertex_of, 0, 1),
+                                every_second<lanes>(vertex_of, 1, 1));
 }
 
-#if HWY_TARGET != HWY_SCALAR
 using Four = hn::CappedTag<float, 4>;
 
-/// Returns a vertex whose coordinates are floats, and one unused number.
+/// Returns a vertex relative to the origin, rounded to floats, and one unused number.
 template <class Doubles>
-HWY_INLINE hn::Vec<Four> rounded(Doubles d, const Vec3& vertex) {
+HWY_INLINE hn::Vec<Four> rounded(Doubles d, const Vec3& vertex, const Vec3& origin) {
   if constexpr (hn::MaxLanes(Doubles()) == 4) {
-    // The vertex may be at the end of the memory.
-    return hn::DemoteTo(Four(), hn::MaskedLoad(hn::FirstN(d, 3), d, vertex.data()));
+    // Both may be at the end of the memory.
+    const auto three = hn::FirstN(d, 3);
+    return hn::DemoteTo(Four(), hn::Sub(hn::MaskedLoad(three, d, vertex.data()),
+                                        hn::MaskedLoad(three, d, origin.data())));
   } else {
     const hn::Half<Four> half;
-    return hn::Combine(Four(), hn::DemoteTo(half, hn::Set(d, vertex.z())),
-                       hn::DemoteTo(half, hn::LoadU(d, vertex.data())));
+    const auto xy = hn::Sub(hn::LoadU(d, vertex.data()), hn::LoadU(d, origin.data()));
+    const auto z = hn::Set(d, vertex.z() - origin.z());
+    return hn::Combine(Four(), hn::DemoteTo(half, z), hn::DemoteTo(half, xy));
   }
 }
 
 /// Returns every fourth of the vertices from `lane` on, side by side.
 template <std::size_t Count, class VertexOf>
-HWY_INLINE auto every_fourth(const VertexOf& vertex_of, std::size_t lane) {
+HWY_INLINE auto every_fourth(const VertexOf& vertex_of, const Vec3& origin, std::size_t lane) {
   if constexpr (Count == 4) {
-    return rounded(hn::CappedTag<double, 4>(), vertex_of(lane));
+    return rounded(hn::CappedTag<double, 4>(), vertex_of(lane), origin);
   } else {
-    const auto low = every_fourth<Count / 2>(vertex_of, lane);
-    const auto high = every_fourth<Count / 2>(vertex_of, lane + Count / 2);
+    const auto low = every_fourth<Count / 2>(vertex_of, origin, lane);
+    const auto high = every_fourth<Count / 2>(vertex_of, origin, lane + Count / 2);
     return hn::Combine(hn::CappedTag<float, Count>(), high, low);
   }
 }
 
+/// Like read(vertex_of, place), but subtracts the origin and rounds to floats.
 template <class VertexOf>
-HWY_INLINE void read(const VertexOf& vertex_of, Place<float>& place) {
+HWY_INLINE void read(const VertexOf& vertex_of, const Vec3& origin, Place<float>& place) {
   const Lanes<float> d;
   const hn::RepartitionToWide<Lanes<float>> pairs;
   constexpr std::size_t lanes = hn::MaxLanes(Lanes<float>());
-  const auto first = every_fourth<lanes>(vertex_of, 0);
-  const auto second = every_fourth<lanes>(vertex_of, 1);
-  const auto third = every_fourth<lanes>(vertex_of, 2);
-  const auto fourth = every_fourth<lanes>(vertex_of, 3);
+  const auto first = every_fourth<lanes>(vertex_of, origin, 0);
+  const auto second = every_fourth<lanes>(vertex_of, origin, 1);
+  const auto third = every_fourth<lanes>(vertex_of, origin, 2);
+  const auto fourth = every_fourth<lanes>(vertex_of, origin, 3);
   const auto xy_front = hn::BitCast(pairs, hn::InterleaveLower(d, first, second));
   const auto xy_back = hn::BitCast(pairs, hn::InterleaveLower(d, third, fourth));
   const auto z_front = hn::BitCast(pairs, hn::InterleaveUpper(d, first, second));
@@ -131,8 +144,15 @@ HWY_INLINE void read(const VertexOf& vertex_of, Place<float>& place) {
 }
 #else
 template <class VertexOf>
-HWY_INLINE void read(const VertexOf& vertex_of, Place<float>& place) {
+HWY_INLINE void read(const VertexOf& vertex_of, Place<double>& place) {
   const Vec3& from = vertex_of(0);
+  const Lanes<double> d;
+  place = {hn::Set(d, from.x()), hn::Set(d, from.y()), hn::Set(d, from.z())};
+}
+
+template <class VertexOf>
+HWY_INLINE void read(const VertexOf& vertex_of, const Vec3& origin, Place<float>& place) {
+  const Vec3 from = vertex_of(0) - origin;
   const Lanes<float> d;
   place = {hn::Set(d, static_cast<float>(from.x())), hn::Set(d, static_cast<float>(from.y())),
            hn::Set(d, static_cast<float>(from.z()))};
