@@ -128,6 +128,8 @@ void add_options(CLI::App& app, Settings& settings) {
       ->capture_default_str();
   app.add_option("--margin", settings.margin, "Required clearance of the tool [mm]")
       ->capture_default_str();
+  app.add_flag("--monitor", settings.monitor,
+               "An independent monitor confirms each motion, or the tool stands still");
   app.add_option("--period", settings.period, "Period of the loop [s]")->capture_default_str();
   app.add_option("--top-speed", settings.top_speed, "Top speed of the setpoints [mm/s]")
       ->capture_default_str();
@@ -162,7 +164,8 @@ Scene load_scene(const Settings& settings) {
 MotionConstraint make_tip_guard(const Settings& settings, const Scene& scene) {
   return make_motion_constraint(
       scene.mesh, scene.index,
-      {.options = {.tool_radius = settings.tool_radius, .margin = settings.margin}});
+      {.options = {.tool_radius = settings.tool_radius, .margin = settings.margin},
+       .monitor = settings.monitor});
 }
 
 CrtkSession make_session(const Settings& settings, const Scene& scene) {
@@ -180,7 +183,8 @@ CrtkSession make_session(const Settings& settings, const Scene& scene) {
       std::min(recommended_band(instrument, settings.period), 0.5 * settings.margin);
   return {make_instrument_constraint(
               scene.mesh, scene.index, instrument,
-              {.options = {.margin = settings.margin, .band = band, .period = settings.period}}),
+              {.monitor = settings.monitor,
+               .options = {.margin = settings.margin, .band = band, .period = settings.period}}),
           scene.registration, options};
 }
 

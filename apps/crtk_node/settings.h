@@ -33,6 +33,7 @@ struct Settings {
   std::filesystem::path bodies = {};        // of the robot of a URDF file
   double tool_radius = 0.0;                 // of a tip [mm]
   double margin = 0.5;                      // [mm]
+  bool monitor = false;                     // confirms each motion, or the tool stands still
   double period = 0.001;                    // [s]
   double top_speed = 200.0;                 // of the tip or the flange [mm/s]
   double silence = 0.02;                    // messages are used for this time [s]

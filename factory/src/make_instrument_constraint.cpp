@@ -33,7 +33,8 @@ InstrumentConstraint make_instrument_constraint(std::shared_ptr<const Mesh> mesh
   if (settings.monitor) throw Error("this build has no monitor");
 #else
   if (settings.monitor) {
-    constraint.set_monitor(monitor::make_instrument_monitor(constraint.instrument(), {{mesh}}));
+    constraint.set_monitor(monitor::make_instrument_monitor(
+        constraint.instrument(), {std::make_shared<const monitor::TriangleTree>(mesh)}));
   }
 #endif
   // After the settings are accepted, so that rejected settings cause no warning.

@@ -62,7 +62,10 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
 #if KEEPOUT_BALLS_ONLY
   if (settings.monitor) throw Error("this build has no monitor");
 #else
-  if (settings.monitor) constraint.set_monitor(monitor::make_tip_monitor(std::move(mesh)));
+  if (settings.monitor) {
+    constraint.set_monitor(
+        monitor::make_tip_monitor(std::make_shared<const monitor::TriangleTree>(std::move(mesh))));
+  }
 #endif
   // After the settings are accepted, so that rejected settings cause no warning.
   warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);

@@ -17,11 +17,11 @@ constexpr double allowance = 4.0;  // [tolerance]; the step promises 3
 
 class MeshesMonitor final : public InstrumentMonitor {
  public:
-  MeshesMonitor(const Instrument& instrument, std::span<const std::shared_ptr<const Mesh>> meshes,
+  MeshesMonitor(const Instrument& instrument,
+                std::vector<std::shared_ptr<const TriangleTree>> trees,
                 const MonitorCapacity& capacity)
       : robot_(model_of(instrument)), base_(instrument.chain().base()), capacity_(capacity) {
-    for (const std::shared_ptr<const Mesh>& mesh : meshes) trees_.push_back(tree_of(mesh));
-    adopt(trees_);
+    adopt(std::move(trees));
   }
 
   bool confirms(const MonitoredMotion& motion) noexcept override {
@@ -53,18 +53,16 @@ class MeshesMonitor final : public InstrumentMonitor {
     if (number > trees_.size()) throw Error("the monitor has no mesh before this one");
     std::vector<std::shared_ptr<const TriangleTree>> trees = trees_;
     trees.resize(std::max(trees.size(), number + 1));
-    trees[number] = tree_of(mesh);
+    trees[number] = mesh ? std::make_shared<const TriangleTree>(std::move(mesh)) : nullptr;
     adopt(std::move(trees));
   }
 
  private:
-  static std::shared_ptr<const TriangleTree> tree_of(const std::shared_ptr<const Mesh>& mesh) {
-    if (!mesh) throw Error("a monitor needs a mesh, but it is null");
-    return std::make_shared<const TriangleTree>(mesh);
-  }
-
   /// Makes all memory for these meshes. If this throws, nothing is changed.
   void adopt(std::vector<std::shared_ptr<const TriangleTree>> trees) {
+    if (std::ranges::find(trees, nullptr) != trees.end()) {
+      throw Error("a monitor needs a mesh, but it is null");
+    }
     MotionCheck check(trees, robot_, base_, capacity_.triangles);
     std::vector<double> due(trees.size() * robot_.bodies.size());
     std::vector<MeshMotion> motions(trees.size());
@@ -113,9 +111,9 @@ JudgedRobot model_of(const Instrument& instrument) {
 }
 
 std::unique_ptr<InstrumentMonitor> make_instrument_monitor(
-    const Instrument& instrument, std::span<const std::shared_ptr<const Mesh>> meshes,
+    const Instrument& instrument, std::vector<std::shared_ptr<const TriangleTree>> meshes,
     const MonitorCapacity& capacity) {
-  return std::make_unique<MeshesMonitor>(instrument, meshes, capacity);
+  return std::make_unique<MeshesMonitor>(instrument, std::move(meshes), capacity);
 }
 
 }  // namespace keepout::monitor

@@ -24,9 +24,9 @@ JudgedRobot sliding_point() {
 
 class MeshTipMonitor final : public TipMonitor {
  public:
-  MeshTipMonitor(std::shared_ptr<const Mesh> mesh, const MonitorCapacity& capacity)
+  MeshTipMonitor(std::shared_ptr<const TriangleTree> tree, const MonitorCapacity& capacity)
       : capacity_(capacity) {
-    follow(std::move(mesh));
+    adopt(std::move(tree));
   }
 
   bool confirms(const Vec3& from, const Vec3& to, const StepOptions& options) noexcept override {
@@ -50,19 +50,25 @@ class MeshTipMonitor final : public TipMonitor {
   }
 
   void follow(std::shared_ptr<const Mesh> mesh) override {
-    if (!mesh) throw Error("a monitor needs a mesh, but it is null");
-    double longest = 0.0;
-    for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
-      const Triangle c = mesh->triangle(t);
-      for (std::size_t e = 0; e < 3; ++e)
-        longest = std::max(longest, (c[(e + 1) % 3] - c[e]).norm());
-    }
-    const std::array trees{std::make_shared<const TriangleTree>(std::move(mesh))};
-    check_.emplace(trees, sliding_point(), Pose{}, capacity_.triangles);
-    longest_edge_ = longest;
+    adopt(mesh ? std::make_shared<const TriangleTree>(std::move(mesh)) : nullptr);
   }
 
  private:
+  /// Makes all memory for this mesh. If this throws, nothing is changed.
+  void adopt(std::shared_ptr<const TriangleTree> tree) {
+    if (!tree) throw Error("a monitor needs a mesh, but it is null");
+    const Mesh& mesh = tree->mesh();
+    double longest = 0.0;
+    for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
+      const Triangle c = mesh.triangle(t);
+      for (std::size_t e = 0; e < 3; ++e)
+        longest = std::max(longest, (c[(e + 1) % 3] - c[e]).norm());
+    }
+    MotionCheck check({{tree}}, sliding_point(), Pose{}, capacity_.triangles);
+    check_ = std::move(check);
+    longest_edge_ = longest;
+  }
+
   MonitorCapacity capacity_;
   double longest_edge_ = 0.0;  // [length]
   std::optional<MotionCheck> check_;
@@ -70,7 +76,7 @@ class MeshTipMonitor final : public TipMonitor {
 
 }  // namespace
 
-std::unique_ptr<TipMonitor> make_tip_monitor(std::shared_ptr<const Mesh> mesh,
+std::unique_ptr<TipMonitor> make_tip_monitor(std::shared_ptr<const TriangleTree> mesh,
                                              const MonitorCapacity& capacity) {
   return std::make_unique<MeshTipMonitor>(std::move(mesh), capacity);
 }

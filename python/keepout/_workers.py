@@ -8,7 +8,7 @@ import contextlib
 import logging
 import multiprocessing
 import signal
-from collections.abc import Callable, Iterator
+from collections import abc
 from typing import Any
 
 #: For the scheduler's answer [s].
@@ -64,7 +64,7 @@ def run_program(command: list[str], folder: str, environment: dict[str, str], li
         return process.returncode, out.read(), err.read()[-2000:]
 
 
-def _be_a_worker(begin: Callable[[], object] | None) -> None:
+def _be_a_worker(begin: abc.Callable[[], object] | None) -> None:
     import ctypes
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits for this one
@@ -75,7 +75,7 @@ def _be_a_worker(begin: Callable[[], object] | None) -> None:
 
 
 @contextlib.contextmanager
-def processes(jobs: int, begin: Callable[[], object] | None = None) -> Iterator[concurrent.futures.Executor]:
+def processes(jobs: int, begin: abc.Callable[[], object] | None = None) -> abc.Iterator[concurrent.futures.Executor]:
     """Returns an executor with processes on this machine. Each calls `begin`. An exception ends all at once."""
     with concurrent.futures.ProcessPoolExecutor(jobs, initializer=_be_a_worker, initargs=(begin,)) as pool:
         try:
@@ -88,7 +88,7 @@ def processes(jobs: int, begin: Callable[[], object] | None = None) -> Iterator[
 
 
 @contextlib.contextmanager
-def cluster(address: str) -> Iterator[concurrent.futures.Executor]:
+def cluster(address: str) -> abc.Iterator[concurrent.futures.Executor]:
     """Returns an executor whose workers are those of a Dask scheduler. An exception cancels all tasks.
 
     The scheduler gives the task of a worker that is lost to another one. Raises WorkersError if Dask is not installed,
@@ -114,7 +114,7 @@ def cluster(address: str) -> Iterator[concurrent.futures.Executor]:
             raise
 
 
-def by_value(function: Callable[..., Any]) -> Callable[..., Any]:
+def by_value(function: abc.Callable[..., Any]) -> abc.Callable[..., Any]:
     """Returns the function as Dask must be given it so that the worker need not import its module."""
     import types
 

@@ -194,6 +194,5 @@ def main(arguments: list[str]) -> int:
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:]))
-    except (CampaignError, WorkersError, OSError) as error:
-        print(f"keepout: {error}", file=sys.stderr)
-        sys.exit(1)
+    except (CampaignError, WorkersError, OSError) as fault:
+        sys.exit(f"keepout: {fault}")

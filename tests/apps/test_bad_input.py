@@ -187,7 +187,7 @@ files = [
     ("report cut.json", "cut.json: is no whole record"),
     ("report /dev/zero", "/dev/zero: is no whole record"),
     ("verify --merge none.json", "none.json: cannot be read"),
-    ("verify --merge folder", "folder: is a folder"),
+    ("verify --merge folder", "folder: the folder has no record"),
     ("verify --merge poses.txt", "poses.txt: is not a whole result"),
     *((line, "margin 0 and tool_radius 0 together must be well above") for line in (
         f"{to_s} --margin 0", "replay cube --poses poses.txt --out s.csv --margin 0", "serve cube --margin 0")),

@@ -323,6 +323,38 @@ TEST(InstrumentSession, StandsStillUntilAfterEachRefusal) {
   EXPECT_LT(loop.session.setpoint_jp()[2], before);
 }
 
+/// A monitor that confirms some motions, and then none.
+class Doubts final : public InstrumentMonitor {
+ public:
+  bool confirms(const MonitoredMotion&) noexcept override { return ++asked_ <= 20; }
+  void follow(std::shared_ptr<const Mesh>, std::size_t) override {}
+
+ private:
+  int asked_ = 0;
+};
+
+TEST(InstrumentSession, StopsWhenTheMonitorDoesNotConfirm) {
+  Loop loop;
+  InstrumentConstraint guard = loop.guard();
+  guard.set_monitor(std::make_unique<Doubts>());
+  loop.session = CrtkSession(std::move(guard), registration(), Loop::with_period({}));
+  ASSERT_EQ(loop.engage(start), CycleStatus::guarded);
+  std::vector<double> goal = Loop::in_meters(start);
+  goal[2] -= 0.005;
+  int guarded = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double before = loop.session.setpoint_jp()[2];
+    if (loop.servo_jp(goal) == CycleStatus::guarded) {
+      ++guarded;
+      continue;
+    }
+    EXPECT_EQ(loop.session.cycle().status, CycleStatus::stopped);
+    EXPECT_EQ(loop.session.cycle().step, Status::unconfirmed);
+    EXPECT_EQ(loop.session.setpoint_jp()[2], before);
+  }
+  EXPECT_EQ(guarded, 20);
+}
+
 TEST(InstrumentSession, SaysWhatIsWrongWithItsParts) {
   Loop loop;
   EXPECT_EQ(

@@ -24,6 +24,10 @@ using monitor::make_instrument_monitor;
 using monitor::make_tip_monitor;
 using monitor::MonitorCapacity;
 
+std::shared_ptr<const monitor::TriangleTree> tree_of(const std::shared_ptr<const Mesh>& mesh) {
+  return std::make_shared<const monitor::TriangleTree>(mesh);
+}
+
 const StepOptions tip_options{.radius = 2.0, .tool_radius = 0.3, .margin = 0.2};
 
 /// Drives a tip around a surface, into it, and off it. Calls `seen` with each step.
@@ -101,14 +105,14 @@ MotionConstraint guard_with(const std::shared_ptr<const Mesh>& mesh,
 TEST(SabotagedTip, ARuleThatAcceptsEverythingIsStopped) {
   const auto mesh = mesh_of("cortex");
   MotionConstraint guard = guard_with(mesh, std::make_unique<CarelessRule>());
-  guard.set_monitor(make_tip_monitor(mesh));
+  guard.set_monitor(make_tip_monitor(tree_of(mesh)));
   expect_stopped(guard, mesh);
 }
 
 TEST(SabotagedTip, ARuleThatHasNoProofIsStopped) {
   const auto mesh = mesh_of("triangle_soup");
   MotionConstraint guard = guard_with(mesh, make_activation("paper"));
-  guard.set_monitor(make_tip_monitor(mesh));
+  guard.set_monitor(make_tip_monitor(tree_of(mesh)));
   expect_stopped(guard, mesh);
 }
 
@@ -116,7 +120,7 @@ TEST(SabotagedTip, AShiftedMeshIsStopped) {
   const auto mesh = mesh_of("cortex");
   const auto shifted = mesh_of(moved(surface_of(*mesh), Vec3(0.05, -0.02, 0.04)));
   MotionConstraint guard = guard_with(shifted, make_activation("certified"));
-  guard.set_monitor(make_tip_monitor(mesh));
+  guard.set_monitor(make_tip_monitor(tree_of(mesh)));
   expect_stopped(guard, mesh);
 }
 
@@ -127,7 +131,7 @@ TEST(SabotagedTip, TrianglesThatAreLeftOutAreFound) {
     holes.triangles[t] = holes.triangles.back();
   }
   MotionConstraint guard = guard_with(mesh_of(std::move(holes)), make_activation("certified"));
-  guard.set_monitor(make_tip_monitor(mesh));
+  guard.set_monitor(make_tip_monitor(tree_of(mesh)));
   expect_stopped(guard, mesh);
 }
 
@@ -135,7 +139,7 @@ TEST(SabotagedTip, AMeshThatMovedWithoutTheStepIsFound) {
   const auto mesh = mesh_of("cortex");
   const auto other = mesh_of(moved(surface_of(*mesh), Vec3(0.0, 0.0, 0.3)));
   MotionConstraint guard = guard_with(mesh, make_activation("certified"));
-  auto monitor = make_tip_monitor(mesh);
+  auto monitor = make_tip_monitor(tree_of(mesh));
   monitor->follow(other);
   guard.set_monitor(std::move(monitor));
   expect_stopped(guard, other);
@@ -144,7 +148,7 @@ TEST(SabotagedTip, AMeshThatMovedWithoutTheStepIsFound) {
 TEST(SabotagedTip, AMotionThatIsOneHundredthTooLongIsNotConfirmed) {
   const auto mesh = mesh_of("cortex");
   MotionConstraint guard = guard_with(mesh, make_activation("certified"));
-  const auto monitor = make_tip_monitor(mesh);
+  const auto monitor = make_tip_monitor(tree_of(mesh));
   Random random(4);
   int stopped = 0, made = 0;
   drive(guard, *mesh, test::trials(20'000), random, [&](const Vec3& tip, const Step& step) {
@@ -172,7 +176,7 @@ TEST(TipMonitor, ConfirmsNothingWithoutWorkOrWithNumbersThatAreNotFinite) {
   const auto confirms = [&](const MonitorCapacity& capacity, const Vec3& to, double margin) {
     StepOptions options = tip_options;
     options.margin = margin;
-    return make_tip_monitor(mesh, capacity)->confirms(far, to, options);
+    return make_tip_monitor(tree_of(mesh), capacity)->confirms(far, to, options);
   };
   const double nan = std::nan("");
   EXPECT_TRUE(confirms({}, far + Vec3::UnitX(), 0.2));
@@ -187,7 +191,7 @@ TEST(TipMonitor, ConfirmsNothingWithoutWorkOrWithNumbersThatAreNotFinite) {
 TEST(TipMonitor, AStepThatIsNotConfirmedHasNoMotionAndAReason) {
   const auto mesh = mesh_of("cube");
   MotionConstraint guard = guard_with(mesh, make_activation("certified"));
-  guard.set_monitor(make_tip_monitor(mesh, {.work = 0}));
+  guard.set_monitor(make_tip_monitor(tree_of(mesh), {.work = 0}));
   const Vec3 far = mesh->bounds().high + Vec3(5.0, 5.0, 5.0);
   const Step step = guard.step({.tip = far, .desired = Vec3::UnitX()});
   EXPECT_EQ(step.status, Status::unconfirmed);
@@ -278,7 +282,7 @@ TEST(SabotagedInstrument, IsStopped) {
                         InstrumentOptions options = instrument_options) {
     InstrumentConstraint guard(other, std::make_shared<WideBvh>(other), instrument,
                                std::make_unique<ActiveSet>(), options);
-    guard.set_monitor(make_instrument_monitor(psm(port), {{mesh}}));
+    guard.set_monitor(make_instrument_monitor(psm(port), {tree_of(mesh)}));
     return guard;
   };
   InstrumentConstraint sound = with(mesh, psm(port));
@@ -301,13 +305,13 @@ TEST(SabotagedInstrument, IsStopped) {
   InstrumentConstraint linearized = with(mesh, psm(port), straight);
   EXPECT_GT(stopped_in(linearized, 8.0), 0);
   InstrumentConstraint forgetful(psm(port), std::make_unique<ActiveSet>(), instrument_options);
-  forgetful.set_monitor(make_instrument_monitor(psm(port), {{mesh}}));
+  forgetful.set_monitor(make_instrument_monitor(psm(port), {tree_of(mesh)}));
   EXPECT_GT(stopped_in(forgetful), test::trials(9'000)) << "it has no mesh";
 }
 
 TEST(InstrumentMonitor, ConfirmsNothingThatDoesNotFit) {
   const auto mesh = mesh_of("gear");
-  const auto monitor = make_instrument_monitor(psm(port), {{mesh}});
+  const auto monitor = make_instrument_monitor(psm(port), {tree_of(mesh)});
   const std::vector<double> q{0.0, 0.0, 30.0, 0.0, 0.0, 0.0};
   std::vector<double> next = q;
   next[2] += 1.0;

@@ -87,7 +87,7 @@ def test_the_help_of_the_command_has_them():
 @pytest.mark.parametrize("option", of_command, ids=lambda o: o.name)
 def test_the_command_and_serve_take_those_of_a_tip(option):
     value = other_value(option)
-    answer = run(command, "serve", "cube", f"--{option.command}", str(value), input='{"do":"info"}\n')
+    answer = run(command, "serve", "cube", f"--{option.command}", json.dumps(value).strip('"'), input='{"do":"info"}\n')
     assert json.loads(answer)["settings"][option.name] == value
 
 

@@ -123,9 +123,10 @@ CLI::Option* add_option_of(CLI::App& command, const Option<Options>& option, Opt
   CLI::Option* added =
       command
           .add_option_function<std::string>("--" + option.flag(), take, std::string(option.meaning))
-          ->type_name(option.unit == "length" ? "MM"
-                      : option.names.empty()  ? "NUMBER"
-                                              : "")
+          ->type_name(option.unit == "length"           ? "MM"
+                      : option.kind == OptionKind::flag ? "true|false"
+                      : option.names.empty()            ? "NUMBER"
+                                                        : "")
           ->default_str(keepout::text_of(option.get(options)));
   if (!option.names.empty()) added->check(one_of({option.names.begin(), option.names.end()}));
   return added;

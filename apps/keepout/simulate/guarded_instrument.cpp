@@ -7,6 +7,7 @@
 
 #include "keepout/factory/make_motion_constraint.h"
 #include "keepout/judges/robot_judge.h"
+#include "keepout/monitor/monitors.h"
 #include "keepout/solvers/active_set.h"
 #include "operators/attacker.h"
 #include "record/drawn_mesh.h"
@@ -204,8 +205,11 @@ class GuardedInstrument final : public SimulatedTool {
                                     {.options = {.radius = 10.0 * stroke.speed,
                                                  .tool_radius = instrument.bodies().back().radius,
                                                  .margin = margin_}});
+      if (options_.constraint.monitor) {
+        tip_->set_monitor(monitor::make_tip_monitor(scene.tree()));
+      }
     } else if (mode != Mode::none) {
-      joints_->add_mesh(scene.mesh(), scene.shared_index());
+      add_mesh(*joints_);
     }
     speed_ = stroke.speed;
     q_ = stroke.start.positions;
@@ -214,7 +218,7 @@ class GuardedInstrument final : public SimulatedTool {
       q_.assign(measured_->first().begin(), measured_->first().end());
     } else if (measured_) {
       InstrumentConstraint in_session(instrument, std::make_unique<ActiveSet>(), step);
-      in_session.add_mesh(scene.mesh(), scene.shared_index());
+      add_mesh(in_session);
       measured_->start(std::move(in_session), q_, stroke.speed * fastest_way / cycle_seconds);
     }
     judge_.emplace(oracle::JudgedScene{.robot = on_->robot.judged(),
@@ -358,6 +362,12 @@ class GuardedInstrument final : public SimulatedTool {
   }
 
  private:
+  void add_mesh(InstrumentConstraint& step) const {
+    step.add_mesh(on_->scene.mesh(), on_->scene.shared_index());
+    if (!options_.constraint.monitor) return;
+    step.set_monitor(monitor::make_instrument_monitor(step.instrument(), {on_->scene.tree()}));
+  }
+
   /// Returns the negative depth of a body whose axis is inside the surface, in part or as a whole.
   /// Infinite if the axis is outside, or the surface has no inside. [mm]
   double clearance_inside(std::size_t body, const monitor::Segment& axis) const {

@@ -115,7 +115,8 @@ class HostileNode : public testing::Test {
                       .arm = "PSM1",
                       .robot = robot,
                       .tool_radius = robot.empty() ? 1.0 : 0.0,
-                      .margin = 2.0};
+                      .margin = 2.0,
+                      .monitor = !robot.empty()};
     complete(settings);
     return settings;
   }

@@ -663,7 +663,7 @@ TEST_F(ClientTest, InfoAndStatusesTellWhatThereIs) {
   const Answer statuses = talk_.told(R"({"do":"statuses"})");
   EXPECT_EQ(statuses["statuses"].size(), status_count);
   for (const Answer& status : statuses["statuses"]) EXPECT_NE(status["status"], "unknown");
-  EXPECT_EQ(statuses["statuses"].back()["status"], "unsupported");
+  EXPECT_EQ(statuses["statuses"].back()["status"], "unconfirmed");
   EXPECT_EQ(statuses["limits"].size(), limit_count);
 }
 

@@ -16,8 +16,8 @@ namespace keepout {
 struct MonitoredMotion {
   /// A mesh: its pose at the start, and its displacement [length, rad].
   struct OfMesh {
-    Pose pose = {};
-    Twist way = {};
+    Pose pose = {};  // at the start
+    Twist way = {};  // displacement in the cycle
   };
   /// A pair. [length]
   struct OfPair {
@@ -25,13 +25,14 @@ struct MonitoredMotion {
     /// Margin - band. A body that starts at this clearance, or is not far below, must be certified
     /// accordingly; -infinity for a degraded pair.
     double target = 0.0;
-    double band = 0.0;
+    double band = 0.0;  // see InstrumentOptions::band
   };
 
-  std::span<const double> from, to;  // positions of the joints [rad or length]
-  std::span<const OfMesh> meshes;
-  std::span<const OfPair> pairs;
-  double tolerance = 0.0;  // see InstrumentConstraint::tolerance [length]
+  std::span<const double> from;    // positions of the joints at the start [rad or length]
+  std::span<const double> to;      // and at the end
+  std::span<const OfMesh> meshes;  // in the order of InstrumentConstraint::add_mesh
+  std::span<const OfPair> pairs;   // mesh by mesh
+  double tolerance = 0.0;          // see InstrumentConstraint::tolerance [length]
 };
 
 /// The interface of a monitor: a checker that is independent of the step, and confirms each motion
