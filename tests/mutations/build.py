@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Builds all mutants at once, from a copy of the sources."""
 
+import json
 import os
 import subprocess
 
 from table import FOLDER, ROOT, TableError, changed_source, locate, read_table
 
 BUILD = ROOT / "build" / "mutations"
-WITHOUT = ("FCL BULLET EMBREE CCD NLOPT OMPL URDF MUJOCO CGAL ROS1 DDS").split()
+NUMBERS = BUILD / "numbers.json"
+TREE = BUILD / "tree"
+OUT = TREE / "build" / "release"  # in the copy as in the tree, so that ccache knows what has not changed
 
 
 def write_if_different(path, data):
@@ -19,43 +22,58 @@ def write_if_different(path, data):
     return False
 
 
+def give_numbers(mutants):
+    """Numbers the mutants. A mutant keeps its number, so that a new row of the table changes only its own source."""
+    old = json.loads(NUMBERS.read_text()) if NUMBERS.is_file() else {}
+    names = {m.name for m in mutants}
+    used = {number for name, (number, _) in old.items() if name in names}
+    free = iter(n for n in range(1, 2000) if n not in used)
+    for mutant in mutants:
+        mutant.number = old[mutant.name][0] if mutant.name in old else next(free)
+    write_if_different(NUMBERS, json.dumps({m.name: (m.number, m.digest()) for m in mutants}).encode())
+
+
+def built(mutants):
+    """Returns the mutants with their numbers in the build. Throws if the build has others."""
+    numbers = json.loads(NUMBERS.read_text()) if NUMBERS.is_file() else {}
+    old = [m.name for m in mutants if numbers.get(m.name, [0, ""])[1] != m.digest()]
+    if old:
+        raise TableError(f"call `tests/mutations/run build` again: the build lacks {', '.join(old)}")
+    for mutant in mutants:
+        mutant.number = numbers[mutant.name][0]
+    return mutants
+
+
 def write_tree(mutants):
     """Writes the copy of the sources. Returns the number of files that changed since the last call."""
     wrong = locate(mutants)
     if wrong:
         raise TableError("\n".join(wrong))
+    give_numbers(mutants)
     by_file = {}
     for mutant in mutants:
         by_file.setdefault(mutant.file, []).append(mutant)
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True).stdout
-    changed, tree = 0, BUILD / "tree"
+    changed = 0
     names = [name for name in listed.decode().split("\0") if name and (ROOT / name).is_file()]
     for name in names:
         data = (ROOT / name).read_bytes()
         if name in by_file:
             data = changed_source(by_file[name], data.decode()).encode()
-        changed += write_if_different(tree / name, data)
-        (tree / name).chmod((ROOT / name).stat().st_mode)
-    changed += write_if_different(tree / "engine/include/keepout/mutant.h", (FOLDER / "mutant.h").read_bytes())
-    for path in [p for p in tree.rglob("*") if p.is_file()]:
-        if str(path.relative_to(tree)) not in {*names, "engine/include/keepout/mutant.h"}:
+        changed += write_if_different(TREE / name, data)
+        (TREE / name).chmod((ROOT / name).stat().st_mode)
+    changed += write_if_different(TREE / "engine/include/keepout/mutant.h", (FOLDER / "mutant.h").read_bytes())
+    kept = {*names, "engine/include/keepout/mutant.h"}
+    for path in [p for top in TREE.iterdir() if top.name != "build" for p in [top, *top.rglob("*")] if p.is_file()]:
+        if str(path.relative_to(TREE)) not in kept:
             path.unlink()
     return changed
 
 
 def build(targets, jobs):
-    """Builds the programs with all mutants."""
+    """Builds the programs with all mutants: the preset release of the copy."""
     mutants = read_table()
     print(f"{len(mutants)} mutants; {write_tree(mutants)} files changed", flush=True)
-    out = BUILD / "out"
-    environment = {k: v for k, v in os.environ.items() if not k.startswith("CMAKE_")}
-    if not (out / "build.ninja").is_file():
-        # Three of the five SIMD targets, and no modules, which have no mutants.
-        options = ["-DCMAKE_BUILD_TYPE=Release", "-DKEEPOUT_SHARE_HEADERS=ON", "-DKEEPOUT_BUILD_EXAMPLES=OFF",
-                   "-DKEEPOUT_BUILD_PYTHON=OFF", "-DKEEPOUT_INSTALL=OFF", "-DCMAKE_CXX_FLAGS_RELEASE=-O2 -DNDEBUG -w",
-                   # SSSE3 and SSE4 by their numbers, because CMake's test of the compiler quotes nothing.
-                   "-DCMAKE_CXX_FLAGS=-DHWY_DISABLED_TARGETS=6144"]
-        options += [f"-DKEEPOUT_WITH_{name}=OFF" for name in WITHOUT]
-        subprocess.run(["cmake", "-S", str(BUILD / "tree"), "-B", str(out), "-G", "Ninja", *options], check=True,
-                       env=environment)
-    subprocess.run(["ninja", "-C", str(out), f"-j{jobs}", *targets], check=True, env=environment)
+    if not (OUT / "build.ninja").is_file():
+        subprocess.run(["cmake", "--preset", "release"], cwd=TREE, check=True)
+    subprocess.run(["ninja", "-C", str(OUT), f"-j{jobs}", "-k", "0", *targets], check=True)

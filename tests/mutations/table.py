@@ -32,7 +32,7 @@ class Mutant:
     after: str
     where: str  # the row's place in the table
     in_constexpr: bool = False
-    number: int = 0
+    number: int = 0  # in the build: see build.py
     begin: int = 0  # of `old` in the file
     end: int = 0
 
@@ -50,16 +50,15 @@ class Mutant:
 
 
 def read_table(folder=FOLDER / "table"):
-    """Returns the mutants of all files of the table, numbered from 1, and checks the format."""
+    """Returns the mutants of all files of the table, and checks the format."""
     mutants = []
     for path in sorted(folder.glob("*.txt")):
         mutants += _read_file(path)
     names = set()
-    for number, mutant in enumerate(mutants, 1):
+    for mutant in mutants:
         if mutant.name in names:
             raise TableError(f"{mutant.where}: a second mutant '{mutant.name}'")
         names.add(mutant.name)
-        mutant.number = number
     return mutants
 
 
