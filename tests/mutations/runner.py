@@ -167,7 +167,7 @@ class Runner:
         names = [n for n in names if not self.programs[n]["after"] or
                  mutant.file.split("/")[0] in self.programs[n]["after"]]
         seed = 0
-        while names and line["seconds"] < 60 * self.minutes:
+        while names and max(line["seconds"], seed) < 60 * self.minutes:
             seed += 1
             for name in names:
                 how, test, seconds = self.kill(mutant, name, base, seed)
