@@ -10,6 +10,7 @@
 #include "joint_input.h"
 #include "keepout/error.h"
 #include "keepout/mesh/diagnostics.h"
+#include "keepout/rounding_mode.h"
 #include "keepout/step/options.h"
 
 namespace keepout {
@@ -76,6 +77,7 @@ struct InstrumentConstraint::State {
   /// Prepares all memory that depends on the meshes, and forgets the last cycle. Throws Error, and
   /// forgets nothing, if the options cannot be used with the meshes.
   void prepare() {
+    require_rounding_to_nearest();
     memory.measure();
     memory.require_usable(options);
     // The default is that of a tip's step, measured on wide_bvh. The largest default of all indices
@@ -102,6 +104,7 @@ struct InstrumentConstraint::State {
   /// start. Moves the meshes in any case.
   template <class MakeTask>
   InstrumentStep step(std::span<const double> q, bool is_input_valid, MakeTask make_task) noexcept {
+    const RoundingToNearest rounding;
     InstrumentStep result{.status = renew_and_check(q, is_input_valid)};
     if (is_ok(result.status)) {
       JointCycle cycle(memory, options, q, JointCycle::MeshMotion::predicted);
@@ -171,6 +174,7 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
 
 MotionProof InstrumentConstraint::prove(std::span<const double> q,
                                         std::span<const double> increment) noexcept {
+  const RoundingToNearest rounding;
   const Status status =
       state_->renew_and_check(q, are_valid_positions(state_->memory, q, increment));
   if (!is_ok(status)) return {.status = status};
@@ -247,6 +251,7 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
 
 Status InstrumentConstraint::place(std::size_t number, const Pose& pose,
                                    const Twist& velocity) noexcept {
+  const RoundingToNearest rounding;
   CycleMemory& memory = state_->memory;
   if (number >= memory.meshes.size()) return Status::invalid_input;
   MeshMemory& placed = memory.meshes[number];

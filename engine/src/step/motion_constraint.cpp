@@ -11,6 +11,7 @@
 #include "keepout/error.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/diagnostics.h"
+#include "keepout/rounding_mode.h"
 
 namespace keepout {
 namespace {
@@ -35,9 +36,13 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
   if (!mesh || !index || rule == nullptr || solver == nullptr) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
+  require_rounding_to_nearest();
   require_mesh_in_range(*mesh);
-  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
-                                        budget);
+  // One more than the budget pays for: collecting so many spends it.
+  const std::size_t paid =
+      Capacity::work_units_or_default(capacity.work_units, *index) / work::hit + 1;
+  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index),
+                                        std::min(capacity.triangles, paid), budget);
 }
 
 /// Returns the capacity, enlarged for the nodes of the options. Throws Error for options or a
@@ -160,6 +165,7 @@ Ball MotionConstraint::region(const Motion& request) const noexcept {
 }
 
 Step MotionConstraint::step(const Motion& request, SideWatch& sides, StageTimes* times) noexcept {
+  const RoundingToNearest rounding;
   if (times != nullptr) *times = {};
   if (!is_current()) return {.status = Status::mesh_changed};
   budget_->renew();
@@ -203,6 +209,7 @@ Step MotionConstraint::escape_or_cycle(const Motion& request, SideWatch& sides,
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
+  const RoundingToNearest rounding;
   Status status = Status::unsupported;
   if (!is_current()) {
     status = Status::mesh_changed;
