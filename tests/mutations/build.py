@@ -2,7 +2,7 @@
 """Builds all mutants at once, from a copy of the sources."""
 
 import json
-import os
+import re
 import subprocess
 
 from table import FOLDER, ROOT, TableError, changed_source, locate, read_table
@@ -34,14 +34,15 @@ def give_numbers(mutants):
 
 
 def built(mutants):
-    """Returns the mutants with their numbers in the build. Throws if the build has others."""
+    """Returns the mutants that are in the build, with their numbers there. Names the others."""
     numbers = json.loads(NUMBERS.read_text()) if NUMBERS.is_file() else {}
-    old = [m.name for m in mutants if numbers.get(m.name, [0, ""])[1] != m.digest()]
-    if old:
-        raise TableError(f"call `tests/mutations/run build` again: the build lacks {', '.join(old)}")
-    for mutant in mutants:
+    lacking = [m.name for m in mutants if numbers.get(m.name, [0, ""])[1] != m.digest()]
+    if lacking:
+        print(f"not in the build: {', '.join(lacking)}", flush=True)
+    found = [m for m in mutants if m.name not in lacking]
+    for mutant in found:
         mutant.number = numbers[mutant.name][0]
-    return mutants
+    return found
 
 
 def write_tree(mutants):
@@ -76,4 +77,29 @@ def build(targets, jobs):
     print(f"{len(mutants)} mutants; {write_tree(mutants)} files changed", flush=True)
     if not (OUT / "build.ninja").is_file():
         subprocess.run(["cmake", "--preset", "release"], cwd=TREE, check=True)
-    subprocess.run(["ninja", "-C", str(OUT), f"-j{jobs}", "-k", "0", *targets], check=True)
+    while True:
+        ninja = subprocess.Popen(["ninja", "-C", str(OUT), f"-j{jobs}", "-k", "0", *targets], text=True,
+                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        errors = set()
+        for line in ninja.stdout:
+            print(line, end="", flush=True)
+            place = re.match(r"(.*/tree/\S+?):(\d+):\d+: error: ", line)
+            if place:
+                errors |= mutants_of_line(place[1], int(place[2]), mutants)
+        if ninja.wait() == 0:
+            return
+        if not errors:
+            raise TableError("the build failed, and no mutant is at the place of an error")
+        print("these mutants do not compile, and are left out: " + ", ".join(sorted(errors)), flush=True)
+        mutants = [m for m in mutants if m.name not in errors]
+        write_tree(mutants)
+
+
+def mutants_of_line(name, number, mutants):
+    """Returns the names of the mutants in a line of the copy, or in the nearest of a few lines above it."""
+    lines = (OUT / name).resolve().read_text(encoding="utf-8").split("\n")
+    for line in reversed(lines[max(0, number - 6):number]):
+        numbers = {int(n) for n in re.findall(r"keepout_mutants::is\((\d+)\)", line)}
+        if numbers:
+            return {m.name for m in mutants if m.number in numbers}
+    return set()

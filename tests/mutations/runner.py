@@ -204,7 +204,7 @@ def next_class(mutant, results, classes):
 def run(mutants, classes, jobs, minutes):
     """Runs the classes against the mutants. Appends to the record, and prints the progress."""
     base = read_base()
-    built(mutants)
+    mutants = built(mutants)
     runner = Runner(jobs, minutes)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     known = read_table()
