@@ -48,9 +48,9 @@ struct Reached {
   }
 };
 
-/// The number of the active mutant: the environment variable KEEPOUT_MUTANT. 0: none. Below 0: none, and each place
-/// that is evaluated is noted. Dynamically initialized before the variables of each source that includes this header
-/// first.
+/// The number of the active mutant: the environment variable KEEPOUT_MUTANT. 0: none. Below 0:
+/// none, and each place that is evaluated is noted. Dynamically initialized before the variables of
+/// each source that includes this header first.
 inline Reached reached;
 inline const int active = [] {
   const char* text = std::getenv("KEEPOUT_MUTANT");
