@@ -45,7 +45,7 @@ class Mutant:
         """Returns the folder by which the report groups the mutant."""
         parts = Path(self.file).parts
         if "include" in parts:
-            return parts[0] + "/" + (parts[-2] if parts[-2] not in ("keepout", parts[0]) else "src")
+            return parts[0] if parts[-2] in ("keepout", parts[0]) else f"{parts[0]}/{parts[-2]}"
         return "/".join([parts[0], *parts[2:3]] if len(parts) > 3 else parts[:1])
 
 
