@@ -191,8 +191,12 @@ def main(arguments: list[str]) -> int:
     return subprocess.run(merged + (["--out", told.out] if told.out else []), check=False).returncode
 
 
-if __name__ == "__main__":
+def _run_as_command() -> None:
     try:
         sys.exit(main(sys.argv[1:]))
     except (CampaignError, WorkersError, OSError) as fault:
         sys.exit(f"keepout: {fault}")
+
+
+if __name__ == "__main__":
+    _run_as_command()

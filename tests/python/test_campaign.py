@@ -124,7 +124,7 @@ def cluster(tmp_path_factory):
                                 stderr=(folder / "log").open("a"), env={**os.environ, "PYTHONPATH": "", "KEEPOUT_COMMAND": ""})
 
     begun = [dask("dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))]
-    while not file.exists():
+    while not (file.exists() and file.read_text().rstrip().endswith("}")):
         assert begun[0].poll() is None, (folder / "log").read_text()
         time.sleep(0.05)
     address = json.loads(file.read_text())["address"]
