@@ -13,8 +13,8 @@ namespace {
 // take long, fewer would soon be too few.
 constexpr std::size_t few = 2;
 constexpr std::size_t many = 4;
-constexpr std::size_t usual = 32;  // in reach, at least
-constexpr double least_slack = 1.0 / 64.0;
+constexpr std::size_t usual = 32;           // in reach, at least
+constexpr double least_slack = 1.0 / 64.0;  // [sizes of triangles]
 constexpr double largest_slack = 16.0;
 
 // Work units.
@@ -213,14 +213,18 @@ bool MotionCheck::surround(Surroundings& around, const Hull& core, double reach)
                                     : Segment{core.center(), core.center()};
   const auto mesh = static_cast<std::size_t>(&around - surroundings_.data()) / robot_.bodies.size();
   const TriangleTree& tree = *trees_[mesh];
-  const auto find = [&](double slack) {
-    around.known = reach + slack;
+  const auto find = [&](double slack, std::uint64_t& work) {
+    around.known = reach + slack * tree.size_of_triangles();
     found_.clear();
     return tree.collect_within(around.known + (is_segment ? 0.0 : core.radius()), middle, found_,
-                               {most_triangles_, &work_});
+                               {most_triangles_, &work});
   };
-  const bool is_found = find(around.slack) || find(0.0);
-  if (!is_found || !spend(2 * found_.size())) {
+  // The search with slack saves later ones, but its work must not be missed by other pairs.
+  const std::uint64_t most = std::min(work_, spare_);
+  std::uint64_t left = most;
+  const bool has_slack = find(around.slack, left);
+  work_ -= most - left;
+  if ((!has_slack && !find(0.0, work_)) || !spend(2 * found_.size())) {
     around.known = -1.0;
     return false;
   }
@@ -242,8 +246,11 @@ bool MotionCheck::surround(Surroundings& around, const Hull& core, double reach)
       [](double distance, const Neighbor& neighbor) { return distance < neighbor.low; });
   const auto needed =
       std::max<std::size_t>(usual, static_cast<std::size_t>(in_reach - around.neighbors.begin()));
-  if (count > many * needed) around.slack = std::max(least_slack, 0.5 * around.slack);
-  if (count < few * needed) around.slack = std::min(largest_slack, 2.0 * around.slack);
+  if (count > many * needed || !has_slack) {
+    around.slack = std::max(least_slack, 0.5 * around.slack);
+  } else if (count < few * needed) {
+    around.slack = std::min(largest_slack, 2.0 * around.slack);
+  }
   return true;
 }
 
@@ -377,6 +384,7 @@ MotionFinding MotionCheck::check(const InstrumentMotion& motion, std::span<const
   if (!is_finite(motion)) return {Clearance::undecided};
   motion_ = motion;
   work_ = work;
+  spare_ = work / (4 * std::max<std::size_t>(1, surroundings_.size()));
   for (PoseAt& slot : slots_) slot.s = -1.0;
   if (!spend(2 * of_a_pose)) return {Clearance::undecided};
   if (std::ranges::equal(motion.from, end_)) {

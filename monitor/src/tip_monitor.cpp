@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "keepout/error.h"
+#include "keepout/monitor/inside.h"
 #include "keepout/monitor/monitors.h"
 #include "keepout/monitor/motion_check.h"
 
@@ -30,23 +31,32 @@ class MeshTipMonitor final : public TipMonitor {
   }
 
   bool confirms(const Vec3& from, const Vec3& to, const StepOptions& options) noexcept override {
-    const std::array<MeshMotion, 1> still{};
-    const InstrumentMotion motion{{from.data(), 3}, {to.data(), 3}, still};
     const double required = options.tool_radius + options.margin;
-    const double tau = 2e-10 * (longest_edge_ + options.radius * (1.0 + 1e-9) + required) +
-                       4e-16 * from.lpNorm<1>();
+    const double tau = tau_of(from, options);
     const auto keeps = [&](double due) {
-      const MotionFinding finding =
-          check_->check(motion, {{due - allowance * tau}}, capacity_.work);
-      return finding.clearance == Clearance::kept;
+      return check(from, to, due - allowance * tau).clearance == Clearance::kept;
     };
     if (!(required > unpromised_within * tau)) return false;
     if (keeps(required)) return true;
     // A tip that starts closer must not come closer.
     const std::optional<Bracket> start =
         check_->core_distance(MotionCheck::End::start, 0, required);
-    return start && start->low < required && start->low > unpromised_within * tau &&
-           keeps(start->low);
+    return start && start->low < required && start->low > allowance * tau && keeps(start->low);
+  }
+
+  bool confirms_escape(const Vec3& from, const Vec3& to,
+                       const StepOptions& options) noexcept override {
+    if (!from.allFinite() || !to.allFinite()) return false;
+    if (side_->is_forbidden(from, capacity_.work).value_or(false)) return true;
+    if (side_->is_forbidden(to, capacity_.work).value_or(true)) return false;
+    // The tip must start on the surface, and leave it.
+    const double tau = tau_of(from, options);
+    const double near = unpromised_within * tau;
+    check(from, to, 0.0);
+    const std::optional<Bracket> start = check_->core_distance(MotionCheck::End::start, 0, near);
+    if (!start || start->low > near) return false;
+    const Vec3 beyond_start = from + std::min(1.0, near / (to - from).norm()) * (to - from);
+    return check(beyond_start, to, tau).clearance == Clearance::kept;
   }
 
   void follow(std::shared_ptr<const Mesh> mesh) override {
@@ -65,13 +75,28 @@ class MeshTipMonitor final : public TipMonitor {
         longest = std::max(longest, (c[(e + 1) % 3] - c[e]).norm());
     }
     MotionCheck check({{tree}}, sliding_point(), Pose{}, capacity_.triangles);
+    SideTest side(std::move(tree), capacity_.triangles);
     check_ = std::move(check);
+    side_ = std::move(side);
     longest_edge_ = longest;
+  }
+
+  double tau_of(const Vec3& from, const StepOptions& options) const noexcept {
+    return 2e-10 * (longest_edge_ + options.radius * (1.0 + 1e-9) + options.tool_radius +
+                    options.margin) +
+           4e-16 * from.lpNorm<1>();
+  }
+
+  /// Decides if the tip stays `due` away from the mesh.
+  MotionFinding check(const Vec3& from, const Vec3& to, double due) noexcept {
+    const std::array<MeshMotion, 1> still{};
+    return check_->check({{from.data(), 3}, {to.data(), 3}, still}, {{due}}, capacity_.work);
   }
 
   MonitorCapacity capacity_;
   double longest_edge_ = 0.0;  // [length]
   std::optional<MotionCheck> check_;
+  std::optional<SideTest> side_;
 };
 
 }  // namespace

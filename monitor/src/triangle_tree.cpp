@@ -72,6 +72,8 @@ TriangleTree::TriangleTree(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(m
   for (TriangleId t = 0; t < items.size(); ++t) {
     const Bounds bounds = bounds_of(mesh_->triangle(t));
     items[t] = {0.5 * bounds.low + 0.5 * bounds.high, t};
+    size_of_triangles_ +=
+        (bounds.high - bounds.low).norm() / static_cast<double>(mesh_->triangle_count());
   }
   nodes_.reserve(items.size());
   order_.reserve(items.size());
@@ -137,8 +139,9 @@ void TriangleTree::collect(const Bounds& box, std::vector<TriangleId>& out) cons
   collect_where([&box](const Bounds& bounds) { return bounds.overlaps(box); }, out, {});
 }
 
-void TriangleTree::collect_along(const Segment& segment, std::vector<TriangleId>& out) const {
-  collect_where(TouchedBy(segment), out, {});
+bool TriangleTree::collect_along(const Segment& segment, std::vector<TriangleId>& out,
+                                 const SearchLimit& limit) const {
+  return collect_where(TouchedBy(segment), out, limit);
 }
 
 bool TriangleTree::collect_within(double reach, const Segment& segment,

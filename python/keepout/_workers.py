@@ -8,6 +8,7 @@ import contextlib
 import logging
 import multiprocessing
 import signal
+import sys
 from collections import abc
 from typing import Any
 
@@ -19,14 +20,19 @@ class WorkersError(RuntimeError):
     """Says why there are no workers."""
 
 
-def run_program(command: list[str], folder: str, environment: dict[str, str], lines: str) -> tuple[int, str, str]:
+def run_program(
+    command: list[str], folder: str, environment: dict[str, str], lines: str, digest: str = ""
+) -> tuple[int, str, str]:
     """Returns exit status, stdout and the end of stderr of a program. A negative status is a signal.
 
+    The status is 1 if the program is missing on the worker, or has another SHA-256 than `digest`, unless that is empty.
     Dask sends this function as text, so that a worker needs only Python's standard library. The program ends with the
     worker, and when the task is cancelled.
     """
+    import hashlib
     import os
     import shutil
+    import socket
     import subprocess
     import sys
     import tempfile
@@ -40,6 +46,14 @@ def run_program(command: list[str], folder: str, environment: dict[str, str], li
         except (AttributeError, ValueError):  # not in a task
             return False
 
+    if digest:
+        try:
+            with open(command[0], "rb") as program:
+                is_same = hashlib.sha256(program.read()).hexdigest().startswith(digest)
+        except OSError as fault:
+            return 1, "", f"on the worker {socket.gethostname()}: {fault}"
+        if not is_same:
+            return 1, "", f"on the worker {socket.gethostname()}, {command[0]} is another program"
     dies_with_worker = ["setpriv", "--pdeathsig", "KILL"] if shutil.which("setpriv") else []
     with tempfile.TemporaryFile("w+") as read, tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
         read.write(lines)
@@ -102,9 +116,12 @@ def cluster(address: str) -> abc.Iterator[concurrent.futures.Executor]:
     try:
         client: Any = distributed.Client(address, timeout=PATIENCE)
     except (OSError, ValueError, TypeError) as fault:
-        raise WorkersError(f"--dask: no scheduler answers at '{address}' within {PATIENCE} s ({fault}). Start one with "
+        raise WorkersError(f"--dask: no scheduler answers at '{address}' ({fault}). Start one with "
                            "'dask scheduler', and workers with 'dask worker ADDRESS'") from None
     logging.getLogger("asyncio").setLevel(logging.CRITICAL)  # Dask leaves futures of cancelled tasks behind
+    if not client.scheduler_info()["workers"]:
+        print(f"keepout: the scheduler {address} has no workers yet; waiting for 'dask worker {address}'",
+              file=sys.stderr, flush=True)
     with client:
         pool = client.get_executor(pure=False)
         try:
@@ -118,7 +135,8 @@ def by_value(function: abc.Callable[..., Any]) -> abc.Callable[..., Any]:
     """Returns the function as Dask must be given it so that the worker need not import its module."""
     import types
 
-    copy = types.FunctionType(function.__code__, {"__builtins__": __builtins__}, function.__name__)
+    copy = types.FunctionType(function.__code__, {"__builtins__": __builtins__}, function.__name__,
+                              function.__defaults__)
     copy.__module__ = "__main__"
     return copy
 

@@ -62,15 +62,19 @@ class Campaign:
         self.program = program
         self.arguments = arguments
         self.shards = shards
+        self.digest = _digest(program)
         made_of: dict[str, Any] = {
-            "arguments": arguments, "shards": shards, "program": _digest(program),
+            "arguments": arguments, "shards": shards, "program": self.digest,
             "files": {name: _digest(name) for name in arguments if Path(name).is_file()}}
         (folder / "shards").mkdir(parents=True, exist_ok=True)
         file = folder / "settings.json"
-        if not file.exists():
+        if not any((folder / "shards").iterdir()):
             _write(file, json.dumps(made_of, indent=1) + "\n")
-        before = json.loads(file.read_text())
-        other = [key for key in made_of if before.get(key) != made_of[key]]
+        try:
+            before = json.loads(file.read_text())
+            other = [key for key in made_of if before[key] != made_of[key]]
+        except (OSError, ValueError, KeyError, TypeError):
+            raise CampaignError(f"{file} is damaged: remove {folder}, or name another folder with --folder") from None
         if other:
             raise CampaignError(f"{folder} has the shards of another campaign: its {', '.join(other)} differ. Name "
                                 "another one with --folder, or remove it")
@@ -84,7 +88,7 @@ class Campaign:
     def is_done(self, shard: int) -> bool:
         try:
             return _is_whole(self.file(shard).read_text(), shard, self.shards)
-        except OSError:
+        except (OSError, UnicodeDecodeError):
             return False
 
     def log(self, text: str) -> None:
@@ -120,7 +124,7 @@ def run_shards(campaign: Campaign, pool: concurrent.futures.Executor, task: Any,
 
     def begin(shard: int) -> None:
         tries[shard] = tries.get(shard, 0) + 1
-        running[pool.submit(task, campaign.command(shard), os.getcwd(), environment, "")] = shard
+        running[pool.submit(task, campaign.command(shard), os.getcwd(), environment, "", campaign.digest)] = shard
 
     left = [shard for shard in range(1, campaign.shards + 1) if not campaign.is_done(shard)]
     kept = campaign.shards - len(left)
@@ -138,7 +142,8 @@ def run_shards(campaign: Campaign, pool: concurrent.futures.Executor, task: Any,
                 status, printed, errors = future.result()
             except Exception as fault:  # such as a worker that was lost several times
                 campaign.log(f"shard {shard}: {fault!r}")
-                raise CampaignError(f"shard {shard}/{campaign.shards}: {fault!r:.500}") from fault
+                raise CampaignError(f"shard {shard}/{campaign.shards}: {fault!r:.500}. Finished shards are kept; the same "
+                                    "command continues") from fault
             record = _record_in(printed)
             if _is_whole(record, shard, campaign.shards):
                 _write(campaign.file(shard), record)
@@ -176,7 +181,7 @@ def main(arguments: list[str]) -> int:
         raise CampaignError("the program 'keepout' is not found: install it, or name it in KEEPOUT_COMMAND")
     campaign = Campaign(told.folder, str(Path(program).resolve()), of_verify, told.shards)
     try:
-        if told.dask:
+        if told.dask is not None:
             with cluster(told.dask) as pool:
                 run_shards(campaign, pool, by_value(run_program), told.quiet)
         else:

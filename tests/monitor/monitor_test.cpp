@@ -10,7 +10,9 @@
 #include "keepout/fixtures/poses.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/index/wide_bvh.h"
+#include "keepout/monitor/inside.h"
 #include "keepout/monitor/monitors.h"
+#include "keepout/oracle/inside_test.h"
 #include "keepout/oracle/safety_oracle.h"
 #include "keepout/solvers/active_set.h"
 #include "meshes.h"
@@ -158,6 +160,125 @@ TEST(SabotagedTip, AMotionThatIsOneHundredthTooLongIsNotConfirmed) {
     stopped += monitor->confirms(tip, tip + 1.01 * step.motion, guard.options()) ? 0 : 1;
   });
   EXPECT_GT(stopped, made / 200);
+}
+
+/// An index that omits the triangles above a height.
+class LowIndex final : public SpatialIndex {
+ public:
+  LowIndex(std::shared_ptr<const Mesh> mesh, double top)
+      : SpatialIndex(std::move(mesh)), top_(top) {}
+  void collect(const Ball&, TriangleBuffer& out) const noexcept override {
+    for (TriangleId t = 0; t < mesh().triangle_count(); ++t) {
+      const Triangle c = mesh().triangle(t);
+      if (std::min({c[0].z(), c[1].z(), c[2].z()}) < top_) out.push(t);
+    }
+  }
+  std::size_t memory() const noexcept override { return sizeof(*this); }
+
+ private:
+  double top_;
+};
+
+TEST(SabotagedTip, AnEscapeThroughAFaceThatTheIndexOmitsIsStopped) {
+  Surface slab = surface_of(*mesh_of("cube"));
+  for (Vec3& v : slab.vertices) v.z() *= 0.02;
+  const auto mesh = mesh_of(std::move(slab));
+  const double top = mesh->bounds().high.z();
+  MotionConstraint guard = make_motion_constraint(mesh, std::make_shared<LowIndex>(mesh, 0.9 * top),
+                                                  {.options = tip_options});
+  for (const bool is_monitored : {false, true}) {
+    if (is_monitored) guard.set_monitor(make_tip_monitor(tree_of(mesh)));
+    Vec3 tip = mesh->bounds().center() + Vec3(0.13, 0.07, top + 0.6);
+    int stopped = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Step step = guard.step({.tip = tip, .desired = Vec3(0.01, 0.0, -0.05)});
+      stopped += step.status == Status::unconfirmed ? 1 : 0;
+      tip += step.motion;
+    }
+    EXPECT_EQ(tip.z() > top, is_monitored) << "the step alone believes that the tip is inside";
+    EXPECT_EQ(stopped > 50, is_monitored);
+  }
+}
+
+TEST(TipMonitor, ConfirmsEscapesFromTheForbiddenSideAndFromTheSurface) {
+  for (const char* name : {"cube", "cortex", "gear", "far_cube"}) {
+    SCOPED_TRACE(name);
+    const auto mesh = mesh_of(name);
+    MotionConstraint plain = make_motion_constraint(mesh, {.options = tip_options});
+    MotionConstraint guard =
+        make_motion_constraint(mesh, {.options = tip_options, .monitor = true});
+    Random random(6);
+    int escapes = 0;
+    for (int i = 0; i < test::trials(3000); ++i) {
+      const TriangleId t = static_cast<TriangleId>(random.below(mesh->triangle_count()));
+      const Triangle c = mesh->triangle(t);
+      const Vec3 normal = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+      const std::array places{c[0], Vec3(0.5 * (c[0] + c[1])), Vec3((c[0] + c[1] + c[2]) / 3.0)};
+      const double depth = i % 2 == 0 ? 0.0 : std::pow(10.0, random.uniform(-10.0, -0.5));
+      const Vec3 tip = places[random.below(3)] - depth * normal;
+      const Vec3 desired = 0.1 * random.direction();
+      plain.forget();
+      guard.forget();
+      const Step step = guard.step({.tip = tip, .desired = desired});
+      const Step expected = plain.step({.tip = tip, .desired = desired});
+      ASSERT_EQ(step.status, expected.status) << tip.transpose();
+      ASSERT_EQ(step.motion, expected.motion);
+      escapes += step.status == Status::recovering && !step.motion.isZero(0.0) ? 1 : 0;
+    }
+    EXPECT_GT(escapes, test::trials(300));
+  }
+}
+
+TEST(SideTest, AgreesWithTheOracle) {
+  for (const char* name : {"cube", "cortex", "gear", "needles", "far_cube"}) {
+    SCOPED_TRACE(name);
+    const auto mesh = mesh_of(name);
+    const auto tree = tree_of(mesh);
+    const oracle::InsideTest oracle(tree);
+    monitor::SideTest side(tree, 16'384);
+    Random random(7);
+    int undecided = 0;
+    for (const Vec3& point : random_points(*mesh, test::trials(4000), random)) {
+      const std::optional<bool> found = side.is_forbidden(point, 65'536);
+      undecided += found ? 0 : 1;
+      if (!found) continue;
+      ASSERT_TRUE(oracle.closed());
+      ASSERT_EQ(*found, *oracle.inside(point)) << point.transpose();
+    }
+    EXPECT_LE(undecided, oracle.closed() ? test::trials(40) : test::trials(4000));
+    EXPECT_FALSE(side.is_forbidden(mesh->bounds().center(), 3));
+  }
+}
+
+TEST(TipMonitor, HasTheSameAnswersAndWorkInAnyUnit) {
+  const auto mesh = mesh_of("cortex");
+  std::vector<Status> expected;
+  for (const double unit : {1.0, 0x1p-10, 0x1p10}) {
+    SCOPED_TRACE(unit);
+    Surface surface = surface_of(*mesh);
+    for (Vec3& v : surface.vertices) v *= unit;
+    const auto scaled = mesh_of(std::move(surface));
+    StepOptions options = tip_options;
+    for (double* length : {&options.radius, &options.tool_radius, &options.margin,
+                           &options.recovery, &options.deepest}) {
+      *length *= unit;
+    }
+    MotionConstraint guard = make_motion_constraint(scaled, {.options = options});
+    guard.set_monitor(make_tip_monitor(tree_of(scaled), {.work = 400}));
+    Random random(8);
+    std::vector<Status> statuses;
+    Vec3 tip = Vec3::Zero();
+    for (int i = 0; i < 2000; ++i) {
+      if (i % 100 == 0) tip = surface_points(*mesh, 1, 1.0, random).front();
+      const Vec3 desired = 0.3 * random.direction();
+      const Step step = guard.step({.tip = unit * tip, .desired = unit * desired});
+      statuses.push_back(step.status);
+      tip += step.motion / unit;
+    }
+    if (expected.empty()) expected = statuses;
+    EXPECT_EQ(statuses, expected);
+  }
+  EXPECT_TRUE(std::ranges::count(expected, Status::unconfirmed) > 0) << "the work is never scarce";
 }
 
 TEST(TipMonitor, FollowsTheMeshOfTheConstraint) {

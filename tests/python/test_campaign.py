@@ -90,6 +90,23 @@ def test_another_campaign_does_not_take_the_shards_of_this_one(tmp_path):
         assert f"another campaign: its {told} differ" in run(tmp_path, *arguments, status=1)
 
 
+def test_a_mistake_leaves_the_folder_for_the_right_command(tmp_path):
+    assert "use fewer shards" in run(tmp_path, "cube", "--steps", "1000", status=1)
+    run(tmp_path, "cube", "--steps", "1000", "--shards", "2")
+
+
+def test_damaged_files_are_run_again_or_named(tmp_path):
+    arguments = ["cube", "--steps", "1000", "--shards", "2"]
+    run(tmp_path, *arguments, "--json", "whole.json")
+    shards_in(tmp_path)[0].write_bytes(bytes(range(128, 256)))
+    run(tmp_path, *arguments, "--json", "again.json")
+    assert results(tmp_path / "again.json") == results(tmp_path / "whole.json")
+    for text in ("", "[]", "{}"):
+        (tmp_path / "keepout-campaign" / "settings.json").write_text(text)
+        err = run(tmp_path, *arguments, status=1)
+        assert "settings.json is damaged" in err and "Traceback" not in err
+
+
 def test_mistakes_are_reported(tmp_path):
     for arguments, told in ((["none.stl"], "none.stl"), (["cube", "--steps", "1000"], "use fewer shards"),
                             (["cube", "--shard", "1/2"], "--shard"), (["cube", "--stepps", "9"], "--stepps")):
@@ -106,7 +123,7 @@ def test_dask_that_is_not_installed_is_named(tmp_path):
 def test_an_address_that_nobody_answers_is_reported(tmp_path):
     pytest.importorskip("distributed", reason="needs python3-distributed")
     begin = time.monotonic()
-    for address in ("tcp://127.0.0.1:9", "nonsense", "tcp://127.0.0.1:http"):
+    for address in ("tcp://127.0.0.1:9", "nonsense", "tcp://127.0.0.1:http", ""):
         err = run(tmp_path, "cube", "--dask", address, status=1)
         assert f"no scheduler answers at '{address}'" in err and "Traceback" not in err
     assert time.monotonic() - begin < 60

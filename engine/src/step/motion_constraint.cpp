@@ -2,6 +2,7 @@
 #include "keepout/step/motion_constraint.h"
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <utility>
 
@@ -204,23 +205,36 @@ Step MotionConstraint::escape_or_cycle(const Motion& request, SideWatch& sides,
                                        StageTimes* times) noexcept {
   memory_->guides.open(request.tip, options_.recovery);
   if (classifies(sides) && sides.must_classify(request.tip, mesh())) {
-    if (auto inside = step_of_tip_inside(*neighborhood_, request, options_, *memory_))
-      return *inside;
+    if (const auto inside = step_of_tip_inside(*neighborhood_, request, options_, *memory_)) {
+      return confirmed(*inside, request.tip, &TipMonitor::confirms_escape, times);
+    }
   }
   Step step = Cycle(*rule_, *solver_, *memory_, *budget_, options_, request, times).run();
   if (step.status == Status::touching && classifies(sides)) {
-    if (auto escape = escape_from_surface(*neighborhood_, request, options_, *memory_))
-      return *escape;
+    if (const auto escape = escape_from_surface(*neighborhood_, request, options_, *memory_)) {
+      return confirmed(*escape, request.tip, &TipMonitor::confirms_escape, times);
+    }
   }
-  const bool must_confirm = monitor_ != nullptr && step.ok() && !step.motion.isZero(0.0);
-  if (must_confirm && !monitor_->confirms(request.tip, request.tip + step.motion, options_)) {
-    step.status = Status::unconfirmed;
-    step.motion.setZero();
-    step.increment = {};
-    step.active = {};
-    step.limits = {};
-  }
+  step = confirmed(step, request.tip, &TipMonitor::confirms, times);
   sides.after(request, step, options_, mesh());
+  return step;
+}
+
+/// Returns the step if it does not move, or the monitor, if there is one, confirms its motion.
+/// Returns a failed step otherwise.
+Step MotionConstraint::confirmed(Step step, const Vec3& tip, Confirms confirms,
+                                 StageTimes* times) const noexcept {
+  if (monitor_ == nullptr || !step.ok() || step.motion.isZero(0.0)) return step;
+  using Clock = std::chrono::steady_clock;
+  const auto began = times != nullptr ? Clock::now() : Clock::time_point();
+  const bool is_confirmed = (*monitor_.*confirms)(tip, tip + step.motion, options_);
+  if (times != nullptr) times->solve += std::chrono::nanoseconds(Clock::now() - began).count();
+  if (is_confirmed) return step;
+  step.status = Status::unconfirmed;
+  step.motion.setZero();
+  step.increment = {};
+  step.active = {};
+  step.limits = {};
   return step;
 }
 

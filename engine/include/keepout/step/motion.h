@@ -89,7 +89,8 @@ struct Step {
 struct StageTimes {
   std::int64_t query = 0;  // the rule gathers triangles: a query, or the beginning of a traversal
   std::int64_t activation = 0;  // the rule measures the tip; it may traverse along the target
-  std::int64_t solve = 0;       // solve, judge, cut and refine; may traverse along each trial
+  std::int64_t solve = 0;       // solve, judge, cut and refine; may traverse along each trial;
+                                // also the time of a monitor
 
   /// Returns the time of all stages. [ns]
   std::int64_t total() const noexcept { return query + activation + solve; }

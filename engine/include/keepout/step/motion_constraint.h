@@ -174,6 +174,8 @@ class MotionConstraint {
  private:
   Step step(const Motion& request, SideWatch& sides, StageTimes* times) noexcept;
   Step escape_or_cycle(const Motion& request, SideWatch& sides, StageTimes* times) noexcept;
+  using Confirms = bool (TipMonitor::*)(const Vec3&, const Vec3&, const StepOptions&) noexcept;
+  Step confirmed(Step step, const Vec3& tip, Confirms confirms, StageTimes* times) const noexcept;
   bool classifies(const SideWatch& sides) const noexcept { return has_sides_ && sides.is_on(); }
   void prepare();
   void reserve_solver(std::size_t guides);

@@ -20,6 +20,13 @@ class TipMonitor {
   /// comes closer, and if the monitor cannot decide. Must not allocate, lock, throw or print.
   virtual bool confirms(const Vec3& from, const Vec3& to, const StepOptions& options) noexcept = 0;
 
+  /// Returns true if nothing is promised for a tip at `from`, so that it may escape to `to`. That
+  /// is so on the forbidden side. It is also so on the surface, within a few tolerances, if the
+  /// motion leads to the free side and through no other part of the surface. Returns false
+  /// otherwise, and if the monitor cannot decide. Must not allocate, lock, throw or print.
+  virtual bool confirms_escape(const Vec3& from, const Vec3& to,
+                               const StepOptions& options) noexcept = 0;
+
   /// Continues with a mesh that has moved. May allocate. If this throws, the monitor must not
   /// confirm any further motion, or must still confirm motions beside the former mesh.
   virtual void follow(std::shared_ptr<const Mesh> mesh) = 0;

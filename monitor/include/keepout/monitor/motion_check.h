@@ -109,7 +109,7 @@ class MotionCheck {
   /// The triangles near a core, in the order of their distance when they were fetched.
   struct Surroundings {
     double known = -1.0;            // all triangles that were nearer are in `neighbors`
-    double slack = 1.0;             // added to the requested distance
+    double slack = 1.0;             // added to the requested distance [sizes of triangles]
     double shift = 0.0;             // largest displacement of the core since then
     std::vector<Vec3> points = {};  // of the core when they were fetched
     std::vector<Neighbor> neighbors = {};
@@ -157,7 +157,8 @@ class MotionCheck {
   std::vector<TriangleId> found_;
   std::uint64_t most_triangles_;
   InstrumentMotion motion_ = {};
-  std::uint64_t work_ = 0;  // left
+  std::uint64_t work_ = 0;   // left
+  std::uint64_t spare_ = 0;  // of the search with slack for a pair
   std::size_t poses_ = 0;
   double lost_at_ = 0.0;
 };

@@ -50,7 +50,7 @@ inline Bounds inflated(const Bounds& box, double reach) noexcept {
 /// Bounds of a search: the number of triangles, and the work that is left, one unit for each node
 /// (null: unlimited).
 struct SearchLimit {
-  std::size_t triangles = std::numeric_limits<std::size_t>::max();
+  std::uint64_t triangles = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t* work = nullptr;
 };
 
@@ -67,14 +67,17 @@ class TriangleTree {
 
   const Mesh& mesh() const noexcept { return *mesh_; }
   const Bounds& bounds() const noexcept { return nodes_[0].bounds; }
+  /// Returns the mean diagonal of the triangles' bounds. [length]
+  double size_of_triangles() const noexcept { return size_of_triangles_; }
 
   /// Appends each triangle whose bounds overlap the box, once, in an order that does not depend on
   /// the box.
   void collect(const Bounds& box, std::vector<TriangleId>& out) const;
 
   /// Appends each triangle that touches the segment once, and perhaps others near it. Precondition:
-  /// no coordinate of `to` equals that of `from`.
-  void collect_along(const Segment& segment, std::vector<TriangleId>& out) const;
+  /// no coordinate of `to` equals that of `from`. Returns false if a limit ended the search.
+  bool collect_along(const Segment& segment, std::vector<TriangleId>& out,
+                     const SearchLimit& limit = {}) const;
 
   /// Appends each triangle within `reach` [length, >= 0] of the segment once, and perhaps others.
   /// Returns false if a limit ended the search.
@@ -111,6 +114,7 @@ class TriangleTree {
   std::shared_ptr<const Mesh> mesh_;
   std::vector<Node> nodes_;
   std::vector<TriangleId> order_;
+  double size_of_triangles_ = 0.0;
 };
 
 }  // namespace keepout::monitor
