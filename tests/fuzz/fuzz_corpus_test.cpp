@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "harness.h"
+#include "fuzz/harness.h"
 #include "messages.h"
 
 namespace keepout::fuzz {

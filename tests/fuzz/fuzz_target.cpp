@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "harness.h"
+#include "fuzz/harness.h"
 
 namespace {
 

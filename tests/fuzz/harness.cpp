@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "harness.h"
+#include "fuzz/harness.h"
 
 #include <unistd.h>
 
@@ -43,7 +43,7 @@ void require(bool condition, const std::string& promise) {
 std::vector<Harness> harnesses() {
   std::vector<Harness> all;
   for (const auto& part : {mesh_harnesses(), text_harnesses(), json_harnesses(),
-                           protocol_harnesses(), step_harnesses()}) {
+                           protocol_harnesses(), tip_harnesses(), instrument_harnesses()}) {
     all.insert(all.end(), part.begin(), part.end());
   }
   return all;

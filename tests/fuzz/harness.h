@@ -41,7 +41,8 @@ std::span<const Harness> mesh_harnesses() noexcept;
 std::span<const Harness> text_harnesses() noexcept;
 std::span<const Harness> json_harnesses() noexcept;
 std::span<const Harness> protocol_harnesses() noexcept;
-std::span<const Harness> step_harnesses() noexcept;
+std::span<const Harness> tip_harnesses() noexcept;
+std::span<const Harness> instrument_harnesses() noexcept;
 
 /// Returns all harnesses.
 std::vector<Harness> harnesses();

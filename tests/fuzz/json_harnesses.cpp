@@ -3,7 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "harness.h"
+#include "fuzz/harness.h"
 #include "record/report.h"
 #include "settings.h"
 #include "shared/progress.h"
@@ -53,9 +53,9 @@ constexpr std::string_view three_links =
 
 void read_bodies(Bytes bytes) {
   ignore_errors([&] { parse_bodies(text_of(bytes)); });
-  static const auto urdf = scratch_file(
-      "three_links.urdf", {reinterpret_cast<const std::uint8_t*>(three_links.data()),
-                           three_links.size()});
+  static const auto urdf =
+      scratch_file("three_links.urdf",
+                   {reinterpret_cast<const std::uint8_t*>(three_links.data()), three_links.size()});
   ignore_errors([&] {
     const UrdfRobot robot = read_robot(urdf, scratch_file("bodies.json", bytes));
     require_finite(robot.instrument.chain());
@@ -90,17 +90,16 @@ void read_registration(Bytes bytes) {
 
 std::span<const Harness> json_harnesses() noexcept {
   static constexpr Harness all[] = {
-  #if KEEPOUT_HAS_URDF
+#if KEEPOUT_HAS_URDF
     {"urdf", "adapters/urdf/src", read_urdf},
-      {"bodies", "adapters/urdf/src/bodies_file.cpp adapters/urdf/src/read_robot.cpp", read_bodies},
+    {"bodies", "adapters/urdf/src/bodies_file.cpp adapters/urdf/src/read_robot.cpp", read_bodies},
 #endif
-      {"record",
-       "apps/keepout/record/report.cpp apps/keepout/record/record.cpp "
-       "apps/keepout/record/plain_page.cpp apps/keepout/record/flat_rows.cpp "
-       "apps/keepout/verify/merge.cpp",
-       read_record},
-      {"registration", "apps/crtk_node/settings.cpp control/src/registration.cpp",
-       read_registration},
+    {"record",
+     "apps/keepout/record/report.cpp apps/keepout/record/record.cpp "
+     "apps/keepout/record/plain_page.cpp apps/keepout/record/flat_rows.cpp "
+     "apps/keepout/verify/merge.cpp",
+     read_record},
+    {"registration", "apps/crtk_node/settings.cpp control/src/registration.cpp", read_registration},
   };
   return all;
 }

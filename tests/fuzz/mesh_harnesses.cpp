@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "digest.h"
-#include "harness.h"
+#include "fuzz/harness.h"
 #include "keepout/fixtures/shapes.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/index_cache.h"
@@ -25,8 +25,7 @@ void require_written_back(const Mesh& mesh) {
                    AnatomicalSpace::unstated);
   const std::string text = out.str();
   const Bytes bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  const auto again =
-      load_mesh(scratch_file("again.ply", bytes), {.check = MeshCheck::none}).mesh;
+  const auto again = load_mesh(scratch_file("again.ply", bytes), {.check = MeshCheck::none}).mesh;
   require(std::ranges::equal(mesh.vertices(), again->vertices()) &&
               std::ranges::equal(mesh.triangles(), again->triangles()),
           "binary PLY is exact");

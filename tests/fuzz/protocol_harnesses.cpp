@@ -8,7 +8,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "harness.h"
+#include "fuzz/harness.h"
 #include "igtl/bodies.h"
 #include "igtl/polydata.h"
 #include "igtl/server.h"
@@ -153,8 +153,8 @@ void read_messages(Bytes bytes) {
     });
   }
   Source source(bytes);
-  const igtl::ByteList sent = source.once_in(2) ? messages(source)
-                                                : igtl::ByteList(bytes.begin(), bytes.end());
+  const igtl::ByteList sent =
+      source.once_in(2) ? messages(source) : igtl::ByteList(bytes.begin(), bytes.end());
   require(events(sent, sent.size()) == events(sent, 1 + sent.size() / 5),
           "messages do not depend on how the bytes arrive");
 }
@@ -194,8 +194,8 @@ void run_server(Bytes bytes) {
   const igtl::ByteList sent = messages(source);
   igtl::Moment moment{.now = 1.0, .unix = 1e9};
   for (std::size_t at = 0; at < sent.size();) {
-    const igtl::Bytes part = igtl::Bytes(sent).subspan(at, std::min<std::size_t>(
-                                                               512, sent.size() - at));
+    const igtl::Bytes part =
+        igtl::Bytes(sent).subspan(at, std::min<std::size_t>(512, sent.size() - at));
     at += part.size();
     peer.send(part);
     server.receive(moment);

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "harness.h"
+#include "fuzz/harness.h"
 #include "keepout/control/rigid_fit.h"
 #include "keepout/control/target_error.h"
 #include "keepout/factory/convex_tool_text.h"
@@ -120,8 +120,7 @@ void read_command_line(Bytes bytes) {
   }
   const Redirected out(std::cout);
   const Redirected err(std::cerr);
-  const int status =
-      app::run_program(commands, static_cast<int>(words.size()), arguments.data());
+  const int status = app::run_program(commands, static_cast<int>(words.size()), arguments.data());
   const std::string message = err.text();
   require(status == EXIT_SUCCESS ? message.empty() : message.starts_with("keepout: "),
           "a wrong command line is named, and only such a one: " + message);
