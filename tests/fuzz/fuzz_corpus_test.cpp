@@ -44,7 +44,7 @@ TEST(FuzzCorpus, HasAFolderForEachHarness) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Harnesses, FuzzCorpus, testing::ValuesIn(harnesses()),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace
 }  // namespace keepout::fuzz

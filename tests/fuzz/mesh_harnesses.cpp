@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Readers of meshes and of saved indices.
 #include <algorithm>
-#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <numeric>
 #include <sstream>
 
 #include "digest.h"
 #include "fuzz/harness.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/geometry/closest_point.h"
 #include "keepout/index/brute_force.h"
 #include "keepout/index/index_cache.h"
 #include "keepout/mesh/binary_ply.h"

@@ -138,7 +138,7 @@ igtl::ByteList events(igtl::Bytes sent, std::size_t piece) {
 }
 
 void read_messages(Bytes bytes) {
-  for (const std::uint16_t version : {1, 2}) {
+  for (const std::uint16_t version : {std::uint16_t{1}, std::uint16_t{2}}) {
     const auto content = igtl::content_of({.version = version}, bytes);
     if (!content) continue;
     igtl::read_transform(*content);
