@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <ostream>
 
 #include "fuzz/harness.h"
 #include "messages.h"
 
 namespace keepout::fuzz {
+
+void PrintTo(const Harness& harness, std::ostream* out) { *out << harness.name; }
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -36,8 +36,8 @@ class ScratchFolder {
 
 }  // namespace
 
-void require(bool condition, const std::string& promise) {
-  if (!condition) throw Finding(promise);
+void require(bool condition, std::string_view promise) {
+  if (!condition) throw Finding(std::string(promise));
 }
 
 std::vector<Harness> harnesses() {

@@ -26,7 +26,7 @@ struct Finding : std::logic_error {
 };
 
 /// Throws Finding unless the condition holds.
-void require(bool condition, const std::string& promise);
+void require(bool condition, std::string_view promise);
 
 struct Harness {
   std::string_view name;     // also of the folder of its corpus

@@ -33,7 +33,8 @@ template <class Function>
 auto without_allocation(const Function& function) {
   const std::size_t before = allocations();
   auto result = function();
-  require(allocations() == before, "the control path does not allocate");
+  const std::size_t after = allocations();
+  require(after == before, "the control path does not allocate");
   return result;
 }
 

@@ -4,11 +4,14 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <optional>
+#include <sstream>
 
 #include "fuzz/step_scene.h"
 #include "keepout/adapters/index_registry.h"
 #include "keepout/factory/make_motion_constraint.h"
+#include "keepout/index/self_intersection.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/judges/tip_judge.h"
 #include "keepout/mesh/diagnostics.h"
@@ -106,12 +109,17 @@ class TipCase {
     begin();
   }
 
-  /// Begins to judge at the present tip.
-  void begin() {
+  /// Begins to judge at the present tip. `may_escape`: it is led out of the forbidden side.
+  void begin(bool may_escape = true) {
     surface_.emplace(mesh_);
-    const bool has_sides = inside_ == Inside::escape && is_watertight(*mesh_);
-    judge_.emplace(*surface_, guard_.options(), has_sides, tip_);
     audit_.emplace(guard_.guides(), tip_);
+    const bool has_sides = inside_ == Inside::escape && is_watertight(*mesh_);
+    judge_.reset();
+    if (count_self_intersections(*mesh_, *tree_) > 0) {
+      other_.reset();         // ties between triangles at the same place depend on the index
+      if (has_sides) return;  // the forbidden side is not well defined
+    }
+    judge_.emplace(*surface_, guard_.options(), has_sides && may_escape, tip_);
   }
 
   Vec3 desired() {
@@ -127,13 +135,40 @@ class TipCase {
 
   void step(const Motion& motion) {
     const Step step = without_allocation([&] { return guard_.step(motion); });
-    check(motion, step);
-    compare(motion, step);
-    const auto verdict = judge_->judge(motion, step);
-    require(!verdict.breach, std::string("the theorem of the tip: ") +
-                                 std::string(verdict.breach ? name(*verdict.breach) : ""));
+    try {
+      check(motion, step);
+      compare(motion, step);
+      judge(motion, step);
+    } catch (const Finding& finding) {
+      throw Finding(finding.what() + described(motion, step));
+    }
+  }
+
+  void judge(const Motion& motion, const Step& step) {
+    Motion judged = motion;
+    if (!guard_.guides().empty()) judged.desired = step.motion;  // guides may demand more motion
+    const auto verdict = judge_ ? judge_->judge(judged, step) : oracle::TipVerdict{};
+    if (verdict.breach) {
+      throw Finding("the theorem of the tip: " + std::string(name(*verdict.breach)));
+    }
     tip_ += step.motion;
     require(!audit_->follow(tip_), "a tip leaves a guide by at most its band");
+  }
+
+  /// Returns the numbers of a step, for the message of a finding.
+  std::string described(const Motion& motion, const Step& step) const {
+    std::ostringstream out;
+    out << std::setprecision(17) << "\n  status " << name(step.status) << ", tip "
+        << motion.tip.transpose() << ", desired " << motion.desired.transpose() << ", motion "
+        << step.motion.transpose() << ", " << mesh_->triangle_count() << " triangles, size "
+        << size_ << ", longest edge " << mesh_->longest_edge() << ", distance "
+        << surface_->oracle().distance(motion.tip) << " (reported " << step.distance.value_or(-1.0)
+        << ')' << (judge_ ? "" : ", not judged") << ", " << guard_.guides().size() << " guides";
+    if (motion.jacobian) out << ", " << motion.jacobian->joints() << " joints";
+    for (const auto& option : step_options) {
+      out << ", " << option.name << ' ' << keepout::text_of(option.get(guard_.options()));
+    }
+    return out.str();
   }
 
   /// Checks that the parts of a step agree with each other.
@@ -152,7 +187,7 @@ class TipCase {
     } else if (step.ok()) {
       require(std::ranges::equal(step.increment, step.motion), "the increment is the motion");
     }
-    if (step.status == Status::free && !motion.jacobian && !motion.rows) {
+    if (step.status == Status::free && !motion.jacobian && guard_.options().damping == 0.0) {
       require((step.motion - motion.desired).norm() <= slack, "a free motion is the desired one");
     }
     require(guard_.work_units() <=
@@ -161,8 +196,11 @@ class TipCase {
     if (!step.distance) return;
     const double distance = surface_->oracle().distance(motion.tip);
     const double tau = surface_->tolerance(guard_.options(), motion.tip);
-    require(std::abs(*step.distance - distance) <= 1e-9 * distance + tau,
-            "the reported distance is that of the tip");
+    const double touching = 1e-12 * (size_ + motion.tip.lpNorm<1>());
+    if (!(std::abs(*step.distance - distance) <= 1e-9 * distance + tau + touching)) {
+      throw Finding("the reported distance is that of the tip, not " +
+                    keepout::text_of(*step.distance));
+    }
   }
 
   /// Makes the same step with another index.
@@ -173,7 +211,13 @@ class TipCase {
     if (one.is_cut_short || two.is_cut_short) {
       other_.reset();
     } else {
-      require(one == two, "the step does not depend on the index");
+      if (!(one == two)) {
+        std::ostringstream out;
+        out << "the step does not depend on the index: " << name(two.status) << ", motion "
+            << std::setprecision(17) << two.motion.transpose();
+        if (two.distance) out << ", distance " << *two.distance;
+        throw Finding(out.str());
+      }
     }
   }
 
@@ -187,8 +231,7 @@ class TipCase {
       for (Eigen::Index k = 0; k < joints; ++k) matrix.push_back(source_.between(-1.0, 1.0));
       bounds.push_back(guard_.options().radius * source_.between(-1.0, 0.25));
     }
-    // Joints may not be able to escape, so the judge takes the tip as it is.
-    judge_.emplace(*surface_, guard_.options(), false, tip_);
+    begin(false);  // with joints, no tip escapes
     step({.tip = tip_,
           .desired = desired(),
           .jacobian = TipJacobian(jacobian_),
@@ -214,6 +257,7 @@ class TipCase {
     const double radius = guard_.options().radius * source_.magnitude(-2.0, 0.0);
     const Polytope polytope =
         without_allocation([&] { return guard_.free_polytope(tip_, radius); });
+    if (other_) other_->free_polytope(tip_, radius);
     const auto is_within = [&](const Vec3& d) {
       return d.norm() <= radius && std::ranges::all_of(polytope.planes, [&](const HalfSpace& p) {
                return p.normal.dot(d) >= p.offset;
@@ -276,9 +320,8 @@ class TipCase {
     if (mesh_ != moved) {  // its size does not suit the options
       tree_->refit(mesh_, 1);
       guard_.follow(mesh_, tree_);
-    } else if (other_) {
-      other_->follow(mesh_, make_index("brute_force", mesh_));
     }
+    if (other_) other_->follow(mesh_, make_index("brute_force", mesh_));
     begin();
   }
 
