@@ -4,7 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <numbers>
 #include <optional>
+#include <sstream>
 
 #include "fuzz/step_scene.h"
 #include "keepout/index/wide_bvh.h"
@@ -201,16 +204,48 @@ class InstrumentCase {
       next[k] += step.increment[k];
     }
     const auto verdict = judge_->judge(next, step);
-    const std::string status(name(step.status));
-    require(!verdict.is_below, "each body maintains its clearance: " + status);
-    require(!verdict.limits_broken, "each joint stays within its limits: " + status);
-    require(!verdict.is_guide_left, "each guided point stays in its region: " + status);
+    if (verdict.is_below || verdict.limits_broken || verdict.is_guide_left) {
+      throw Finding(described(step, verdict, next));
+    }
     for (std::size_t m = 0; m < meshes_.size(); ++m) {
       require((judge_->pose(m).position - guard_.place_of(m).position).norm() <=
                   1e-9 * (1.0 + judge_->pose(m).position.norm()),
               "a mesh moves at its velocity");
     }
     q_ = next;
+  }
+
+  /// Returns the numbers of a step, for the message of a finding.
+  std::string described(const InstrumentStep& step, const oracle::RobotVerdict& verdict,
+                        const std::vector<double>& next) const {
+    std::ostringstream out;
+    out << std::setprecision(17)
+        << (verdict.is_below        ? "a body loses its clearance by "
+            : verdict.limits_broken ? "a joint leaves its limits, "
+                                    : "a guided point leaves its region by ")
+        << (verdict.is_below ? -verdict.beyond : -verdict.guide_room) << ", tolerance "
+        << guard_.tolerance() << ", least clearance " << verdict.least << ", status "
+        << name(step.status) << ", clearance fraction " << step.clearance_fraction << ", "
+        << meshes_.size() << " meshes, " << guides_.size() << " guides, relaxation "
+        << name(step.relaxation) << "\n  q";
+    for (const double q : q_) out << ' ' << q;
+    out << ", next";
+    for (const double q : next) out << ' ' << q;
+    for (const auto& option : instrument_options) {
+      out << ", " << option.name << ' ' << keepout::text_of(option.get(guard_.options()));
+    }
+    for (int k = 1; k <= chain().size(); ++k) {
+      const JointLimits& limits = chain().joint(k).limits;
+      out << "\n  joint " << k
+          << (chain().joint(k).kind == JointKind::revolute ? " turns" : " slides") << ", limits "
+          << limits.lower << ' ' << limits.upper << ' ' << limits.velocity << ' '
+          << limits.increment;
+    }
+    for (const Placed& one : meshes_) {
+      out << "\n  mesh of " << one.mesh->triangle_count() << " triangles, size "
+          << size_of(*one.mesh) << ", margin " << one.margin;
+    }
+    return out.str();
   }
 
   void step_of_joints() {
@@ -296,8 +331,11 @@ class InstrumentCase {
   /// Places a mesh, with a velocity.
   void place_mesh() {
     const std::size_t m = source_.below(meshes_.size());
-    Pose pose = guard_.place_of(m);
-    if (source_.once_in(3)) pose = any_pose(10.0, source_);
+    if (source_.once_in(3)) {
+      guard_.place(m, any_pose(10.0, source_));
+      begin();
+    }
+    const Pose pose = guard_.place_of(m);
     const double period = guard_.options().period;
     const Twist velocity{.linear = source_.magnitude(-4.0, 0.5) / period * source_.direction(),
                          .angular = source_.magnitude(-4.0, -0.5) / period * source_.direction()};
