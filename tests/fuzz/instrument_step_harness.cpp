@@ -184,6 +184,7 @@ class InstrumentCase {
   /// Begins to judge at the present joints. Meshes stop.
   void begin() {
     for (std::size_t m = 0; m < meshes_.size(); ++m) guard_.place(m, guard_.place_of(m));
+    has_motion_ = false;
     judge_.emplace(scene(), chain(), random_, q_, guard_.options(), guard_.tolerance());
   }
 
@@ -204,7 +205,9 @@ class InstrumentCase {
       next[k] += step.increment[k];
     }
     const auto verdict = judge_->judge(next, step);
-    if (verdict.is_below || verdict.limits_broken || verdict.is_guide_left) {
+    // Beside a moving mesh, the step may drop a guide for this cycle.
+    const bool may_drop = has_motion_ && std::ranges::any_of(step.guides, &GuideState::relaxed);
+    if (verdict.is_below || verdict.limits_broken || (verdict.is_guide_left && !may_drop)) {
       throw Finding(described(step, verdict, next));
     }
     for (std::size_t m = 0; m < meshes_.size(); ++m) {
@@ -213,6 +216,7 @@ class InstrumentCase {
               "a mesh moves at its velocity");
     }
     q_ = next;
+    if (may_drop) begin();
   }
 
   /// Returns the numbers of a step, for the message of a finding.
@@ -226,8 +230,9 @@ class InstrumentCase {
         << (verdict.is_below ? -verdict.beyond : -verdict.guide_room) << ", tolerance "
         << guard_.tolerance() << ", least clearance " << verdict.least << ", status "
         << name(step.status) << ", clearance fraction " << step.clearance_fraction << ", "
-        << meshes_.size() << " meshes, " << guides_.size() << " guides, relaxation "
-        << name(step.relaxation) << "\n  q";
+        << meshes_.size() << " meshes, " << guides_.size() << " guides"
+        << (has_motion_ ? ", a mesh moves" : "") << ", relaxation " << name(step.relaxation)
+        << "\n  q";
     for (const double q : q_) out << ' ' << q;
     out << ", next";
     for (const double q : next) out << ' ' << q;
@@ -342,6 +347,7 @@ class InstrumentCase {
     const Status status = without_allocation([&] { return guard_.place(m, pose, velocity); });
     if (is_ok(status)) {
       judge_->place(m, guard_.place_of(m), velocity);
+      has_motion_ = true;
     } else {
       begin();
     }
@@ -382,7 +388,8 @@ class InstrumentCase {
   std::vector<Guide> guides_;
   std::vector<double> q_;
   Twist twist_;
-  Random random_{1};  // of the judge
+  bool has_motion_ = false;  // a mesh moves
+  Random random_{1};         // of the judge
   std::optional<oracle::RobotJudge> judge_;
 };
 
