@@ -21,6 +21,7 @@
 #include "keepout/fixtures/random.h"
 #include "keepout/fixtures/robots.h"
 #include "keepout/fixtures/shapes.h"
+#include "keepout/geometry/convex_tool.h"
 #include "keepout/index/wide_bvh.h"
 #include "keepout/robot/instrument_constraint.h"
 #include "keepout/simd_target.h"
@@ -136,6 +137,29 @@ std::vector<Scene> scenes() {
   add("200,000 triangles crossing each other", soup(200'000, 3.0), close, 10.0);
   add("2 M small ones", soup(2'000'000, 0.02), close, 10.0);
   add("100,000 times the same triangle", copies(100'000), {}, 3.0);
+  std::vector<Vec3> many_points;
+  Random random(9);
+  while (many_points.size() < ConvexTool::most_points) {
+    many_points.push_back(0.8 * random.direction());
+  }
+  const auto add_tools = [&](const std::string& name, const Surface& surface, double near) {
+    const auto add_tool = [&](const char* text, const ConvexTool& tool) {
+      all.push_back({name + ", " + text,
+                     surface,
+                     {.options = {.radius = 5.0, .margin = 0.2}},
+                     near,
+                     {0, 0, 1}});
+      all.back().settings.tool = tool;
+    };
+    add_tool("a capsule", ConvexTool::capsule({0, 0, 0}, {0.5, 0.3, 3.0}, 0.8));
+    add_tool("a box", ConvexTool::box({{-0.8, -0.8, -0.8}, {0.8, 0.8, 2.0}}));
+    add_tool("a hull of 64 points", ConvexTool::hull(many_points));
+  };
+  for (const VertexId faces : {400u, 4'000u, 20'000u}) {
+    add_tools("tip of a cone, " + std::to_string(faces) + " faces", make_cone(faces, 1.0), 1.5);
+  }
+  add_tools("200,000 triangles crossing each other", soup(200'000, 3.0), 10.0);
+  add_tools("2 M small ones", soup(2'000'000, 0.02), 10.0);
   for (const Shape& shape : shapes()) {
     const Mesh mesh(shape.make());
     const double size = mesh.bounds().size().norm();

@@ -84,6 +84,8 @@ function(keepout_compile_options target)
     # Highway's NEON contains AES, which keepout does not use. GCC 12 compiles implicit constructors
     # without the target of the surrounding pragma, so NEON must be the target of the whole file.
     target_compile_options(${target} PRIVATE -march=armv8-a+crypto)
+    # Eigen then multiplies and adds separately, as on x86-64 without FMA instructions.
+    target_compile_options(${target} PRIVATE -U__ARM_FEATURE_FMA)
   elseif(KEEPOUT_SANITIZE)
     set(disabled "HWY_SSSE3|HWY_SSE4")  # they have the vector length of SSE2, and so run the same lines
   endif()

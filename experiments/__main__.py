@@ -12,6 +12,7 @@ import sys
 from pathlib import Path
 
 import keepout
+from keepout import _workers
 
 from .arguments import NAMES, read
 
@@ -41,8 +42,9 @@ def main(arguments: list[str]) -> int:
     scale = Scale(full=told.full, seed=told.seed)
     units = {e.NAME: e.units(scale) for e in experiments}
     jobs = told.jobs or len(os.sched_getaffinity(0))
+    _workers.stop_on_signals()
     try:
-        rows = runner.run_units(experiments, units, runner.folder_kept(folder, told.seed), jobs)
+        rows = runner.run_units(experiments, units, runner.folder_kept(folder, told.seed), jobs, told.dask)
     except KeyboardInterrupt:
         print(f"\nkeepout: stopped. Finished units are kept in {folder}; the same command continues from there.",
               file=sys.stderr)

@@ -28,6 +28,8 @@ def parser() -> argparse.ArgumentParser:
     of.add_argument("--out", type=_folder, metavar="FOLDER", help="where to write (default: out/experiments "
                     "beside run, with --full out/experiments_full)")
     of.add_argument("--jobs", type=int, metavar="N", help="processes at once (default: one a processor)")
+    of.add_argument("--dask", metavar="ADDRESS", help="run on a Dask cluster: the address of its scheduler, such as "
+                    "tcp://HOST:8786. All machines need this folder. Units that measure times run here")
     of.add_argument("-q", "--quiet", action="store_true", help="print no progress: only results, warnings and errors")
     of.add_argument("--fresh", action="store_true", help="begin anew, and forget what is kept")
     return of

@@ -14,22 +14,22 @@ import hashlib
 import importlib
 import io
 import json
-import multiprocessing
 import os
 import re
-import signal
 import sys
 import time
 import warnings
 from collections import Counter
 from collections.abc import Iterable
-from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from functools import lru_cache
 from modulefinder import ModuleFinder
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import keepout
+from keepout import _workers
 
 from . import modes
 from .experiment import Row, Unit
@@ -133,7 +133,6 @@ def _bytes_digest(file: Path) -> bytes:
 
 
 def _be_a_worker() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that waits for this one
     warnings.filterwarnings("ignore", "Mesh: ")  # counterexamples are open, and cavities face inward
 
 
@@ -142,6 +141,36 @@ def _run(module: str, unit: Unit) -> tuple[list[Row], float]:
     begun = time.monotonic()
     rows: list[Row] = importlib.import_module(module).run(unit)
     return rows, time.monotonic() - begun
+
+
+def _answer() -> None:
+    """Reads a module and a unit from stdin, and writes what _run() returns. A Dask worker runs this as a program."""
+    _be_a_worker()
+    module, *unit = json.load(sys.stdin)
+    out, sys.stdout = sys.stdout, sys.stderr
+    json.dump(_run(module, Unit(*unit)), out)
+
+
+def _start(pool: Executor, on_cluster: bool, module: str, unit: Unit) -> Future[tuple[list[Row], float]]:
+    """Starts a unit on a worker."""
+    if not on_cluster:
+        return pool.submit(_run, module, unit)
+    environment = {name: value for name, value in os.environ.items() if name.startswith(("KEEPOUT_", "PYTHONPATH"))}
+    command = [sys.executable, "-c", f"from {__name__} import _answer; _answer()"]
+    lines = json.dumps([module, unit.name, unit.settings, unit.alone])
+    return pool.submit(_workers.by_value(_workers.run_program), command, str(HERE.parent), environment, lines)
+
+
+def _result(future: Future[tuple[Any, ...]]) -> tuple[list[Row], float]:
+    """Returns the rows of a unit and the seconds that they took. Raises what stopped the unit."""
+    result = future.result()
+    if len(result) == 2:
+        return result
+    status, out, errors = result
+    if status != 0:
+        raise RuntimeError(errors.strip().splitlines()[-1] if errors.strip() else f"exit status {status}")
+    rows, seconds = json.loads(out)
+    return rows, seconds
 
 
 class UnitError(RuntimeError):
@@ -251,11 +280,12 @@ class Progress:
 
 
 def run_units(
-    experiments: list[ModuleType], units: dict[str, list[Unit]], kept_in: Path, jobs: int
+    experiments: list[ModuleType], units: dict[str, list[Unit]], kept_in: Path, jobs: int, dask: str | None = None
 ) -> dict[str, list[Row]]:
     """Returns the rows of all units, by experiment, in the order of the units.
 
-    Units that measure times run first, one after another. After a KeyboardInterrupt, finished units are kept.
+    Units that measure times run first, one after another, on this machine. The others run in `jobs` processes, or on
+    the Dask cluster whose scheduler has the address `dask`. After a KeyboardInterrupt, finished units are kept.
     """
     kept = {e.NAME: Kept(kept_in, e.NAME) for e in experiments}
     progress = Progress(sum(len(of) for of in units.values()))
@@ -282,24 +312,24 @@ def run_units(
             continue
         processes = 1 if alone else jobs
         progress.begin([kind(e, u) for e, u in batch], processes)
-        with ProcessPoolExecutor(processes, initializer=_be_a_worker) as pool:
-            try:
-                running = {pool.submit(_run, e.__name__, u): (e, u) for e, u in batch}
-                while running:
-                    finished, _ = wait(running, timeout=Progress.INTERVAL, return_when=FIRST_COMPLETED)
-                    progress.show()
-                    for future in sorted(finished, key=lambda one: one.exception() is not None):
-                        experiment, unit = running.pop(future)
-                        if fault := future.exception():
-                            raise UnitError(f"{experiment.NAME} {unit.name}: {fault!r:.500}")
-                        rows, seconds = future.result()
-                        progress.ran(kind(experiment, unit), seconds)
-                        done(experiment, unit, kept[experiment.NAME].keep(unit, rows))
-            except BaseException:
-                pool.shutdown(wait=False, cancel_futures=True)
-                for worker in multiprocessing.active_children():
-                    worker.terminate()
-                raise
+        on_cluster = dask is not None and not alone
+        with _workers.cluster(dask) if on_cluster else _workers.processes(processes, _be_a_worker) as pool:
+            running = {_start(pool, on_cluster, e.__name__, u): (e, u) for e, u in batch}
+            while running:
+                finished, _ = wait(running, timeout=Progress.INTERVAL, return_when=FIRST_COMPLETED)
+                progress.show()
+                faults: list[tuple[str, Exception]] = []
+                for future in finished:
+                    experiment, unit = running.pop(future)
+                    try:
+                        rows, seconds = _result(future)
+                    except Exception as fault:
+                        faults.append((f"{experiment.NAME} {unit.name}", fault))
+                        continue
+                    progress.ran(kind(experiment, unit), seconds)
+                    done(experiment, unit, kept[experiment.NAME].keep(unit, rows))
+                for name, fault in faults:
+                    raise UnitError(f"{name}: {fault!r:.500}")
     return {e.NAME: [r for u in units[e.NAME] for r in results[e.NAME, u.name]] for e in experiments}
 
 

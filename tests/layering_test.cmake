@@ -72,6 +72,11 @@ foreach(part include src)
 endforeach()
 forbid(oracle/judges "${include}keepout/(mesh/diagnostics|step/(motion_|[^mo])|robot/([^i]|instrument(\\.|_[^os])))"
        "a judge takes motions, steps and options, and computes by the oracle alone")
+# The monitor shares no computation with the steps: it knows their data types and interfaces alone.
+forbid(monitor "${include}keepout/(adapters|activation|factory|fixtures|index|judges|oracle|solvers)/"
+       "the monitor knows no other part")
+forbid(monitor "${include}keepout/geometry/(closest_point|orientation)" "the monitor has a geometry of its own")
+forbid(monitor "${include}keepout/(step/[^ot]|step/tip_[^m]|robot/(instrument_[^m]|[^i]))" "the monitor runs no step")
 forbid(python "${include}keepout/(fixtures|judges|oracle)/" "the module is the library, and no more")
 foreach(part engine adapters solvers control robot factory fixtures)
   forbid(${part} "${include}(pybind11/|Python.h)" "the library knows no Python")
@@ -81,7 +86,7 @@ foreach(part engine adapters solvers control robot factory fixtures testing)
 endforeach()
 
 # Public headers include only our headers, Eigen's, and the standard library's, whose names have no dot or slash.
-foreach(part engine adapters adapters/ompl adapters/urdf solvers control robot factory fixtures oracle oracle/judges)
+foreach(part engine adapters adapters/ompl adapters/urdf solvers control robot monitor factory fixtures oracle oracle/judges)
   file(GLOB_RECURSE headers "${SOURCE}/${part}/include/*.h")
   foreach(header IN LISTS headers)
     file(STRINGS "${header}" lines REGEX "${include}")

@@ -111,8 +111,8 @@ JointPathVerdict judge_joint_path(oracle::InstrumentOracle& oracle, InstrumentCo
 /// URDF file, the axis of the last body.
 Vec3 direction_of_tool(const RobotUnderTest& robot, const RobotStart& start, const Pose& flange) {
   if (!is_robot_file(robot.name)) return flange.rotation.col(2);
-  const auto links = oracle::place(robot.judged(), start.base, start.positions);
-  const oracle::Segment axis = axis_of(robot.judged().bodies.back(), links);
+  const auto links = monitor::place(robot.judged(), start.base, start.positions);
+  const monitor::Segment axis = axis_of(robot.judged().bodies.back(), links);
   const double length = (axis.to - axis.from).norm();
   return length > 0.0 ? Vec3((axis.to - axis.from) / length) : Vec3(flange.rotation.col(2));
 }

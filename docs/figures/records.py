@@ -31,14 +31,14 @@ INSTRUMENT = TIP + ["robot"]
 # `apps/keepout/NAME` is the former directory of `benchmarks/NAME`.
 SOURCES = {
     "simulate": TIP + ["apps/keepout/operators", "apps/keepout/simulate"],
-    "simulate_robot": INSTRUMENT + ["apps/keepout/operators", "apps/keepout/simulate", "oracle"],
+    "simulate_robot": INSTRUMENT + ["apps/keepout/operators", "apps/keepout/simulate", "oracle", "monitor"],
     "bench": TIP + ["adapters", "benchmarks/bench", "apps/keepout/bench"],
     "speed": TIP + ["adapters", "benchmarks/bench", "apps/keepout/bench"],
     "compare": TIP + ["adapters", "benchmarks/compare", "apps/keepout/compare"],
     "plan": TIP + ["adapters/ompl", "benchmarks/plan", "apps/keepout/plan"],
     "plan_robot": INSTRUMENT + ["adapters/ompl", "benchmarks/plan", "apps/keepout/plan"],
-    "verify": TIP + ["apps/keepout/operators", "apps/keepout/verify", "oracle"],
-    "verify_robot": INSTRUMENT + ["apps/keepout/operators", "apps/keepout/verify", "oracle"],
+    "verify": TIP + ["apps/keepout/operators", "apps/keepout/verify", "oracle", "monitor"],
+    "verify_robot": INSTRUMENT + ["apps/keepout/operators", "apps/keepout/verify", "oracle", "monitor"],
     "output": INSTRUMENT + ["adapters"],
 }
 

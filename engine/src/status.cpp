@@ -119,6 +119,12 @@ constexpr std::array outcomes{
             {never, never,
              "planes around the tip would not guard the rest of a tool, nor keep to a guide: use a "
              "rule that guards a tip, and set no guides"}},
+    Outcome{"unconfirmed",
+            {"the monitor did not confirm the clearance of the motion: stop, and report it; if the "
+             "motion is right, the work of the monitor ended",
+             "the monitor did not confirm the clearance of the motion: stop, and report it; if the "
+             "motion is right, the work of the monitor ended",
+             never}},
 };
 static_assert(outcomes.size() == status_count);
 

@@ -8,6 +8,7 @@
 #include "keepout/activation/registry.h"
 #include "keepout/adapters/narrow_phase_registry.h"
 #include "keepout/error.h"
+#include "keepout/monitor/monitors.h"
 #include "keepout/solvers/registry.h"
 
 namespace keepout {
@@ -55,9 +56,14 @@ MotionConstraint make_motion_constraint(std::shared_ptr<const Mesh> mesh,
                                         const MotionConstraintSettings& settings) {
   // Only the certified rule of a ball determines sides; for other rules `inside` has no effect.
   const bool rule_knows_sides = settings.activation == "certified" && !settings.tool;
-  MotionConstraint constraint(std::move(mesh), index, make_rule(settings),
-                              make_solver(settings.solver), settings.options, settings.capacity,
+  MotionConstraint constraint(mesh, index, make_rule(settings), make_solver(settings.solver),
+                              settings.options, settings.capacity,
                               rule_knows_sides ? settings.inside : Inside::taken_as_is);
+#if KEEPOUT_BALLS_ONLY
+  if (settings.monitor) throw Error("this build has no monitor");
+#else
+  if (settings.monitor) constraint.set_monitor(monitor::make_tip_monitor(std::move(mesh)));
+#endif
   // After the settings are accepted, so that rejected settings cause no warning.
   warn_of_coarse_index(*index, required_clearance(settings.options), settings.warn);
   return constraint;

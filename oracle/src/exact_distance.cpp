@@ -150,4 +150,11 @@ ExactDistance exact_distance(const Segment& segment, const Triangle& triangle, d
           squared.numerator == 0 ? 0.0 : root(squared, frame.exponent())};
 }
 
+Bracket narrow_distance(const Segment& segment, const Triangle& triangle) {
+  const Bracket bracket = bracket_distance(segment, triangle);
+  if (bracket.narrow()) return bracket;
+  const double distance = exact_distance(segment, triangle, 0.0).distance;
+  return {distance * (1.0 - 0x1p-50), distance, distance * (1.0 + 0x1p-50)};
+}
+
 }  // namespace keepout::oracle

@@ -109,7 +109,7 @@ double InstrumentOracle::clearance(std::size_t body, double reach) {
     const Neighbor& neighbor = around.neighbors[entry.neighbor];
     double low = core.least_distance(neighbor.center) - neighbor.radius;
     if (matters(low)) {
-      const Bracket distance = core.distance(neighbor.triangle, nearest);
+      const Bracket distance = core.distance(neighbor.triangle, narrow_distance, nearest);
       low = distance.low;
       found = found || distance.estimate <= nearest;
       nearest = std::min(nearest, distance.estimate);

@@ -82,7 +82,7 @@ Finding SafetyOracle::check(const Vec3& from, const Vec3& to, double threshold, 
 
   const Bounds box = inflated(bounds_of(segment), reach);
   const std::span<const Neighborhood::Group> groups = neighborhood_.around(box);
-  if (groups.empty()) clear_ball_ = {to, tree_->nearest(to).distance.low};
+  if (groups.empty()) clear_ball_ = {to, tree_->nearest(to, narrow_distance).distance.low};
 
   undecided_.clear();
   for (const Neighborhood::Group& group : groups) {
@@ -114,7 +114,7 @@ Finding SafetyOracle::check(const Vec3& from, const Vec3& to, double threshold, 
 }
 
 double SafetyOracle::distance(const Vec3& point) const {
-  return tree_->nearest(point).distance.estimate;
+  return tree_->nearest(point, narrow_distance).distance.estimate;
 }
 
 }  // namespace keepout::oracle

@@ -54,6 +54,7 @@ class Status(IntEnum):
     mesh_changed = 14  # the index was refit to another mesh; call follow() first
     out_of_budget = 15  # the work budget of the cycle ended before a motion was proved
     unsupported = 16  # the rule cannot answer this query
+    unconfirmed = 17  # the monitor did not confirm the motion
 
     # Names before version 0.3.
     fallback = truncated

@@ -10,6 +10,15 @@
 #include "keepout/activation/tolerances.h"
 
 namespace keepout {
+namespace {
+
+/// Returns the number of a sub-interval: see Certificate::plane_of_part_.
+std::size_t number_of_part(int lo, int hi) noexcept {
+  return static_cast<std::size_t>((lo + PointMotion::last_knot) / (hi - lo));
+}
+
+}  // namespace
+
 Certificate::Certificate(const Instrument& instrument, std::size_t body, RelativeMotion& motion,
                          NearSet& near, double demand, double tolerance, Budget& budget) noexcept
     : body_(body),
@@ -94,7 +103,10 @@ bool Certificate::separates(const Vec3& normal, const NearTriangle& triangle, in
   const double least = least_height(normal, lo, hi);
   const double behind = support(*triangle.corners, normal);
   if (!(least - behind >= radius_ + due_plus_rounding_ - plane_rounding * tolerance_)) return false;
-  const bool is_whole = lo == 0 && hi == PointMotion::last_knot;
+  const std::size_t part = number_of_part(lo, hi);
+  plane_of_part_[part] = {normal, least};
+  has_plane_[part] = true;
+  const bool is_whole = part == 1;
   if (is_whole && plane_count_ < most_planes) planes_[plane_count_++] = {normal, least};
   return true;
 }
@@ -106,9 +118,27 @@ bool Certificate::is_covered(const NearTriangle& triangle) const noexcept {
   });
 }
 
-/// Tries to prove the sub-interval by the gap at lo, and at hi if that is known.
+/// Returns true if the plane that last proved the sub-interval proves it for this triangle, too.
+bool Certificate::is_covered(const NearTriangle& triangle, int lo, int hi) const noexcept {
+  const std::size_t part = number_of_part(lo, hi);
+  if (!has_plane_[part]) return false;
+  const Plane& plane = plane_of_part_[part];
+  const double height = plane.least - support(*triangle.corners, plane.normal);
+  return height >= radius_ + due_plus_rounding_ - plane_rounding * tolerance_;
+}
+
+/// Like is_covered(), but also by planes of its halves, of their halves, and so on.
+bool Certificate::is_covered_in_parts(const NearTriangle& triangle, int lo, int hi) const noexcept {
+  if (is_covered(triangle, lo, hi)) return true;
+  if (hi - lo == 1) return false;
+  const int middle = (lo + hi) / 2;
+  return is_covered_in_parts(triangle, lo, middle) && is_covered_in_parts(triangle, middle, hi);
+}
+
+/// Tries to prove the sub-interval by planes that are known, and by the gap at lo.
 bool Certificate::is_proved_from(const NearTriangle& triangle, Place& lo,
                                  const Place& hi) noexcept {
+  if (is_covered(triangle, lo.knot, hi.knot)) return true;
   const auto separates_at = [&](const Gap& gap) {
     return gap.distance > 0.0 && separates(gap.normal, triangle, lo.knot, hi.knot);
   };
@@ -142,11 +172,18 @@ int Certificate::proved_until(const NearTriangle& triangle, Place& lo, Place& hi
   if (lo.knot > latest_ || budget_.is_spent()) return lo.knot;
   if (is_proved_from(triangle, lo, hi)) return hi.knot;
   Place middle{.knot = (lo.knot + hi.knot) / 2};
-  // If another triangle ends the proof earlier, only the sub-interval before its knot matters.
-  if (hi.knot - lo.knot == PointMotion::last_knot && latest_ < middle.knot) {
-    Place until{.knot = static_cast<int>(std::bit_ceil(static_cast<unsigned>(latest_) + 1U))};
-    if (is_proved_from(triangle, lo, until) || is_proved_to(triangle, lo, until)) {
-      return until.knot;
+  // Planes that are known cost less than a gap.
+  if (hi.knot - lo.knot > 1 && is_covered_in_parts(triangle, lo.knot, middle.knot)) {
+    if (is_covered_in_parts(triangle, middle.knot, hi.knot)) return hi.knot;
+    return proved_until(triangle, middle, hi);
+  }
+  if (hi.knot - lo.knot == PointMotion::last_knot) {
+    // If another triangle ends the proof earlier, only the sub-interval before its knot matters.
+    if (latest_ < middle.knot) {
+      Place until{.knot = static_cast<int>(std::bit_ceil(static_cast<unsigned>(latest_) + 1U))};
+      if (is_proved_from(triangle, lo, until) || is_proved_to(triangle, lo, until)) {
+        return until.knot;
+      }
     }
   }
   if (is_proved_to(triangle, lo, hi)) return hi.knot;

@@ -19,6 +19,8 @@ namespace keepout {
 /// The triangle, grown by the due clearance, is behind the plane. The parabolas of all points of
 /// the body are in front of it. A sub-interval is also proved if the distance at its start exceeds
 /// the largest displacement. Other sub-intervals are halved, down to the grid of PointMotion.
+/// Planes that prove a sub-interval or its parts for one triangle are tried for the next triangles,
+/// which are often its neighbors.
 class Certificate {
  public:
   /// The obstacle to a proof. By default there is no obstacle. Knot 0 without a triangle: the
@@ -66,6 +68,8 @@ class Certificate {
   double least_height(const Vec3& normal, int lo, int hi) noexcept;
   bool separates(const Vec3& normal, const NearTriangle& triangle, int lo, int hi) noexcept;
   bool is_covered(const NearTriangle& triangle) const noexcept;
+  bool is_covered(const NearTriangle& triangle, int lo, int hi) const noexcept;
+  bool is_covered_in_parts(const NearTriangle& triangle, int lo, int hi) const noexcept;
   bool is_proved_from(const NearTriangle& triangle, Place& lo, const Place& hi) noexcept;
   bool is_proved_to(const NearTriangle& triangle, const Place& lo, Place& hi) noexcept;
   int proved_until(const NearTriangle& triangle, Place& lo, Place& hi) noexcept;
@@ -85,6 +89,10 @@ class Certificate {
   int latest_ = PointMotion::last_knot;  // a proof beyond this knot makes no difference
   std::array<Plane, most_planes> planes_;
   std::size_t plane_count_ = 0;
+  // The plane that last proved each sub-interval, by its number: the whole motion is 1, the halves
+  // of sub-interval i are 2 i and 2 i + 1.
+  std::array<Plane, 2 * PointMotion::last_knot> plane_of_part_;
+  std::array<bool, 2 * PointMotion::last_knot> has_plane_{};
 };
 
 }  // namespace keepout

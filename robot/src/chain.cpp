@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "keepout/error.h"
+#include "keepout/rounding_mode.h"
 #include "keepout/option_table.h"
 
 namespace keepout {
@@ -96,6 +97,7 @@ void require_usable(const Joint& joint, const std::string& which) {
 
 Chain::Chain(std::vector<Joint> joints, const Pose& base, const Pose& flange)
     : joints_(std::move(joints)), base_(base), flange_(flange) {
+  require_rounding_to_nearest();
   if (joints_.empty() || joints_.size() > static_cast<std::size_t>(most_joints)) {
     throw Error("a chain has 1 to " + std::to_string(most_joints) + " joints, not " +
                 std::to_string(joints_.size()));

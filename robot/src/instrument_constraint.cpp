@@ -3,6 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include "joint_input.h"
 #include "keepout/error.h"
 #include "keepout/mesh/diagnostics.h"
+#include "keepout/rounding_mode.h"
 #include "keepout/step/options.h"
 
 namespace keepout {
@@ -62,6 +65,9 @@ struct InstrumentConstraint::State {
     }
     try {
       prepare();
+      if (monitor != nullptr) {
+        monitor->follow(memory.meshes[number].neighborhood->shared_mesh(), number);
+      }
     } catch (...) {
       if (is_new) {
         memory.meshes.pop_back();
@@ -69,6 +75,7 @@ struct InstrumentConstraint::State {
         std::swap(memory.meshes[number], mesh);
       }
       memory.measure();
+      if (monitor != nullptr) prepare();
       throw;
     }
   }
@@ -76,6 +83,7 @@ struct InstrumentConstraint::State {
   /// Prepares all memory that depends on the meshes, and forgets the last cycle. Throws Error, and
   /// forgets nothing, if the options cannot be used with the meshes.
   void prepare() {
+    require_rounding_to_nearest();
     memory.measure();
     memory.require_usable(options);
     // The default is that of a tip's step, measured on wide_bvh. The largest default of all indices
@@ -102,10 +110,16 @@ struct InstrumentConstraint::State {
   /// start. Moves the meshes in any case.
   template <class MakeTask>
   InstrumentStep step(std::span<const double> q, bool is_input_valid, MakeTask make_task) noexcept {
+    const RoundingToNearest rounding;
     InstrumentStep result{.status = renew_and_check(q, is_input_valid)};
     if (is_ok(result.status)) {
       JointCycle cycle(memory, options, q, JointCycle::MeshMotion::predicted);
       result = cycle.run(make_task(cycle.chain_at_start()));
+      if (monitor != nullptr && result.ok() && !is_confirmed(q, result)) {
+        result.status = Status::unconfirmed;
+        result.increment = {};
+        memory.forget_motion();
+      }
     }
     // Without a proved motion beside meshes that move, no clearance is certified.
     if (!result.ok() && memory.is_moving()) result.clearance_fraction = 0.0;
@@ -113,6 +127,31 @@ struct InstrumentConstraint::State {
     result.share = result.fraction;
     result.level = result.clearance_fraction;
     return result;
+  }
+
+  /// Returns true if the monitor confirms the increment, or if nothing moves.
+  bool is_confirmed(std::span<const double> q, const InstrumentStep& result) noexcept {
+    const bool is_still = std::ranges::all_of(result.increment, [](double x) { return x == 0.0; });
+    if (is_still && !memory.is_moving()) return true;
+    for (std::size_t k = 0; k < q.size(); ++k) monitored.ends[k] = q[k] + result.increment[k];
+    for (std::size_t m = 0; m < memory.meshes.size(); ++m) {
+      const MeshMemory& mesh = memory.meshes[m];
+      monitored.meshes[m] = {
+          mesh.pose,
+          {options.period * mesh.velocity.linear, options.period * mesh.velocity.angular}};
+    }
+    for (std::size_t p = 0; p < memory.pairs.size(); ++p) {
+      const PairMemory& pair = memory.pairs[p];
+      const double none = -std::numeric_limits<double>::infinity();
+      const double target = memory.meshes[pair.mesh].margin(options) - options.band;
+      monitored.pairs[p] = {pair.is_dropped ? none : pair.certified,
+                            pair.clearance_fraction < 1.0 ? none : target, options.band};
+    }
+    return monitor->confirms({q,
+                              {monitored.ends.data(), q.size()},
+                              {monitored.meshes.data(), memory.meshes.size()},
+                              {monitored.pairs.data(), memory.pairs.size()},
+                              memory.tolerance});
   }
 
   /// Moves the meshes by their velocities.
@@ -133,6 +172,12 @@ struct InstrumentConstraint::State {
   InstrumentCapacity capacity;
   CycleMemory memory;
   InstrumentOptions options;
+  std::unique_ptr<InstrumentMonitor> monitor = nullptr;  // or null
+  struct {
+    std::array<double, Chain::most_joints> ends{};
+    std::array<MonitoredMotion::OfMesh, InstrumentCapacity::most_meshes> meshes{};
+    std::array<MonitoredMotion::OfPair, most_pairs> pairs{};
+  } monitored = {};
 };
 
 InstrumentConstraint::InstrumentConstraint(Instrument instrument, std::unique_ptr<Solver> solver,
@@ -171,6 +216,7 @@ InstrumentStep InstrumentConstraint::step(std::span<const double> q,
 
 MotionProof InstrumentConstraint::prove(std::span<const double> q,
                                         std::span<const double> increment) noexcept {
+  const RoundingToNearest rounding;
   const Status status =
       state_->renew_and_check(q, are_valid_positions(state_->memory, q, increment));
   if (!is_ok(status)) return {.status = status};
@@ -247,6 +293,7 @@ void InstrumentConstraint::follow(std::shared_ptr<const Mesh> moved,
 
 Status InstrumentConstraint::place(std::size_t number, const Pose& pose,
                                    const Twist& velocity) noexcept {
+  const RoundingToNearest rounding;
   CycleMemory& memory = state_->memory;
   if (number >= memory.meshes.size()) return Status::invalid_input;
   MeshMemory& placed = memory.meshes[number];
@@ -260,6 +307,10 @@ Status InstrumentConstraint::place(std::size_t number, const Pose& pose,
 
 void InstrumentConstraint::set_guides(std::vector<Guide> guides) {
   state_->memory.set_guides(std::move(guides));
+}
+
+void InstrumentConstraint::set_monitor(std::unique_ptr<InstrumentMonitor> monitor) {
+  state_->monitor = std::move(monitor);
 }
 
 double InstrumentConstraint::tolerance() const noexcept { return state_->memory.tolerance; }

@@ -219,7 +219,9 @@ SolveStatus JointProblem::solve_once(const JointTask& task, std::span<const Row>
                             {task.desired.data(), task.equations},
                             {memory_.matrix.data(), static_cast<Eigen::Index>(count), task.joints},
                             {memory_.bounds.data(), static_cast<Eigen::Index>(count)},
-                            task.damping};
+                            task.damping,
+                            {},
+                            {box_rows_.data(), box_rows}};
   solution = {};
   const SolveStatus solved = memory_.solver.solve(problem, solution);
   memory_.budget.spend_solve(n, count, solution.iterations);

@@ -130,8 +130,9 @@ std::span<NearTriangle> NearSet::nearer_than(double distance, Budget& budget) no
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(lanes));
         if (i >= ids_.size()) break;
         if (listed_in_[i] == listing_) continue;
-        const double at_least = std::max(least_distance(from_, to_, corners_[i]) - beyond_,
-                                         height_along(normals_[i], now_, corners_[i]));
+        const double height = height_along(normals_[i], now_, corners_[i]);
+        if (!(height < distance)) continue;
+        const double at_least = std::max(least_distance(from_, to_, corners_[i]) - beyond_, height);
         if (!(at_least < distance)) continue;
         listed_in_[i] = listing_;
         found_.push_back({at_least, ids_[i], static_cast<std::uint32_t>(i)});

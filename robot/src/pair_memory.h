@@ -44,6 +44,7 @@ struct PairMemory {
   double certified = -std::numeric_limits<double>::infinity();
   bool may_have_crossed = false;  // the body's side is unknown, as a dropped pair's
   // The present cycle.
+  double moved = 0.0;               // see PairWatch::moved [length]
   double full_demand = 0.0;         // the clearance to certify if not degraded (F*) [length]
   double row_margin = 0.0;          // the clearance that rows demand [length]
   double clearance_fraction = 1.0;  // the fraction of the full demand to certify

@@ -19,6 +19,7 @@ PairWatch::Opening PairWatch::open() noexcept {
     PairMemory& pair = memory_.pairs[p];
     memory_.budget.spend(work::pair);
     pair.triangles.start_listing(motion(p).core_at(pair.body, 0, core));
+    pair.moved = pair.triangles.radius() >= 0.0 ? moved(p) : 0.0;
     pair.full_demand = 0.0;
     pair.clearance_fraction = 1.0;
     pair.is_dropped = false;
@@ -49,9 +50,10 @@ Status PairWatch::open_pair(std::size_t p, Opening& opening) noexcept {
   double nearest = std::numeric_limits<double>::infinity();
   const double measured_within =
       radius(p) + margin(p) + std::max(options.band, options.slowing_within);
-  // The list is the one that the rows need later; only its nearest triangles are measured.
+  // The list is the one that the rows need later. Only triangles that may be the nearest are
+  // measured here; the tolerance is for rounding.
   for (NearTriangle& triangle : nearer_than(p, vicinity(p))) {
-    if (!(triangle.at_least < measured_within)) break;
+    if (!(triangle.at_least < std::min(measured_within, nearest + memory_.tolerance))) break;
     if (budget.is_spent()) return Status::out_of_budget;
     pair.triangles.measure(triangle, budget);
     nearest = std::min(nearest, triangle.at_start.distance);
@@ -239,7 +241,7 @@ double PairWatch::moved(std::size_t p) noexcept {
 Status PairWatch::ensure_known(std::size_t p, double needed) noexcept {
   PairMemory& pair = memory_.pairs[p];
   Budget& budget = memory_.budget;
-  if (pair.triangles.radius() >= 0.0 && pair.triangles.radius() - moved(p) >= needed)
+  if (pair.triangles.radius() >= 0.0 && pair.triangles.radius() - pair.moved >= needed)
     return Status::free;
   CorePositions core;
   const std::span<const Vec3> now = motion(p).core_at(pair.body, 0, core);
@@ -253,6 +255,7 @@ Status PairWatch::ensure_known(std::size_t p, double needed) noexcept {
   Neighborhood& neighborhood = *memory_.meshes[pair.mesh].neighborhood;
   for (const double fraction : {1.0, 0.125, 0.0}) {
     if (pair.triangles.gather(neighborhood, now, needed + fraction * pair.padding, budget)) {
+      pair.moved = 0.0;
       if (fraction < 1.0 || pair.triangles.size() > many) pair.padding *= 0.5;
       if (pair.triangles.size() < few) pair.padding *= 2.0;
       return Status::free;

@@ -48,12 +48,16 @@ void WorkingRows::add_recovery_rows(std::size_t p) noexcept {
   Budget& budget = memory_.budget;
   const double distance = pairs_.radius(p) + pairs_.row_margin(p);
   const auto nearby = pairs_.nearer_than(p, distance);
+  for (NearTriangle& triangle : nearby) {
+    if (budget.is_spent()) return;
+    memory_.pairs[p].triangles.measure(triangle, budget);
+  }
   for (int count = 0; count < most_recovery_rows && !budget.is_spent(); ++count) {
     budget.spend((1 + nearby.size() * (1 + memory_.rows.size()) / 32) * work::listed_again);
     // The nearest triangle from which no row pulls the body away.
     const NearTriangle* nearest = nullptr;
     for (const NearTriangle& triangle : nearby) {
-      if (!triangle.is_measured || triangle.at_start.distance >= distance) continue;
+      if (triangle.at_start.distance >= distance) continue;
       if (nearest != nullptr && triangle.at_start.distance >= nearest->at_start.distance) continue;
       const bool is_pulled =
           std::any_of(memory_.rows.begin(), memory_.rows.end(), [&](const Row& row) {

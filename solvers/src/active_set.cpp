@@ -19,7 +19,11 @@ bool shapes_agree(const StepProblem& problem) noexcept {
          (problem.rows.cols() == n || problem.rows.rows() == 0) &&
          (problem.planes.empty() ||
           (problem.jacobian.rows() == 3 &&
-           problem.planes.size() <= static_cast<std::size_t>(problem.rows.rows())));
+           problem.planes.size() <= static_cast<std::size_t>(problem.rows.rows()))) &&
+         problem.planes.size() + problem.box.size() <=
+             static_cast<std::size_t>(problem.rows.rows()) &&
+         std::all_of(problem.box.begin(), problem.box.end(),
+                     [n](std::uint8_t number) { return number < 2 * n; });
 }
 
 /// Returns true if J, d and damping are finite and in range.

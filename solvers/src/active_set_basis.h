@@ -24,6 +24,7 @@ class Basis {
   void clear(int variables) noexcept {
     n_ = variables;
     size_ = 0;
+    is_identity_ = true;
     for (int j = 0; j < n(); ++j) {
       for (int i = 0; i < n(); ++i) q_(i, j) = i == j ? 1 : 0;
     }
@@ -34,6 +35,10 @@ class Basis {
 
   /// Computes h = Q^T w.
   void project(const Vector<N>& w, Vector<N>& h) const noexcept {
+    if (is_identity_) {
+      for (int j = 0; j < n(); ++j) h[j] = w[j];
+      return;
+    }
     for (int j = 0; j < n(); ++j) {
       h[j] = 0;
       for (int i = 0; i < n(); ++i) h[j] += q_(i, j) * w[i];
@@ -42,6 +47,10 @@ class Basis {
 
   /// Computes y = Q h, using the entries of h from `first` on.
   void combine(const Vector<N>& h, int first, Vector<N>& y) const noexcept {
+    if (is_identity_) {
+      for (int i = 0; i < n(); ++i) y[i] = i < first ? 0 : h[i];
+      return;
+    }
     for (int i = 0; i < n(); ++i) y[i] = 0;
     for (int j = first; j < n(); ++j) {
       for (int i = 0; i < n(); ++i) y[i] += q_(i, j) * h[j];
@@ -86,6 +95,7 @@ class Basis {
       for (int j = size_; j < n(); ++j) {
         for (int i = 0; i < n(); ++i) q_(i, j) -= along_[i] * h[j];
       }
+      is_identity_ = false;
     }
     for (int i = 0; i < size_; ++i) t_(i, size_) = h[i];
     t_(size_, size_) = below > 0 ? diagonal : old;
@@ -101,6 +111,7 @@ class Basis {
       for (int i = 0; i <= j + 1; ++i) t_(i, j) = t_(i, j + 1);
     }
     for (int j = position; j < size_; ++j) {
+      is_identity_ = false;
       const double length = std::sqrt(t_(j, j) * t_(j, j) + t_(j + 1, j) * t_(j + 1, j));
       const double c = t_(j, j) / length;
       const double s = t_(j + 1, j) / length;
@@ -120,6 +131,7 @@ class Basis {
 
   int n_ = 0;
   int size_ = 0;
+  bool is_identity_ = false;  // Q is the unit matrix, so products with it are copies
   Matrix<N> q_;
   Matrix<N> t_;
   Vector<N> along_;  // Q h, a temporary

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "active_set_tolerances.h"
@@ -51,7 +52,8 @@ struct RowStore {
 ///
 /// Rows of planes are scanned as planes: their violations are measured at the tip, J u, and only
 /// rows that enter are written out. This requires that the joints can move the tip well in every
-/// direction.
+/// direction. Rows that bound one variable are scanned as bounds; the results are those of the
+/// rows, bit for bit.
 template <int N>
 class Rows {
  public:
@@ -66,7 +68,12 @@ class Rows {
     first_read_ = planes_ > 0 && list_planes() ? planes_ : 0;
     for (int i = 0; i < planes_ && first_read_ == 0; ++i) write(i);
     SolveStatus status = SolveStatus::optimal;
-    for (int i = first_read_; i < size_; ++i) {
+    first_bound_ = size_ - static_cast<int>(problem.box.size());
+    for (int i = first_bound_; i < size_; ++i) {
+      squares()[i] = 1;
+      if (!(std::abs(bound(i)) <= largest)) return SolveStatus::invalid_input;
+    }
+    for (int i = first_read_; i < first_bound_; ++i) {
       const double square = dot((*this)[i], (*this)[i]);
       squares()[i] = square;
       const SolveStatus its = row_status((*this)[i], n(), square, bound(i));
@@ -83,11 +90,21 @@ class Rows {
     int worst = no_row;
     double worst_square = tolerance * tolerance;
     if (first_read_ > 0) worst = most_violated_plane(u, tolerance, worst_square);
-    for (int i = first_read_; i < size_; ++i) {
+    for (int i = first_read_; i < first_bound_; ++i) {
       const double missing = violation(i, u);
       if (missing > 0 && missing * missing > worst_square * squares()[i]) [[unlikely]] {
         worst = i;
         worst_square = missing * missing / squares()[i];
+      }
+    }
+    const std::uint8_t* box = problem_->box.data();
+    const double* bounds = problem_->bounds.data();
+    for (int i = first_bound_; i < size_; ++i) {
+      const int number = box[i - first_bound_];
+      const double missing = bounds[i] - (number % 2 == 0 ? u[number / 2] : -u[number / 2]);
+      if (missing > 0 && missing * missing > worst_square) [[unlikely]] {
+        worst = i;
+        worst_square = missing * missing;
       }
     }
     return worst;
@@ -177,8 +194,9 @@ class Rows {
 
   const StepProblem* problem_ = nullptr;
   RowStore* store_ = nullptr;
-  int planes_ = 0;      // the first rows
-  int first_read_ = 0;  // the first row that is scanned one by one
+  int planes_ = 0;       // the first rows
+  int first_read_ = 0;   // the first row that is scanned one by one
+  int first_bound_ = 0;  // the first row of the box, which are the last rows
   int size_ = 0;
   int variables_ = 0;
   double shortest_ = 0;          // lower bound of |n^T J|

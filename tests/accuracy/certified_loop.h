@@ -38,7 +38,7 @@ class Loop {
 
   /// Returns the unit vector to the nearest point of the surface.
   Vec3 towards_surface(const Vec3& tip) const {
-    const TriangleId nearest = oracle_.tree()->nearest(tip).triangle;
+    const TriangleId nearest = oracle_.tree()->nearest(tip, oracle::narrow_distance).triangle;
     return closest_point(mesh_->triangle(nearest), tip).offset.normalized();
   }
 

@@ -36,12 +36,12 @@ TEST(CuttingSetUp, KeepsCorridorSkullAndJointsWhateverTheHandDoes) {
                                    .direction = Vec3::UnitX(),
                                    .radius = half_width,
                                    .band = corridor.band()};
-  Random random(1), samples(1);
-  oracle::RobotJudge judge({oracle::judged_psm(),
+  Random random(1);
+  oracle::RobotJudge judge({monitor::judged_psm(),
                             chain.base(),
-                            {{std::make_shared<const oracle::TriangleTree>(mesh)}},
+                            {{std::make_shared<const monitor::TriangleTree>(mesh)}},
                             {judged}},
-                           chain, samples, q, guard.options(), guard.tolerance());
+                           chain, q, guard.options(), guard.tolerance());
   const double kept = guard.options().margin - guard.options().band - 3.0 * guard.tolerance();
   double farthest = 0.0;  // out of the corridor
   double nearest = test::infinity;

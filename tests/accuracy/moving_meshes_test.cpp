@@ -47,11 +47,11 @@ class MovingMeshes : public testing::TestWithParam<const char*> {};
 TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
   const auto mesh = load_mesh(fixture_path(GetParam())).mesh;
   const std::shared_ptr<const SpatialIndex> index = make_index("wide_bvh", mesh);
-  const auto tree = std::make_shared<const oracle::TriangleTree>(mesh);
+  const auto tree = std::make_shared<const monitor::TriangleTree>(mesh);
   const Vec3 top = highest_vertex(*mesh);
   const Instrument robot = psm(port_over(top, 120.0));
   const Chain& chain = robot.chain();
-  Random random(1), samples(1);
+  Random random(1);
   double nearest = test::infinity;
   int blocked = 0;
   int named = 0;
@@ -65,7 +65,7 @@ TEST_P(MovingMeshes, AreKeptOffWhateverTheHandDoes) {
     std::vector<double> q{0, 0, 0, 0, 0, 0};
     const ChainState state = test::state_of(chain, q);
     q[2] = state.flange().position.z() - top.z() - 6.0;  // above the surface at each time
-    oracle::RobotJudge judge({oracle::judged_psm(), chain.base(), {{tree}}}, chain, samples, q,
+    oracle::RobotJudge judge({monitor::judged_psm(), chain.base(), {{tree}}}, chain, q,
                              guard.options(), guard.tolerance());
     for (int cycle = 0; cycle < 1000; ++cycle, ++cycles) {
       const double time = cycle * cycle_time;
@@ -122,7 +122,7 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
   std::vector<double> q{0, 0, 0, 0, 0, 0};
   const ChainState state = test::state_of(chain, q);
   q[2] = state.flange().position.z() - top.z() - 1.0;
-  Random random(2), samples(2);
+  Random random(2);
   int cycles = 0;
   int certified = 0;
   int recovering = 0;
@@ -135,10 +135,10 @@ TEST(DeformingLiver, IsKeptOffBetweenRefitsAndLookedAtAnewAfterEach) {
     ASSERT_EQ(guard.step(q, Twist{}).status, Status::mesh_changed)
         << "no motion on the outdated mesh";
     guard.follow(mesh, tree);
-    oracle::RobotJudge judge({oracle::judged_psm(),
+    oracle::RobotJudge judge({monitor::judged_psm(),
                               chain.base(),
-                              {{std::make_shared<const oracle::TriangleTree>(mesh)}}},
-                             chain, samples, q, guard.options(), guard.tolerance());
+                              {{std::make_shared<const monitor::TriangleTree>(mesh)}}},
+                             chain, q, guard.options(), guard.tolerance());
     for (int cycle = 0; cycle < 100; ++cycle, ++cycles) {
       const bool has_it = judge.is_recovered();
       const InstrumentStep step =

@@ -223,6 +223,20 @@ TEST(BudgetOfACycle, HoldsForAnInstrumentWithGuides) {
   EXPECT_GT(count.costly, 5);
 }
 
+// The proofs of a convex tool once spent nothing: this step took 200 ms.
+TEST(BudgetOfACycle, EndsForAConvexTool) {
+  const Scene cone(4'000, 1.0);
+  const auto status = [&](std::size_t work_units) {
+    MotionConstraint guard = make_motion_constraint(
+        cone.mesh, {.options = {.radius = 5.0, .margin = 0.2},
+                    .tool = ConvexTool::box({Vec3(-0.8, -0.8, -0.8), Vec3(0.8, 0.8, 2.0)}),
+                    .capacity = {.work_units = work_units}});
+    return guard.step({.tip = above(1.05), .desired = Vec3(0.01, 0.02, -4.0)}).status;
+  };
+  EXPECT_TRUE(is_ok(status(Budget::unlimited)));
+  EXPECT_EQ(status(0), Status::out_of_budget);
+}
+
 // Testing faces one by one once used half of the budget, in 613 of 100,000 steps, without a motion.
 TEST(BudgetOfACycle, SufficesInsideConesOfUpTo400Faces) {
   Random random(3);

@@ -215,7 +215,7 @@ TEST(HostileSession, OfAnInstrumentKeepsEveryBodyOutWhateverArrives) {
       test::state_of(instrument.chain(), std::vector<double>{0, 0, 50, 0, 0, 0}).flange();
   const Pose base = instrument.chain().base();
   oracle::InstrumentOracle judge(
-      std::make_shared<oracle::TriangleTree>(mesh), oracle::judged_psm(),
+      std::make_shared<monitor::TriangleTree>(mesh), monitor::judged_psm(),
       {registration().point_to_mesh(0.001 * base.position), base.rotation});
   HostileLoop loop(
       CrtkSession(guard_of(mesh, instrument, {.period = period}), registration(), options()),

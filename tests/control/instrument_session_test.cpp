@@ -84,7 +84,7 @@ const std::vector<double> start{0, 0, 30, 0.2, 0.1, 0};  // [mm] in joint 3
 class Judge {
  public:
   explicit Judge(const Instrument& instrument)
-      : oracle_(std::make_shared<oracle::TriangleTree>(cube()), oracle::judged_psm(),
+      : oracle_(std::make_shared<monitor::TriangleTree>(cube()), monitor::judged_psm(),
                 in_mesh(instrument.chain().base())) {}
   double clearance(std::span<const double> setpoint_jp) {
     std::vector<double> q(setpoint_jp.begin(), setpoint_jp.end());

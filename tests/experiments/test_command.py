@@ -4,8 +4,10 @@ import csv
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
+import time
 from dataclasses import asdict
 from pathlib import Path
 
@@ -59,6 +61,28 @@ def test_a_rule_of_your_own_is_a_mode_beside_the_references(tmp_path: Path) -> N
     assert list(modes) == ["paper", "certified", "vector_field", "StopShort"]
     assert not any(row["passes"] == "yes" for row in rows if row["mode"] == "StopShort")
     assert "StopShort" in (tmp_path / "README.md").read_text()
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_a_signal_ends_the_workers_as_well(tmp_path: Path, number: signal.Signals) -> None:
+    line = [sys.executable, "-m", "experiments", "--full", "--only", "e1", "--jobs", "2", "--out", str(tmp_path)]
+
+    def running() -> int:
+        listed = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True)
+        return listed.stdout.splitlines().count(" ".join(line))
+
+    process = subprocess.Popen(line, cwd=ROOT, text=True, stderr=subprocess.PIPE)
+    deadline = time.monotonic() + 60
+    while running() < 3 and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert running() == 3
+    process.send_signal(number)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode == (130 if number == signal.SIGTERM else -number)
+    assert ("the same command continues" in err) == (number == signal.SIGTERM) and "Traceback" not in err
+    while running() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert running() == 0
 
 
 def test_a_mode_that_is_unknown_is_named(tmp_path: Path) -> None:

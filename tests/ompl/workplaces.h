@@ -188,7 +188,7 @@ struct InstrumentPlace : Workplace<InstrumentPool> {
   explicit InstrumentPlace(const std::shared_ptr<const Mesh>& of)
       : Workplace(of),
         instrument(psm({{0.0, 0.0, mesh->bounds().high.z() + 60.0}, Mat3::Identity()})),
-        oracle_(std::make_shared<const oracle::TriangleTree>(mesh), oracle::judged_psm(),
+        oracle_(std::make_shared<const monitor::TriangleTree>(mesh), monitor::judged_psm(),
                 instrument.chain().base()) {
     guards = std::make_shared<InstrumentPool>([this] { return make(); }, 2);
     space = std::make_shared<base::SpaceInformation>(make_joint_space(instrument));

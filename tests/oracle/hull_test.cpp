@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares the oracle's distance of hull and triangle with a reference that shares no code with it.
 // The reference searches all subsets of points of the Minkowski difference for the least norm.
-#include "keepout/oracle/hull.h"
+#include "keepout/monitor/hull.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -73,7 +73,7 @@ TEST(Hull, TheDistanceIsThatOfTheReference) {
     Triangle triangle;
     for (Vec3& corner : triangle) corner = place + size * random.direction();
     const Hull hull(points);
-    const Bracket found = hull.distance(triangle);
+    const Bracket found = hull.distance(triangle, narrow_distance);
     const double expected = reference(points, triangle);
     EXPECT_NEAR(found.estimate, expected, 1e-9 * expected + 1e-12) << i;
     EXPECT_LE(found.low, expected * (1 + 1e-9) + 1e-12) << i;
@@ -95,7 +95,7 @@ std::vector<Vec3> box() {
 TEST(Hull, OfABoxIsWhatItIsByHand) {
   const Hull hull(box());
   const auto distance = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    return hull.distance({a, b, c}).estimate;
+    return hull.distance({a, b, c}, narrow_distance).estimate;
   };
   EXPECT_DOUBLE_EQ(distance({0.5, 0.5, 1.25}, {0.6, 0.5, 2}, {0.5, 0.6, 2}), 0.25);      // face
   EXPECT_DOUBLE_EQ(distance({2, -3, 2}, {2, 4, 2}, {3, 0, 3}), std::sqrt(2.0));          // edge
@@ -110,7 +110,7 @@ TEST(Hull, HasOneToSixtyFourPoints) {
   std::vector<Vec3> many(64, Vec3(0.5, 0.5, 0.5));
   std::ranges::copy(box(), many.begin());
   const Triangle above{Vec3(0.5, 0.5, 1.25), Vec3(0.6, 0.5, 2), Vec3(0.5, 0.6, 2)};
-  EXPECT_DOUBLE_EQ(Hull{many}.distance(above).estimate, 0.25);
+  EXPECT_DOUBLE_EQ(Hull{many}.distance(above, narrow_distance).estimate, 0.25);
   many.emplace_back(0.5, 0.5, 0.5);
   EXPECT_THROW(Hull{many}, std::invalid_argument);
 }

@@ -45,7 +45,7 @@ double brute_force(const Mesh& mesh, const JudgedBody& body, const LinkFrame& li
     const double far =
         std::max((triangle[1] - triangle[0]).norm(), (triangle[2] - triangle[0]).norm());
     if (hull.least_distance(triangle[0]) - far > least) continue;
-    least = std::min(least, hull.distance(triangle).estimate);
+    least = std::min(least, hull.distance(triangle, narrow_distance).estimate);
   }
   return least;
 }

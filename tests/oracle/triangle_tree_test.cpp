@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/oracle/triangle_tree.h"
+#include "keepout/monitor/triangle_tree.h"
 
 #include "keepout/fixtures/poses.h"
 #include "keepout/oracle/distance.h"
@@ -68,7 +68,7 @@ TEST_P(TreeOfEveryShape, NearestIsWhatAPlainLoopFinds) {
       low = std::min(low, bracket.low);
       estimate = std::min(estimate, bracket.estimate);
     }
-    const TriangleTree::Nearest nearest = tree.nearest(place);
+    const TriangleTree::Nearest nearest = tree.nearest(place, narrow_distance);
     ASSERT_EQ(nearest.distance.estimate, estimate);
     ASSERT_EQ(nearest.distance.low, low);
   }
@@ -97,7 +97,7 @@ TEST(TriangleTree, TakesTrianglesInOnePlaceAndAFewHugeOnesAmongTinyOnes) {
     tree.collect(box, found);
     EXPECT_EQ(sorted(found), expected);
   }
-  EXPECT_EQ(tree.nearest({1, 2, 4}).distance.estimate, 1.0);
+  EXPECT_EQ(tree.nearest({1, 2, 4}, narrow_distance).distance.estimate, 1.0);
 }
 
 TEST(Bounds, InflatedHoldWhatIsWithinReachWhateverTheRounding) {

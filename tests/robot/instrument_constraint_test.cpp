@@ -59,6 +59,31 @@ TEST(InstrumentConstraint, StopsAtASurfaceAtTheMarginAndSlidesAlongIt) {
   EXPECT_GE(clearance_of(instrument, *mesh, q), certified_by(guard));
 }
 
+// A body within its band returns to the margin, even if the command is shorter than the band. So
+// the step may miss the command by more than zero motion does, but by at most two bands.
+TEST(InstrumentConstraint, MissesAShortCommandByAtMostTwoBandsMoreThanZeroMotion) {
+  const auto mesh = mesh_of(make_cube(20.0));
+  auto guard = guard_of(mesh, free_ball(1.0));
+  const double band = guard.options().band;
+  Random random(41);
+  int farther = 0;
+  for (int i = 0; i < test::trials(2000); ++i) {
+    guard.forget();
+    const double clearance = guard.options().margin - random.uniform(0.0, 0.99) * band;
+    const std::vector<double> q{random.uniform(-5.0, 5.0), random.uniform(-5.0, 5.0),
+                                51.0 + clearance};
+    const Vec3 desired = random.uniform(0.1, 2.0) * band * random.direction();
+    const InstrumentStep step = guard.step(q, {.linear = desired});
+    ASSERT_TRUE(step.ok()) << step.reason();
+    const Vec3 made(step.increment[0], step.increment[1], step.increment[2]);
+    const double missed = (made - desired).norm();
+    EXPECT_LE(missed, desired.norm() + 2.0 * band);
+    EXPECT_GE(clearance + made.z(), guard.options().margin - band - 3.0 * guard.tolerance());
+    farther += missed > 1.05 * desired.norm() ? 1 : 0;
+  }
+  EXPECT_GT(farther, test::trials(200));
+}
+
 TEST(InstrumentConstraint, WithoutAMeshGoesWhereItIsAskedToUntilOneIsAdded) {
   const auto mesh = mesh_of(make_cube(20.0));
   const Instrument instrument = psm_above();

@@ -45,7 +45,7 @@ Origin origin(Real x, Real y, Real z, Real roll = 0, Real pitch = 0, Real yaw = 
 
 /// Returns how far a point is outside of a body on one link, by exact arithmetic; 0 inside. [mm]
 double outside(const Body& body, const Vec3& point) {
-  const oracle::Segment core{body.points.front().position, body.points.back().position};
+  const monitor::Segment core{body.points.front().position, body.points.back().position};
   const auto exact = oracle::exact_distance(core, {point, point, point}, body.radius);
   return exact.against_threshold > 0 ? exact.distance - body.radius : 0.0;
 }

@@ -6,7 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 #include "keepout/fixtures/random_problems.h"
 #include "keepout/solvers/kkt.h"
@@ -178,6 +182,133 @@ TEST_F(ActiveSetTest, ARowThatHoldsWithoutPushingIsNotListed) {
   ASSERT_EQ(solution_.active.size(), 1U);
   EXPECT_EQ(solution_.active[0], 1U);
   EXPECT_NEAR(solution_.multipliers[0], 11, 1e-13);
+}
+
+TEST_F(ActiveSetTest, BoundsOfVariablesGiveTheBitsOfTheirRows) {
+  int solved = 0;
+  int contradictory = 0;
+  int at_bounds = 0;
+  ActiveSet by_rows;
+  by_rows.reserve(30, 4000);
+  for (int i = 0; i < 6000; ++i) {
+    Random random(static_cast<std::uint64_t>(i));
+    const int n = random.integer(2, 8);
+    Problem problem;
+    make_task(problem, tasks[static_cast<std::size_t>(random.integer(0, 6))], n, random);
+    const Eigen::VectorXd inside = random.vector(n);
+    make_planes(problem, plane_kinds[static_cast<std::size_t>(random.integer(0, 8))], inside,
+                random.integer(0, 10), random);
+    if (i % 5 == 0 && problem.rows.rows() > 2) make_infeasible(problem, 1e-3, random);
+    // Bounds of most variables: apart, equal, in contradiction, or through the feasible point.
+    std::vector<std::uint8_t> box;
+    std::vector<double> bounds;
+    for (int k = 0; k < n; ++k) {
+      const double width = std::array{1.0, 0.1, 0.0, -1e-9}[static_cast<std::size_t>(
+          i % 7 == 0 ? random.integer(2, 3) : random.integer(0, 2))];
+      const double low = inside[k] - (random.integer(0, 1) == 0 ? 0.0 : width);
+      for (const int side : {0, 1}) {
+        if (random.integer(0, 7) == 0) continue;
+        box.push_back(static_cast<std::uint8_t>(2 * k + side));
+        bounds.push_back(side == 0 ? low : -(low + width));
+      }
+    }
+    const Eigen::Index first = problem.rows.rows();
+    const auto count = static_cast<Eigen::Index>(box.size());
+    StepProblem::RowMatrix rows = StepProblem::RowMatrix::Zero(first + count, n);
+    if (first > 0) rows.topRows(first) = problem.rows;
+    problem.rows = rows;
+    problem.bounds.conservativeResize(first + count);
+    for (Eigen::Index b = 0; b < count; ++b) {
+      const int number = box[static_cast<std::size_t>(b)];
+      problem.rows(first + b, number / 2) = number % 2 == 0 ? 1 : -1;
+      problem.bounds[first + b] = bounds[static_cast<std::size_t>(b)];
+    }
+    StepProblem with_box = problem.view();
+    with_box.box = box;
+    Solution expected;
+    const SolveStatus status = by_rows.solve(problem.view(), expected);
+    ASSERT_EQ(solver_.solve(with_box, solution_), status) << "seed " << i;
+    EXPECT_EQ(solution_.iterations, expected.iterations) << "seed " << i;
+    contradictory += status == SolveStatus::infeasible;
+    if (status != SolveStatus::optimal) continue;
+    ++solved;
+    EXPECT_TRUE(std::ranges::equal(solution_.u, expected.u)) << "seed " << i;
+    EXPECT_TRUE(std::ranges::equal(solution_.active, expected.active)) << "seed " << i;
+    EXPECT_TRUE(std::ranges::equal(solution_.multipliers, expected.multipliers)) << "seed " << i;
+    EXPECT_LT(kkt_residual(problem.view(), solution_).worst(), 1e-9) << "seed " << i;
+    at_bounds += std::ranges::any_of(solution_.active, [&](std::uint32_t row) {
+      return static_cast<Eigen::Index>(row) >= first;
+    });
+  }
+  EXPECT_GT(solved, 3000);
+  EXPECT_GT(contradictory, 300);
+  EXPECT_GT(at_bounds, 1500);
+}
+
+TEST_F(ActiveSetTest, ABoxThatIsNoneIsRefused) {
+  Problem problem;
+  problem.jacobian = StepProblem::Matrix::Identity(2, 2);
+  problem.desired = Eigen::Vector2d(1, 1);
+  problem.rows = StepProblem::RowMatrix::Identity(2, 2);
+  problem.bounds = Eigen::Vector2d(0, 2);
+  StepProblem with_box = problem.view();
+  const std::array<std::uint8_t, 3> box{0, 2, 4};
+  with_box.box = {box.data(), 2};
+  ASSERT_EQ(solver_.solve(with_box, solution_), SolveStatus::optimal);
+  EXPECT_EQ(u(), Eigen::Vector2d(1, 2));
+  with_box.box = {box.data(), 3};  // more than rows
+  EXPECT_EQ(solver_.solve(with_box, solution_), SolveStatus::invalid_input);
+  with_box.box = {box.data() + 2, 1};  // a variable that does not exist
+  EXPECT_EQ(solver_.solve(with_box, solution_), SolveStatus::invalid_input);
+  with_box.box = {box.data(), 2};
+  for (const double bound : {std::numeric_limits<double>::quiet_NaN(), 1e100}) {
+    problem.bounds[1] = bound;
+    EXPECT_EQ(solver_.solve(with_box, solution_), SolveStatus::invalid_input) << bound;
+  }
+}
+
+TEST_F(ActiveSetTest, ATaskThatChangesIsFactoredAnew) {
+  // A, then B, then A again: each as by a solver that has solved nothing before.
+  for (int i = 0; i < 600; ++i) {
+    Random random(static_cast<std::uint64_t>(i));
+    const int n = std::array{2, 3, 6, 7, 8}[static_cast<std::size_t>(i % 5)];
+    std::array<Problem, 2> problems;
+    make_task(problems[0], tasks[static_cast<std::size_t>(random.integer(0, 6))], n, random);
+    make_planes(problems[0], Planes::touching, random.vector(n), 8, random);
+    if (problems[0].jacobian.rows() == 0) continue;  // nothing to change
+    Problem& other = problems[1] = problems[0];
+    const int column = random.integer(0, n - 1);
+    switch (i / 5 % 5) {
+      case 0:
+        other.damping += 1e-3;
+        break;
+      case 1:
+        other.jacobian(0, column) *= 1 + 0x1p-52;
+        other.jacobian(0, column) += 0x1p-52;
+        break;
+      case 2:
+        other.desired[0] += 0x1p-40;
+        break;
+      case 3:  // another number of task rows
+        other.jacobian.conservativeResize(other.jacobian.rows() + 1, n);
+        other.jacobian.row(other.jacobian.rows() - 1).setOnes();
+        other.desired.conservativeResize(other.jacobian.rows());
+        other.desired[other.desired.size() - 1] = 1;
+        break;
+      default:  // another number of variables
+        make_task(other, Task::square, n + 1, random);
+        make_planes(other, Planes::touching, random.vector(n + 1), 8, random);
+    }
+    for (const std::size_t which : {0U, 1U, 0U}) {
+      ActiveSet fresh;
+      fresh.reserve(9, 8);
+      Solution expected;
+      const SolveStatus status = fresh.solve(problems[which].view(), expected);
+      ASSERT_EQ(solve(problems[which]), status) << "seed " << i;
+      EXPECT_EQ(solution_.iterations, expected.iterations) << "seed " << i;
+      EXPECT_TRUE(std::ranges::equal(solution_.u, expected.u)) << "seed " << i;
+    }
+  }
 }
 
 TEST_F(ActiveSetTest, ACavityOfThousandsOfNearlyEqualPlanesStaysWithinTheBudget) {

@@ -100,9 +100,9 @@ keepout::Pose base_of(const Json& head) {
 }
 
 /// Opens the jaw, the last body, by an angle: then it is two bodies. [deg]
-void open_jaw(keepout::oracle::JudgedRobot& robot, double opening) {
+void open_jaw(keepout::monitor::JudgedRobot& robot, double opening) {
   if (opening == 0.0) return;
-  const keepout::oracle::JudgedBody jaw = robot.bodies.back();
+  const keepout::monitor::JudgedBody jaw = robot.bodies.back();
   robot.bodies.pop_back();
   for (const double half : {-0.5, 0.5}) {
     const double angle = half * opening * std::numbers::pi / 180.0;
@@ -126,22 +126,20 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
   const keepout::Instrument instrument = robot.make(base_of(head));
   const double tolerance =
       keepout::make_instrument_constraint(mesh, instrument, {.options = options}).tolerance();
-  keepout::oracle::JudgedRobot judged = robot.judged();
+  keepout::monitor::JudgedRobot judged = robot.judged();
   open_jaw(judged, head.value("opening", 0.0));
-  const auto tree = std::make_shared<const keepout::oracle::TriangleTree>(mesh);
+  const auto tree = std::make_shared<const keepout::monitor::TriangleTree>(mesh);
   const std::size_t joints = static_cast<std::size_t>(instrument.chain().size());
   std::optional<keepout::oracle::RobotJudge> judge;
-  keepout::Random random(1);
   std::vector<double> positions;
   Vec3 tip = Vec3::Zero(), first_way = Vec3::Zero();
   std::size_t cycles = 0, jumps = 0, below = 0, in_mesh = 0, limits = 0, held = 0;
   double nearest = std::numeric_limits<double>::infinity(), way = 0.0, turn = 0.0;
   const auto jaw_now = [&]() -> Vec3 {
-    const keepout::oracle::InstrumentOracle& oracle = judge->oracle();
-    const keepout::oracle::Segment jaw = oracle.axis(oracle.bodies() - 1);
+    const keepout::monitor::Segment jaw = judge->axis(judged.bodies.size() - 1);
     return (jaw.to - jaw.from).normalized();
   };
-  const auto tip_now = [&] { return judge->oracle().axis(judge->oracle().bodies() - 1).to; };
+  const auto tip_now = [&] { return judge->axis(judged.bodies.size() - 1).to; };
   for (std::string line; std::getline(path, line); ++cycles) {
     std::istringstream words(line);
     std::vector<double> numbers;
@@ -151,7 +149,7 @@ Json judged_path(const MeshPointer& mesh, std::istream& path) {
     const std::vector<double> from(numbers.begin(), increment);
     if (!judge) {
       judge.emplace(keepout::oracle::JudgedScene{judged, base_of(head), {{tree}}},
-                    instrument.chain(), random, from, options, tolerance);
+                    instrument.chain(), from, options, tolerance);
       tip = tip_now();
       first_way = jaw_now();
       positions = from;

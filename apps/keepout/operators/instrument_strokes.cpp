@@ -25,7 +25,7 @@ struct Facing {
 
 /// Returns the place on a part of a body's axis that is nearest to the surface. `from` and `to`:
 /// fractions of the axis.
-Facing facing(Scene& scene, const oracle::Segment& axis, double from, double to) {
+Facing facing(Scene& scene, const monitor::Segment& axis, double from, double to) {
   constexpr int places = 24;
   Facing best;
   for (int i = 0; i <= places; ++i) {
@@ -72,8 +72,8 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
   for (int i = 0; i < (is_leaning ? starts_to_lean : 1); ++i) {
     const auto drawn = on.start(random);
     if (!drawn) break;
-    const oracle::JudgedRobot judged = on.robot.judged();
-    const auto links = oracle::place(judged, drawn->base, drawn->positions);
+    const monitor::JudgedRobot judged = on.robot.judged();
+    const auto links = monitor::place(judged, drawn->base, drawn->positions);
     // Without a port, it leans with the body before the tool.
     const std::size_t before_tool =
         judged.bodies.size() - std::min<std::size_t>(2, judged.bodies.size());
@@ -120,7 +120,6 @@ Stroke instrument_stroke(RobotScene& on, const StrokeSettings& settings, std::ui
         {home.position + way + bias + tremor.at(static_cast<double>(cycle) * cycle_seconds),
          turn * home.rotation});
   }
-  stroke.random = random;
   return stroke;
 }
 

@@ -36,7 +36,6 @@ struct Stroke {
   double speed = 1.0;
   std::uint64_t number = 0;
   RobotStart start = {};
-  Random random{0};  // for the judge
 };
 
 /// A smooth step from 0 to 1, at rest at both ends. The speed is continuous, the acceleration not.

@@ -185,6 +185,7 @@ void open_instrument(Client& client, const Json& request, std::string& out) {
     option.set(settings.options, *option_value(request[option.name], option.kind));
   }
   settings.solver = request.value("solver", settings.solver);
+  settings.monitor = client.service.tip.monitor;
   ReadInstrument read = read_instrument(request);  // before an index is built in vain
   MotionConstraintSettings of_index = client.service.tip;
   of_index.index = request.value("index", of_index.index);

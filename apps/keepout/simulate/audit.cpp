@@ -38,7 +38,7 @@ double angle_at(const Triangle& triangle, Feature feature) {
 }  // namespace
 
 Audit::Audit(std::shared_ptr<const Mesh> mesh)
-    : mesh_(std::move(mesh)), tree_(std::make_shared<const oracle::TriangleTree>(mesh_)) {
+    : mesh_(std::move(mesh)), tree_(std::make_shared<const monitor::TriangleTree>(mesh_)) {
   const MeshFindings findings = examine(*mesh_);
   if (findings.is_watertight()) inside_.emplace(tree_);
   solid_is_outside_ = findings.is_inside_out();
@@ -92,7 +92,7 @@ bool Audit::is_behind_sheet(const Vec3& point) {
 std::vector<double> Audit::meetings(const Vec3& from, const Vec3& to) {
   std::vector<double> shares;
   candidates_.clear();
-  tree_->collect(oracle::inflated(oracle::bounds_of(oracle::Segment{from, to}), touching),
+  tree_->collect(oracle::inflated(monitor::bounds_of(monitor::Segment{from, to}), touching),
                  candidates_);
   for (const TriangleId t : candidates_) {
     const Triangle triangle = mesh_->triangle(t);

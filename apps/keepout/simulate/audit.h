@@ -8,7 +8,7 @@
 
 #include "keepout/index/query.h"
 #include "keepout/oracle/inside_test.h"
-#include "keepout/oracle/triangle_tree.h"
+#include "keepout/monitor/triangle_tree.h"
 
 namespace keepout::app {
 
@@ -33,7 +33,7 @@ class Audit {
   SurfaceKind surface() const noexcept { return inside_ ? SurfaceKind::closed : SurfaceKind::open; }
 
   /// Returns the unsigned distance to the surface. [mm]
-  double distance(const Vec3& point) const { return tree_->nearest(point).distance.estimate; }
+  double distance(const Vec3& point) const { return tree_->nearest(point, oracle::narrow_distance).distance.estimate; }
 
   /// Returns the side of the surface that a point is on. An open surface has sides only near it.
   Side side(const Vec3& point) { return side(point, distance(point)); }
@@ -51,13 +51,13 @@ class Audit {
   Hit nearest(const Vec3& point);
   const Mesh& mesh() const noexcept { return *mesh_; }
   /// Returns the tree of the mesh's triangles, for other judges.
-  const std::shared_ptr<const oracle::TriangleTree>& tree() const noexcept { return tree_; }
+  const std::shared_ptr<const monitor::TriangleTree>& tree() const noexcept { return tree_; }
 
  private:
   bool is_behind_sheet(const Vec3& point);
 
   std::shared_ptr<const Mesh> mesh_;
-  std::shared_ptr<const oracle::TriangleTree> tree_;
+  std::shared_ptr<const monitor::TriangleTree> tree_;
   std::optional<oracle::InsideTest> inside_;  // set for a watertight mesh only
   std::vector<TriangleId> candidates_;        // of the last search
   bool solid_is_outside_ = false;  // the mesh is wound inward: the free space is the inside

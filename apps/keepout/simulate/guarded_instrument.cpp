@@ -99,7 +99,7 @@ cycles that broke a joint limit; guides, if any: cycles that left a guide by mor
 
 /// Returns the depth of the deepest point of a segment inside a closed surface, accurate to 0.01
 /// mm. Negative if no point of the segment is inside. [mm]
-double deepest(const oracle::SafetyOracle& surface, const oracle::Segment& segment) {
+double deepest(const oracle::SafetyOracle& surface, const monitor::Segment& segment) {
   const auto depth_at = [&](double t) {
     const Vec3 point = segment.from + t * (segment.to - segment.from);
     const double distance = surface.distance(point);
@@ -208,7 +208,6 @@ class GuardedInstrument final : public SimulatedTool {
       joints_->add_mesh(scene.mesh(), scene.shared_index());
     }
     speed_ = stroke.speed;
-    random_ = stroke.random;
     q_ = stroke.start.positions;
     cycle_ = 0;
     if (is_measured_) {
@@ -222,7 +221,7 @@ class GuardedInstrument final : public SimulatedTool {
                                        .base = stroke.start.base,
                                        .meshes = {{scene.tree()}},
                                        .guides = judged_guides(guides_)},
-                   joints_->instrument().chain(), random_, q_, step, joints_->tolerance());
+                   joints_->instrument().chain(), q_, step, joints_->tolerance());
     // All starts are farther away than the margin.
     return {.required = margin_ - step.band - 3.0 * joints_->tolerance()};
   }
@@ -259,10 +258,10 @@ class GuardedInstrument final : public SimulatedTool {
     Cycle cycle;
     cycle.outcome = outcome;
     const oracle::RobotVerdict verdict = judge_->judge(q_);
-    cycle.is_breach = verdict.limits_broken;
+    cycle.is_breach = verdict.limits_broken || verdict.is_undecided;
     cycle.is_guide_left = verdict.is_guide_left;
     for (std::size_t b = 0; b < robot_.bodies.size(); ++b) {
-      const oracle::Segment axis = judge_->oracle().axis(b);
+      const monitor::Segment axis = judge_->axis(b);
       cycle.begins[b] = axis.from;
       cycle.places[b] = axis.to;
       cycle.clearances[b] = std::min(judge_->least()[b], clearance_inside(b, axis));
@@ -361,7 +360,7 @@ class GuardedInstrument final : public SimulatedTool {
  private:
   /// Returns the negative depth of a body whose axis is inside the surface, in part or as a whole.
   /// Infinite if the axis is outside, or the surface has no inside. [mm]
-  double clearance_inside(std::size_t body, const oracle::Segment& axis) const {
+  double clearance_inside(std::size_t body, const monitor::Segment& axis) const {
     const double radius = joints_->instrument().bodies()[body].radius;
     const oracle::SafetyOracle& surface = on_->scene.oracle();
     const bool is_cut = judge_->least()[body] <= -radius;
@@ -383,7 +382,6 @@ class GuardedInstrument final : public SimulatedTool {
   bool is_measured_ = false;                    // the run follows the measured instrument
   std::size_t cycle_ = 0;                       // of that run
   std::optional<oracle::RobotJudge> judge_;
-  Random random_{0};       // of the judge
   std::vector<double> q_;  // joint positions
   double speed_ = 1.0;
 };

@@ -44,13 +44,13 @@ HapticCycle MeasuredInstrument::follow(const Pose& goal) {
 }
 
 std::vector<double> MeasuredInstrument::errors(std::size_t cycle) const {
-  const auto setpoint = oracle::place(robot_, {}, setpoints_[cycle]);
-  const auto measured = oracle::place(robot_, {}, measured_[cycle]);
+  const auto setpoint = monitor::place(robot_, {}, setpoints_[cycle]);
+  const auto measured = monitor::place(robot_, {}, measured_[cycle]);
   std::vector<double> errors;
-  for (const oracle::JudgedBody& body : robot_.bodies) {
+  for (const monitor::JudgedBody& body : robot_.bodies) {
     // The distance is a convex function on the body's core, so it is largest at a corner.
     double largest = 0.0;
-    for (const oracle::JudgedPoint& point : body.points) {
+    for (const monitor::JudgedPoint& point : body.points) {
       const auto link = static_cast<std::size_t>(point.link);
       largest = std::max(
           largest, (setpoint[link].at(point.position) - measured[link].at(point.position)).norm());

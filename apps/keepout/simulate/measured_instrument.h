@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "keepout/control/crtk_session.h"
-#include "keepout/oracle/judged_robot.h"
+#include "keepout/monitor/judged_robot.h"
 #include "simulate/simulated_robot.h"
 
 namespace keepout::app {
@@ -19,7 +19,7 @@ namespace keepout::app {
 class MeasuredInstrument {
  public:
   /// Throws Error like make_simulated_robot. `robot`: for the judge.
-  MeasuredInstrument(const std::string& name, oracle::JudgedRobot robot)
+  MeasuredInstrument(const std::string& name, monitor::JudgedRobot robot)
       : simulated_(make_simulated_robot(name)), robot_(std::move(robot)) {}
 
   /// Begins a stroke: the robot is at rest, and the session is engaged. `guard`: with a mesh.
@@ -40,7 +40,7 @@ class MeasuredInstrument {
 
  private:
   std::unique_ptr<SimulatedRobot> simulated_;
-  oracle::JudgedRobot robot_;
+  monitor::JudgedRobot robot_;
   std::optional<CrtkSession> session_;
   std::vector<double> first_;
   std::vector<std::vector<double>> setpoints_, measured_;  // of each cycle

@@ -53,8 +53,9 @@ struct Cycle {
   std::array<double, most_bodies> errors{};
   float step_us = 0.0F;  // time of a tip's step; 0 without a guard [µs]
   Outcome outcome = Outcome::moved_freely;
-  bool is_breach =
-      false;  // a tip crossed a triangle, a convex tool touched one, or a joint left its limits
+  /// A tip crossed a triangle, a convex tool touched one, a joint left its limits, or the judge
+  /// could not decide the motion of an instrument.
+  bool is_breach = false;
   bool is_guide_left = false;  // by more than guaranteed
   double guide_excess =
       -far;  // largest of a tip's guides at the end; -infinity without guides [mm]

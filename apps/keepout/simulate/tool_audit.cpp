@@ -8,8 +8,8 @@ namespace keepout::app {
 namespace {
 
 /// Returns a tool as the oracle represents it: a robot without joints, whose base is the tip.
-oracle::JudgedRobot judged(const ConvexTool& tool) {
-  oracle::JudgedBody body{.points = {}, .radius = tool.radius()};
+monitor::JudgedRobot judged(const ConvexTool& tool) {
+  monitor::JudgedBody body{.points = {}, .radius = tool.radius()};
   for (const Vec3& point : tool.points()) body.points.push_back({.link = 0, .position = point});
   return {.table = {}, .bodies = {std::move(body)}};
 }

@@ -46,11 +46,11 @@ std::vector<Campaign::RowKind> Campaign::row_kinds() const {
 }
 
 std::uint64_t Campaign::length(std::size_t meshes) const {
-  return is_of_instruments() ? cycles * meshes * row_kinds().size() : steps / shard.count;
+  return (is_of_instruments() ? cycles * meshes * row_kinds().size() : steps) / shard.count;
 }
 
-std::uint64_t trajectory_count(std::uint64_t steps) noexcept {
-  return (steps + steps_of_a_trajectory - 1) / steps_of_a_trajectory;
+std::uint64_t trajectory_count(std::uint64_t steps, std::uint64_t length) noexcept {
+  return (steps + length - 1) / length;
 }
 
 Findings run_campaign(const Campaign& campaign, std::span<const Arena> arenas,

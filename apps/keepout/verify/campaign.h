@@ -40,7 +40,7 @@ class Guard {
   SideWatch sides_;
 };
 
-/// A part of a campaign with tips: the trajectories whose number modulo `count` is `index` - 1.
+/// A part of a campaign: the trajectories of each row whose number modulo `count` is `index` - 1.
 struct Shard {
   std::uint64_t index = 1;
   std::uint64_t count = 1;
@@ -64,8 +64,8 @@ struct Campaign {
                                // 0: 2000, or 100 if mesh or robot are drawn
   // For tips, in total:
   std::uint64_t steps = 1'000'000;
-  Shard shard = {};
 
+  Shard shard = {};
   std::uint64_t seed = 1;
   /// Create the steps under test.
   std::function<std::unique_ptr<Guard>(const Scene&)> make_guard =
@@ -94,10 +94,15 @@ struct Campaign {
 /// velocity limits to admit a tenth of a radian and 2.5 mm in a cycle at speed 1.
 InstrumentOptions options_of(const Campaign& campaign, const Chain& chain, double speed);
 
-/// The number of steps of a trajectory. A new tip is placed after a breach, and if the tip is
-/// stuck.
+/// The numbers of steps of a trajectory of a tip, and of cycles of a trajectory of an instrument,
+/// by default and if its mesh or robot are drawn. A trajectory has its own random numbers, and no
+/// other one changes it. A new tip or instrument is placed if it is stuck, a tip also after a
+/// breach.
 inline constexpr std::uint64_t steps_of_a_trajectory = 500;
-std::uint64_t trajectory_count(std::uint64_t steps) noexcept;
+inline constexpr std::uint64_t cycles_of_a_trajectory = 2000;
+inline constexpr std::uint64_t cycles_of_a_drawn_trajectory = 400;
+/// Returns the number of trajectories of at most `length` steps that have this many steps together.
+std::uint64_t trajectory_count(std::uint64_t steps, std::uint64_t length) noexcept;
 
 /// The results on one mesh; for instruments, in one scenario at one speed.
 struct Tally {
@@ -107,17 +112,20 @@ struct Tally {
   std::uint64_t triangles = 0;  // 0 if the mesh was not loaded, or is drawn for each start
   std::string scenario = {};    // empty: tips
   double speed = 1.0;
-  double period = 0.0;       // of a control cycle; of the last robot, if robots are drawn [s]
+  double period = 0.0;       // of a control cycle; the longest one, if robots are drawn [s]
   std::uint64_t starts = 0;  // of instruments; of tips: trajectories
   std::uint64_t cycles = 0;
-  bool is_out_of_starts = false;  // no further start of an instrument was found
-  std::uint64_t tips = 0;         // that were placed
-  std::uint64_t led_out = 0;      // steps from the forbidden side, which may cross the surface
+  std::uint64_t now = 0;  // number of the current cycle in all shards, from 1
+  std::uint64_t startless =
+      0;                      // trajectories that ended early: no start of an instrument was found
+  std::uint64_t tips = 0;     // that were placed
+  std::uint64_t led_out = 0;  // steps from the forbidden side, which may cross the surface
   std::array<std::uint64_t, status_count> statuses{};
   std::array<std::uint64_t, oracle::breach_kinds> breaches{};
   std::uint64_t first_breach = 0;  // number of the first cycle with a breach; 0 without breach
-  std::uint64_t in_mesh = 0;  // breaches of the clearance in which the mesh reached into a body
-  double deepest = 0.0;       // in those cycles [mm]
+  std::uint64_t in_mesh = 0;    // breaches of the clearance in which the mesh reached into a body
+  double deepest = 0.0;         // in those cycles [mm]
+  std::uint64_t undecided = 0;  // cycles that the judge neither proved nor refuted
   /// The smallest distance beyond the guaranteed one, as a length and in tolerances. Infinite if
   /// nothing came near. For tips, only steps that must maintain their clearance count. [length]
   double least_beyond = infinity;
@@ -133,7 +141,7 @@ struct Tally {
   Timing contact = {};           // of them, those that a body's row limited [µs]
   Timing free = {};              // the others [µs]
   Timing point = {};             // certified step of a ball at the tip, for comparison [µs]
-  double excess = 0.0;           // sum over all samples
+  double excess = 0.0;           // sum over all samples, exact in any order
   std::uint64_t samples = 0;     // blocked cycles that were searched for a better motion
   std::uint64_t useful = 0;      // samples with a motion that is better by more than a twentieth
   std::uint64_t movable = 0;     // samples in which a tenth of the commanded motion was allowed
@@ -149,7 +157,7 @@ struct Tally {
   /// Counts a breach in the current cycle.
   void count(oracle::Breach breach) {
     ++breaches[static_cast<std::size_t>(breach)];
-    if (first_breach == 0) first_breach = cycles;
+    if (first_breach == 0) first_breach = now;
   }
 };
 

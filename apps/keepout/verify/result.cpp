@@ -140,6 +140,40 @@ Json total_of(const Json& rows) {
   return total;
 }
 
+void write_shard(Json& record, const Campaign& campaign, const Findings& findings) {
+  const Json shard{{"index", campaign.shard.index},
+                   {"seconds", findings.seconds},
+                   {"machine", processor() + ", " + std::string(simd_target()) + ", " +
+                                   KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE},
+                   {"complete", findings.is_complete}};
+  record.update({{"campaign_format", campaign_format},
+                 {"seed", campaign.seed},
+                 {"index", campaign.index},
+                 {"shard_count", campaign.shard.count},
+                 {"shards", Json::array({shard})},
+                 {"missing", findings.missing}});
+}
+
+std::vector<std::uint64_t> missing_shards(const Json& record) {
+  std::vector<std::uint64_t> missing(count(record, "shard_count"));
+  std::iota(missing.begin(), missing.end(), 1);
+  for (const Json& shard : record.at("shards")) std::erase(missing, count(shard, "index"));
+  return missing;
+}
+
+bool are_whole(const Json& record) {
+  const Json& shards = record.at("shards");
+  return std::all_of(shards.begin(), shards.end(),
+                     [](const Json& shard) { return shard.value("complete", true); });
+}
+
+void note_missing(Json& account, const Json& record) {
+  for (const std::uint64_t shard : missing_shards(record)) {
+    account.push_back("Missing: shard " + std::to_string(shard) + "/" +
+                      record.at("shard_count").dump() + ".");
+  }
+}
+
 std::string rate_bound(std::uint64_t trajectories) {
   const double bound = -std::expm1(std::log(0.05) / static_cast<double>(trajectories));
   return "With 95 % confidence, at most " + rounded(100 * bound, 2) +
@@ -152,16 +186,10 @@ CampaignResult finished(Json record) {
   const std::uint64_t steps = count(total, "steps");
   const std::uint64_t breaches = sum(total.at("breaches"));
   record["steps_done"] = steps;
-  const Json& shards = record.at("shards");
-  std::vector<std::uint64_t> missing(count(record, "shard_count"));
-  std::iota(missing.begin(), missing.end(), 1);
-  for (const Json& shard : shards) std::erase(missing, count(shard, "index"));
-  const auto is_whole = [](const Json& shard) { return shard.value("complete", true); };
-  const bool are_whole = std::all_of(shards.begin(), shards.end(), is_whole);
-  record["complete"] = missing.empty() && are_whole;
+  record["complete"] = missing_shards(record).empty() && are_whole(record);
   record["headline"] = (breaches == 0 ? "No breach" : counted(breaches, "breach")) + " in " +
                        counted(steps, "step") + ".";
-  std::vector<std::string> account;
+  Json account = Json::array();
   const std::uint64_t trajectories = count(total, "trajectories");
   if (breaches == 0 && trajectories > 0) account.push_back(rate_bound(trajectories));
   if (breaches > record.at("breaches").size()) {
@@ -172,16 +200,14 @@ CampaignResult finished(Json record) {
     account.push_back("Incomplete: " + grouped(steps) + " of the campaign's " +
                       counted(count(record, "steps"), "step") + " are done.");
   }
-  for (const std::uint64_t shard : missing) {
-    account.push_back("Missing: shard " + std::to_string(shard) + "/" +
-                      record.at("shard_count").dump() + ".");
-  }
+  note_missing(account, record);
   for (const Json& mesh : record.at("missing")) {
     account.push_back("Missing: " + mesh.get<std::string>() + ".");
   }
   record["account"] = account;
   std::string table = table_of(record);
-  return {std::move(record), std::move(table), breaches > 0, !are_whole};
+  const bool is_interrupted = !are_whole(record);
+  return {std::move(record), std::move(table), breaches > 0, is_interrupted};
 }
 
 void CampaignResult::print(std::ostream& out) const {
@@ -206,11 +232,6 @@ CampaignResult result_of(const Campaign& campaign, const Findings& findings) {
                       {"least_beyond_margin_in_tau", or_null(t.least_in_tau)},
                       {"seconds", t.seconds}});
   }
-  const Json shard{{"index", campaign.shard.index},
-                   {"seconds", findings.seconds},
-                   {"machine", processor() + ", " + std::string(simd_target()) + ", " +
-                                   KEEPOUT_COMPILER + ", " + KEEPOUT_BUILD_TYPE},
-                   {"complete", findings.is_complete}};
   Json record = new_record({.kind = "verify",
                             .command = campaign.command,
                             .subject = "Adversarial closed-loop motion over " +
@@ -219,14 +240,9 @@ CampaignResult result_of(const Campaign& campaign, const Findings& findings) {
                             .settings = {{"seed", std::to_string(campaign.seed)},
                                          {"steps", grouped(campaign.steps)},
                                          {"index", campaign.index}}});
-  record.update({{"campaign_format", campaign_format},
-                 {"seed", campaign.seed},
-                 {"steps", campaign.steps},
+  write_shard(record, campaign, findings);
+  record.update({{"steps", campaign.steps},
                  {"steps_done", 0},
-                 {"index", campaign.index},
-                 {"shard_count", campaign.shard.count},
-                 {"shards", Json::array({shard})},
-                 {"missing", findings.missing},
                  {"meshes", meshes},
                  {"total", nullptr},
                  {"breaches", findings.breaches},

@@ -25,7 +25,7 @@ struct CampaignResult {
 };
 
 /// Increases when the trajectories of a seed, or the tallies, change.
-inline constexpr int campaign_format = 3;
+inline constexpr int campaign_format = 4;
 
 /// Adds a row to a sum, number by number. Keeps the smallest of "least" numbers, and the largest of
 /// "deepest" numbers and of triangles. `sum` may be null at first.
@@ -47,10 +47,28 @@ Json json_of(std::span<const std::uint64_t> counts) {
 /// depend on each other. Precondition: `trajectories` > 0.
 std::string rate_bound(std::uint64_t trajectories);
 
-/// Writes totals, headline and account into a record of some shards.
+/// Writes totals, headline and account into a record of some shards of a campaign with tips.
 CampaignResult finished(Json record);
+/// Like finished(record), but of a campaign with instruments, and also writes its rows.
+CampaignResult finished(Json record, const std::vector<Tally>& rows);
 
-/// Returns the result of a campaign with instruments, or of one shard of a campaign with tips.
+/// Returns the rows of a record of a campaign with instruments. Throws Json::exception if a member
+/// is missing or of another type, and Error if a number is not a count.
+std::vector<Tally> tallies_of(const Json& record);
+/// Adds a row of an instrument to a sum. Each percentile of times becomes the larger one, which is
+/// an upper bound of the percentile of all.
+void add(Tally& sum, const Tally& row);
+
+/// Writes the members that describe the shard of a campaign.
+void write_shard(Json& record, const Campaign& campaign, const Findings& findings);
+/// Returns the numbers of the shards that a record lacks.
+std::vector<std::uint64_t> missing_shards(const Json& record);
+/// Returns true if no shard of a record was stopped early.
+bool are_whole(const Json& record);
+/// Appends a text for each number.
+void note_missing(Json& account, const Json& record);
+
+/// Returns the result of one shard of a campaign.
 CampaignResult result_of(const Campaign& campaign, const Findings& findings);
 CampaignResult result_of_instruments(const Campaign& campaign, const Findings& findings);
 

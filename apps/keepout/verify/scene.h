@@ -28,7 +28,7 @@ class Scene {
   const std::shared_ptr<const SpatialIndex>& shared_index() const noexcept { return index_; }
   const oracle::JudgedSurface& judged() const noexcept { return judged_; }
   const oracle::SafetyOracle& oracle() const noexcept { return judged_.oracle(); }
-  const std::shared_ptr<const oracle::TriangleTree>& tree() const noexcept {
+  const std::shared_ptr<const monitor::TriangleTree>& tree() const noexcept {
     return oracle().tree();
   }
 

@@ -33,9 +33,9 @@ bool is_expected(Status failure, const Setup& setup) noexcept {
 
 /// Returns the record of a breach, or of a step without a motion. `what`: the breach, or the status
 /// of the step.
-Json incident(std::string_view what, const Scene& scene, std::uint64_t trajectory,
-              std::uint64_t cycle, const Setup& setup, const Motion& motion, const Step& step,
-              const TipVerdict& verdict) {
+Json incident(std::string_view what, const std::string& mesh, const Scene& scene,
+              std::uint64_t trajectory, std::uint64_t cycle, const Setup& setup,
+              const Motion& motion, const Step& step, const TipVerdict& verdict) {
   std::vector<double> jacobian, row_matrix, row_bounds;
   if (motion.jacobian) {
     const double* const first = motion.jacobian->data();
@@ -48,6 +48,7 @@ Json incident(std::string_view what, const Scene& scene, std::uint64_t trajector
     row_bounds.assign(motion.rows->bounds(), motion.rows->bounds() + rows);
   }
   Json finding{{"what", what},
+               {"mesh", mesh},
                {"scene", scene.name()},
                {"trajectory", trajectory},
                {"cycle", cycle},
@@ -106,6 +107,7 @@ class TipAttack final : public Attack {
         arenas_(arenas),
         arena_(arena),
         findings_(findings),
+        trajectories_(trajectory_count(campaign.steps, steps_of_a_trajectory)),
         next_(from(campaign.shard.index - 1)) {}
 
   std::uint64_t begin() override {
@@ -129,6 +131,7 @@ class TipAttack final : public Attack {
   }
 
   bool cycle(std::uint64_t number) override {
+    row.now = trajectory_ * steps_of_a_trajectory + number + 1;
     Scene& scene = scenes_[scene_];
     Guard& guard = *guards_[scene_];
     if (!tip_) {
@@ -144,7 +147,7 @@ class TipAttack final : public Attack {
     const auto note = [&](std::string_view what, Json& incidents, std::size_t most) {
       if (incidents.size() >= most) return;
       incidents.push_back(
-          incident(what, scene, trajectory_, number, tip_->setup, motion, step, verdict));
+          incident(what, row.mesh, scene, trajectory_, number, tip_->setup, motion, step, verdict));
     };
     if (!step.ok() && !is_expected(step.status, tip_->setup)) {
       note(name(step.status), findings_.anomalies, most_anomalies);
@@ -156,13 +159,13 @@ class TipAttack final : public Attack {
     return true;
   }
 
-  bool is_done() const override { return next_ >= trajectory_count(campaign_.steps); }
+  bool is_done() const override { return next_ >= trajectories_; }
 
  private:
   /// Returns the first trajectory of the shard on this mesh, at or after the given one. A list of
   /// all would take memory in proportion to the steps of the campaign.
   std::uint64_t from(std::uint64_t trajectory) const noexcept {
-    while (trajectory < trajectory_count(campaign_.steps) &&
+    while (trajectory < trajectories_ &&
            random_of(campaign_.seed, trajectory).below(arenas_.size()) != arena_) {
       trajectory += campaign_.shard.count;
     }
@@ -184,6 +187,7 @@ class TipAttack final : public Attack {
   std::span<const Arena> arenas_;
   std::size_t arena_;
   Findings& findings_;
+  std::uint64_t trajectories_;    // of all meshes and shards
   std::uint64_t next_;            // the number of the next trajectory on this mesh
   std::uint64_t trajectory_ = 0;  // the current one
   std::vector<Scene> scenes_;

@@ -45,14 +45,21 @@ std::vector<Arena> arenas_of(const VerifyOptions& options, std::vector<std::stri
 
 CampaignResult run(const VerifyOptions& options, std::ostream& out) {
   const Campaign& campaign = options;
-  const std::uint64_t trajectories = trajectory_count(campaign.steps);
-  if (!campaign.is_of_instruments() && campaign.shard.count > trajectories) {
-    throw Error("--shard: there are only " + std::to_string(trajectories) + " trajectories of " +
-                std::to_string(steps_of_a_trajectory) +
-                " steps to distribute; use fewer shards or more steps");
-  }
   std::vector<std::string> missing;
   std::vector<Arena> arenas = arenas_of(options, missing);
+  const bool is_of_tips = !campaign.is_of_instruments();
+  const bool is_drawn = campaign.robot.empty() || !arenas.front().load;
+  const std::uint64_t length = is_of_tips ? steps_of_a_trajectory
+                               : is_drawn ? cycles_of_a_drawn_trajectory
+                                          : cycles_of_a_trajectory;
+  const std::uint64_t trajectories =
+      trajectory_count(is_of_tips ? campaign.steps : campaign.cycles, length);
+  if (campaign.shard.count > trajectories) {
+    const std::string steps = is_of_tips ? "steps" : "cycles";
+    throw Error("--shard: there are only " + std::to_string(trajectories) + " trajectories of " +
+                std::to_string(length) + " " + steps + " to distribute; use fewer shards or more " +
+                steps);
+  }
   for (const std::string& mesh : missing) out << "note: " << mesh << '\n';
   const StopSignal stop(keeps_what_is_finished, BeforeWork::ends_process);
   for (Arena& arena : arenas) {
@@ -72,6 +79,24 @@ CampaignResult run(const VerifyOptions& options, std::ostream& out) {
                    });
   findings.missing = std::move(missing);
   return result_of(campaign, findings);
+}
+
+/// Returns the files, and instead of each folder the records in it.
+std::vector<std::filesystem::path> records_in(const std::vector<std::filesystem::path>& paths) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& path : paths) {
+    if (!std::filesystem::is_directory(path)) {
+      files.push_back(path);
+      continue;
+    }
+    const std::size_t before = files.size();
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      if (entry.path().extension() == ".json") files.push_back(entry.path());
+    }
+    if (files.size() == before) throw Error(path.string() + ": the folder has no record");
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
+  }
+  return files;
 }
 
 /// Returns the shard that "I/N" describes.
@@ -146,9 +171,7 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
           "--shard", [&](const std::string& text) { campaign.shard = shard_of(text); },
           "Run part I of N of the campaign")
       ->type_name("I/N")
-      ->default_str("1/1")
-      ->excludes(named)
-      ->excludes(chosen);
+      ->default_str("1/1");
   add_plugins(command);
   add_part(command, "--index", campaign.index, index_names(), index_backends,
            "Index that finds triangles");
@@ -157,7 +180,9 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
   });
   options.files.add_to(command);
   CLI::Option* merge =
-      command.add_option("--merge", options.merge, "Add up the results of a campaign's shards")
+      command
+          .add_option("--merge", options.merge,
+                      "Add up the results of a campaign's shards: records, or folders of records")
           ->type_name("FILES");
   for (CLI::Option* option : of_a_run) merge->excludes(option);
   command.footer(
@@ -174,16 +199,16 @@ void add_verify(CLI::App& app, VerifyOptions& options) {
 int verify(const VerifyOptions& options, std::ostream& out) {
   std::vector<NamedPath> inputs;
   for (const auto& mesh : options.meshes) inputs.push_back({"MESH", file_of_mesh(mesh)});
-  for (const auto& file : options.merge) inputs.push_back({"--merge", file});
+  const std::vector<std::filesystem::path> merge = records_in(options.merge);
+  for (const auto& file : merge) inputs.push_back({"--merge", file});
   for (const NamedPath& file : robot_inputs(options.robot, options.bodies)) inputs.push_back(file);
   OutputFiles outputs(inputs,
                       {{"--out", options.files.page}, {"--json", options.files.kept_json()}});
-  const CampaignResult result =
-      options.merge.empty() ? run(options, out) : merged(options.merge, options.command);
+  const CampaignResult result = merge.empty() ? run(options, out) : merged(merge, options.command);
   result.print(out);  // before writing: a full disk must not hide the verdict
   write_record(outputs, result.record, options.files);
   if (result.is_broken) return EXIT_FAILURE;
-  if (!options.merge.empty()) {
+  if (!merge.empty()) {
     if (result.record.at("complete").get<bool>()) return EXIT_SUCCESS;
     std::cerr << "keepout: the campaign is incomplete: --merge needs the finished record of every "
                  "shard\n";

@@ -29,7 +29,7 @@ DistanceField::DistanceField(std::shared_ptr<const SpatialIndex> index, double c
     : index_(std::move(index)),
       cell_(cell),
       band_(band),
-      inside_(std::make_shared<const oracle::TriangleTree>(index_->shared_mesh())),
+      inside_(std::make_shared<const monitor::TriangleTree>(index_->shared_mesh())),
       is_inside_out_(examine(index_->mesh(), 0).is_inside_out()) {
   if (!(cell > 0.0 && band >= 2.0 * cell)) throw Error("the band must have two cells or more");
 }

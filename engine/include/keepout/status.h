@@ -27,13 +27,14 @@ enum class Status : std::uint8_t {
   mesh_changed,      // the index was refit, and the constraint does not follow the new mesh yet
   out_of_budget,     // the work budget of the cycle ended before a motion was proved
   unsupported,       // polytopes only: the rule guards a tool, or there are guides
+  unconfirmed,       // the monitor did not confirm the motion: it disagrees, or could not decide
   // Names before version 0.3.
   fallback [[deprecated("use truncated")]] = truncated,
   yielding [[deprecated("use degraded")]] = degraded,
 };
 
 /// Number of statuses.
-inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::unsupported) + 1;
+inline constexpr std::size_t status_count = static_cast<std::size_t>(Status::unconfirmed) + 1;
 
 /// The subject of a step or query, named in reasons.
 enum class Subject : std::uint8_t { tip, instrument, polytope };

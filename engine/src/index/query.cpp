@@ -15,8 +15,9 @@ void refine(const Mesh& mesh, const Ball& ball, std::span<const TriangleId> cand
     const ClosestPoint closest = closest_point(mesh.triangle(t), ball.center);
     if (closest.distance <= ball.radius) hits.push({t, closest});
   }
-  std::sort(hits.begin(), hits.end(),
-            [](const Hit& a, const Hit& b) { return a.triangle < b.triangle; });
+  const auto is_before = [](const Hit& a, const Hit& b) { return a.triangle < b.triangle; };
+  if (std::is_sorted(hits.begin(), hits.end(), is_before)) return;
+  std::sort(hits.begin(), hits.end(), is_before);
 }
 
 namespace {
@@ -46,15 +47,17 @@ bool Neighborhood::gather(const Ball& ball) noexcept {
   ball_ = ball;
   hits_.clear();
   if (!ball.center.allFinite() || !(ball.radius >= 0.0) || !collect(ball)) return false;
+  std::sort(candidates_.begin(), candidates_.end());  // hits are larger, and so slower to sort
   refine(*mesh_, ball, candidates_.view(), hits_);
   return true;
 }
 
 bool Neighborhood::collect(const Ball& ball) noexcept {
   candidates_.clear();
+  if (budget_->is_spent()) return false;
   index_->collect(ball, candidates_);
   budget_->spend(candidates_.size() * work::hit);
-  if (candidates_.overflowed()) budget_->mark_overflow();
+  if (candidates_.overflowed() && !budget_->is_spent()) budget_->mark_overflow();
   return !candidates_.overflowed() && !budget_->is_spent();
 }
 

@@ -5,10 +5,12 @@
 #include <cmath>
 
 #include "keepout/error.h"
+#include "keepout/rounding_mode.h"
 
 namespace keepout {
 
 SpatialIndex::SpatialIndex(std::shared_ptr<const Mesh> mesh) : mesh_(std::move(mesh)) {
+  require_rounding_to_nearest();
   if (mesh_ == nullptr) throw Error("an index needs a mesh, but it is null");
 }
 

@@ -11,6 +11,7 @@
 
 #include "../parallel.h"
 #include "keepout/error.h"
+#include "keepout/rounding_mode.h"
 #include "mesh_file.h"
 #include "weld_blocks.h"
 
@@ -79,6 +80,7 @@ Extent extent_of(const Surface& surface, std::size_t begin, std::size_t end) {
 }  // namespace
 
 Mesh::Mesh(Surface surface) : surface_(std::move(surface)), id_(next_id()) {
+  require_rounding_to_nearest();
   check_size(surface_);
   share_ranges(vertex_count(), processors(),
                [&](std::size_t begin, std::size_t end) { check_vertices(surface_, begin, end); });

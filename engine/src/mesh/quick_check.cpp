@@ -68,7 +68,7 @@ void share_sides(const Mesh& mesh, unsigned threads, const Own& empty, const Vis
 std::vector<std::uint64_t> sums_of_cells(const Mesh& mesh, std::size_t cells, unsigned threads) {
   std::vector<std::uint64_t> sums(cells, 0);
   share_sides(
-      mesh, threads, sums,
+      mesh, threads, std::vector<std::uint64_t>(cells, 0),  // not `sums`, which gather changes
       [cells](std::vector<std::uint64_t>& own, Edge edge, Upwards upwards) {
         const std::uint64_t hash = hash_of(edge);
         own[hash & (cells - 1)] +=

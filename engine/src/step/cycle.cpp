@@ -162,6 +162,7 @@ Cycle::Outcome Cycle::search() noexcept {
   limits_ = {};
   LastTrial last;
   const std::optional<Outcome> found = budget_.halved([&] { return solve_and_judge(last); });
+  if (!found && is_refining()) return {Status::truncated};  // a part does not count
   return found ? *found : cut(last);
 }
 
@@ -178,6 +179,11 @@ std::optional<Cycle::Outcome> Cycle::solve_and_judge(LastTrial& last) noexcept {
       break;
     }
     const Vec3& motion = *trial.motion;
+    // More planes only lead farther from the target, so this search finds no better motion. (If
+    // planes would be relaxed or a trial clipped later, it might. That costs motion, not safety.)
+    if (is_refining() && input_.is_projected && !is_worthwhile(motion, input_.accepted)) {
+      return Outcome{Status::truncated};
+    }
     // Triangles beyond the motion sphere were not searched. (In the ball over the target no trial
     // is that long: solve_relaxing() clips it.) The part of the trial before is dropped, although
     // cut() might accept it. That costs motion, not safety.

@@ -76,6 +76,8 @@ class Cycle {
   Outcome refine(Outcome best) noexcept;
   Outcome branch(const Outcome& best) noexcept;
   void push_branch(const Outcome& best) noexcept;
+  /// Returns true if a motion was accepted, and a better one is searched for.
+  bool is_refining() const noexcept { return !input_.accepted.isZero(0.0); }
   bool is_worthwhile(const Vec3& motion, const Vec3& best) const noexcept;
   Limits note_unsatisfied() noexcept;
   bool may_stand_still() const noexcept;

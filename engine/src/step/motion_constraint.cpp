@@ -11,6 +11,7 @@
 #include "keepout/error.h"
 #include "keepout/index/query.h"
 #include "keepout/mesh/diagnostics.h"
+#include "keepout/rounding_mode.h"
 
 namespace keepout {
 namespace {
@@ -35,9 +36,13 @@ std::unique_ptr<Neighborhood> neighborhood_of(std::shared_ptr<const Mesh> mesh,
   if (!mesh || !index || rule == nullptr || solver == nullptr) {
     throw Error("a motion constraint needs a mesh, an index, an activation rule and a solver");
   }
+  require_rounding_to_nearest();
   require_mesh_in_range(*mesh);
-  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index), capacity.triangles,
-                                        budget);
+  // One more than the budget pays for: collecting so many spends it.
+  const std::size_t paid =
+      Capacity::work_units_or_default(capacity.work_units, *index) / work::hit + 1;
+  return std::make_unique<Neighborhood>(std::move(mesh), std::move(index),
+                                        std::min(capacity.triangles, paid), budget);
 }
 
 /// Returns the capacity, enlarged for the nodes of the options. Throws Error for options or a
@@ -104,6 +109,7 @@ void MotionConstraint::follow(std::shared_ptr<const Mesh> moved,
       neighborhood_of(moved, std::move(index), rule_.get(), solver_.get(), capacity_, *budget_);
   FreePolytope polytope(moved, near->room());
   const bool has_same_triangles = std::ranges::equal(moved->triangles(), mesh().triangles());
+  if (monitor_ != nullptr) monitor_->follow(moved);
   if (!has_same_triangles) has_sides_ = inside_ == Inside::escape && is_watertight(*moved);
   *neighborhood_ = std::move(*near);
   polytope_ = std::move(polytope);
@@ -124,6 +130,13 @@ void MotionConstraint::set_guides(std::vector<Guide> guides) {
   TipGuides prepared(std::move(guides));
   reserve_solver(prepared.guides().size());
   memory_->guides = std::move(prepared);
+}
+
+void MotionConstraint::set_monitor(std::unique_ptr<TipMonitor> monitor) {
+  if (monitor != nullptr && rule_->guards_a_tool()) {
+    throw Error("a monitor confirms the motions of a ball: the rule guards a whole tool");
+  }
+  monitor_ = std::move(monitor);
 }
 
 std::span<const Guide> MotionConstraint::guides() const noexcept {
@@ -160,6 +173,7 @@ Ball MotionConstraint::region(const Motion& request) const noexcept {
 }
 
 Step MotionConstraint::step(const Motion& request, SideWatch& sides, StageTimes* times) noexcept {
+  const RoundingToNearest rounding;
   if (times != nullptr) *times = {};
   if (!is_current()) return {.status = Status::mesh_changed};
   budget_->renew();
@@ -193,16 +207,25 @@ Step MotionConstraint::escape_or_cycle(const Motion& request, SideWatch& sides,
     if (auto inside = step_of_tip_inside(*neighborhood_, request, options_, *memory_))
       return *inside;
   }
-  const Step step = Cycle(*rule_, *solver_, *memory_, *budget_, options_, request, times).run();
+  Step step = Cycle(*rule_, *solver_, *memory_, *budget_, options_, request, times).run();
   if (step.status == Status::touching && classifies(sides)) {
     if (auto escape = escape_from_surface(*neighborhood_, request, options_, *memory_))
       return *escape;
+  }
+  const bool must_confirm = monitor_ != nullptr && step.ok() && !step.motion.isZero(0.0);
+  if (must_confirm && !monitor_->confirms(request.tip, request.tip + step.motion, options_)) {
+    step.status = Status::unconfirmed;
+    step.motion.setZero();
+    step.increment = {};
+    step.active = {};
+    step.limits = {};
   }
   sides.after(request, step, options_, mesh());
   return step;
 }
 
 Polytope MotionConstraint::free_polytope(const Vec3& tip, double radius) noexcept {
+  const RoundingToNearest rounding;
   Status status = Status::unsupported;
   if (!is_current()) {
     status = Status::mesh_changed;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int parts_of_a_cycle = 8;
-constexpr int refinements = 3;               // around the worst pose
+constexpr int refinements = 12;              // around the worst pose
 constexpr double angular_tolerance = 1e-12;  // [chord]
 
 /// Returns true if all joints may move to `to`, up to rounding. A joint outside its limits may stay
@@ -49,28 +49,34 @@ double promised_fraction(const InstrumentStep& step, std::size_t body, std::size
   return 1.0;
 }
 
+std::vector<std::shared_ptr<const TriangleTree>> trees_of(const JudgedScene& scene) {
+  std::vector<std::shared_ptr<const TriangleTree>> trees;
+  for (const JudgedScene::Mesh& mesh : scene.meshes) trees.push_back(mesh.tree);
+  return trees;
+}
+
 }  // namespace
 
-RobotJudge::RobotJudge(JudgedScene scene, const Chain& limits, Random& random,
-                       std::span<const double> positions, const InstrumentOptions& options,
-                       double tolerance)
+RobotJudge::RobotJudge(JudgedScene scene, const Chain& limits, std::span<const double> positions,
+                       const InstrumentOptions& options, double tolerance)
     : bodies_(scene.robot.bodies.size()),
       base_(scene.base),
       guides_(std::move(scene.guides)),
+      check_(trees_of(scene), scene.robot, scene.base),
       limits_(&limits),
-      random_(&random),
       positions_(positions.begin(), positions.end()),
       between_(positions_),
       tolerance_(tolerance),
       has_band_(scene.has_band),
       least_(bodies_) {
   for (JudgedScene::Mesh& mesh : scene.meshes) {
-    meshes_.push_back(
-        {InstrumentOracle(std::move(mesh.tree), scene.robot, base_), mesh.margin, mesh.pose});
+    meshes_.push_back({InstrumentOracle(std::move(mesh.tree), scene.robot, base_), mesh.margin});
+    motions_.push_back({mesh.pose});
   }
   kept_.resize(meshes_.size() * bodies_ + guides_.size());
   distances_.resize(kept_.size());
   levels_.resize(meshes_.size() * bodies_);
+  due_.resize(meshes_.size() * bodies_);
   follow(options);
 }
 
@@ -92,9 +98,14 @@ void RobotJudge::follow(const InstrumentOptions& options) {
 }
 
 void RobotJudge::place(std::size_t mesh, const Pose& pose, const Twist& velocity) {
-  meshes_[mesh].pose = pose;
   meshes_[mesh].velocity = velocity;
+  motions_[mesh].pose = pose;
   is_placed_anew_ = true;
+}
+
+Segment RobotJudge::axis(std::size_t body) const {
+  const JudgedRobot& robot = meshes_.front().oracle.robot();
+  return axis_of(robot.bodies[body], monitor::place(robot, base_, positions_));
 }
 
 bool RobotJudge::is_recovered() const noexcept {
@@ -105,27 +116,13 @@ bool RobotJudge::is_recovered() const noexcept {
   return true;
 }
 
-Pose RobotJudge::pose_at(const Mesh& mesh, double share) const {
-  const double time = share * options_.period;
-  Pose pose = mesh.pose;
-  pose.position += time * mesh.velocity.linear;
-  const double turn = time * mesh.velocity.angular.norm();
-  if (turn > 0.0) {
-    pose.rotation = (Eigen::AngleAxisd(turn, mesh.velocity.angular.normalized()) *
-                     Eigen::Quaterniond(mesh.pose.rotation))
-                        .normalized()
-                        .toRotationMatrix();
-  }
-  return pose;
-}
-
 /// Measures all distances at a fraction of the motion to `next`.
 void RobotJudge::measure(std::span<const double> next, double share) {
   for (std::size_t k = 0; k < positions_.size(); ++k) {
     between_[k] = share == 1.0 ? next[k] : positions_[k] + share * (next[k] - positions_[k]);
   }
   for (std::size_t m = 0; m < meshes_.size(); ++m) {
-    const Pose pose = pose_at(meshes_[m], share);
+    const Pose pose = motions_[m].at(share);
     const Mat3 back = pose.rotation.transpose();
     meshes_[m].oracle.move_to(between_,
                               {back * (base_.position - pose.position), back * base_.rotation});
@@ -133,8 +130,13 @@ void RobotJudge::measure(std::span<const double> next, double share) {
       distances_[m * bodies_ + b] = meshes_[m].oracle.clearance(b, margin(m));
     }
   }
+  measure_guides(between_);
+}
+
+/// Measures the depths of all guides at these positions.
+void RobotJudge::measure_guides(std::span<const double> positions) {
   if (guides_.empty()) return;
-  const auto links = oracle::place(meshes_[0].oracle.robot(), base_, between_);
+  const auto links = monitor::place(meshes_[0].oracle.robot(), base_, positions);
   for (std::size_t g = 0; g < guides_.size(); ++g) {
     distances_[meshes_.size() * bodies_ + g] = -excess(guides_[g], links);
   }
@@ -157,6 +159,10 @@ void RobotJudge::open() {
   if (is_placed_anew_) follow(options_);
   is_placed_anew_ = false;
   const std::size_t pairs = meshes_.size() * bodies_;
+  for (std::size_t m = 0; m < meshes_.size(); ++m) {
+    const Twist& velocity = meshes_[m].velocity;
+    motions_[m].way = {options_.period * velocity.linear, options_.period * velocity.angular};
+  }
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     Kept& kept = kept_[i];
     const bool is_pair = i < pairs;
@@ -183,36 +189,78 @@ RobotVerdict RobotJudge::judge(std::span<const double> next, const InstrumentSte
   return judge_promised(next);
 }
 
-/// Measures along the motion, and moves the instrument and the meshes to its end.
-void RobotJudge::sample(std::span<const double> next) {
-  double worst = infinity;
-  double at = 1.0;
+/// Proves that all distances are the due ones less three tolerances on the whole motion.
+MotionFinding RobotJudge::prove(std::span<const double> next) {
+  const InstrumentMotion motion{positions_, next, motions_};
+  const std::size_t pairs = due_.size();
+  for (std::size_t i = 0; i < pairs; ++i) due_[i] = kept_[i].due - 3.0 * tolerance_;
+  MotionFinding finding = check_.check(motion, due_);
+  for (std::size_t i = pairs; i < kept_.size() && finding.clearance != Clearance::lost; ++i) {
+    const double most = 3.0 * tolerance(i) - kept_[i].due;
+    MotionFinding of_guide =
+        check_guide(guides_[i - pairs], meshes_[0].oracle.robot(), base_, motion, most);
+    of_guide.pair = i;
+    if (of_guide.clearance != Clearance::kept) finding = of_guide;
+  }
+  return finding;
+}
+
+/// Measures at poses of the motion, most of them around the worst one, to find how near a body
+/// comes or how far a guide is left. `at`: the fraction of the motion at which it was found.
+void RobotJudge::sample(std::span<const double> next, double at) {
+  double worst = measure_and_note(next, at);
   const auto try_at = [&](double share) {
     const double room = measure_and_note(next, share);
     if (room < worst) at = share;
     worst = std::min(worst, room);
   };
-  for (int i = 0; i < parts_of_a_cycle; ++i) try_at((i + random_->uniform()) / parts_of_a_cycle);
+  for (int i = 0; i < parts_of_a_cycle; ++i) try_at((i + 0.5) / parts_of_a_cycle);
   double step = 0.5 / parts_of_a_cycle;
-  for (int i = 0; i < refinements && worst < options_.margin; ++i, step *= 0.5) {
+  for (int i = 0; i < refinements; ++i, step *= 0.5) {
     const double middle = at;
     try_at(std::max(middle - step, 0.0));
     try_at(std::min(middle + step, 1.0));
   }
-  measure_and_note(next, 1.0);  // the start of the next cycle
-  for (std::size_t i = 0; i < kept_.size(); ++i) kept_[i].distance = distances_[i];
+}
+
+/// Moves the instrument and the meshes to the end of the motion.
+void RobotJudge::advance(std::span<const double> next) {
+  bool is_measured = check_.poses() > 0;  // the motion is finite
+  for (std::size_t i = 0; i < due_.size() && is_measured; ++i) {
+    const double radius = meshes_[0].oracle.robot().bodies[i % bodies_].radius;
+    const double reach = radius + margin(i / bodies_);
+    const std::optional<Bracket> distance = check_.core_distance(MotionCheck::End::end, i, reach);
+    is_measured = distance && (distance->low == infinity || distance->narrow());
+    if (is_measured) {
+      distances_[i] = distance->estimate <= reach ? distance->estimate - radius : infinity;
+    }
+  }
+  if (is_measured) {
+    measure_guides(next);
+  } else {
+    measure(next, 1.0);  // in exact arithmetic where it must be
+  }
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    kept_[i].distance = distances_[i];  // at the start of the next cycle
+    kept_[i].least = std::min(kept_[i].least, distances_[i]);
+  }
   std::ranges::copy(next, positions_.begin());
-  for (Mesh& mesh : meshes_) mesh.pose = pose_at(mesh, 1.0);
+  for (MeshMotion& mesh : motions_) mesh.pose = mesh.at(1.0);
 }
 
 RobotVerdict RobotJudge::judge_promised(std::span<const double> next) {
   RobotVerdict verdict{.limits_broken = !are_allowed(*limits_, positions_, next, options_.period)};
   open();
-  const bool is_still =
-      std::ranges::equal(next, positions_) && std::ranges::all_of(meshes_, [](const Mesh& mesh) {
-        return mesh.velocity.linear.isZero(0.0) && mesh.velocity.angular.isZero(0.0);
-      });
-  if (!is_still) sample(next);
+  const bool is_still = std::ranges::equal(next, positions_) &&
+                        std::ranges::all_of(motions_, [](const MeshMotion& mesh) {
+                          return mesh.way.linear.isZero(0.0) && mesh.way.angular.isZero(0.0);
+                        });
+  MotionFinding finding;
+  if (!is_still) {
+    finding = prove(next);
+    if (finding.clearance != Clearance::kept) sample(next, finding.at);
+    advance(next);
+  }
   std::ranges::fill(least_, infinity);
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const double room = kept_[i].least - kept_[i].due;
@@ -224,8 +272,12 @@ RobotVerdict RobotJudge::judge_promised(std::span<const double> next) {
       verdict.guide_room = std::min(verdict.guide_room, room / tolerance(i));
     }
   }
-  verdict.is_below = !(verdict.beyond >= -3.0 * tolerance_);
-  verdict.is_guide_left = !(verdict.guide_room >= -3.0);
+  const bool is_lost = finding.clearance == Clearance::lost;
+  const bool is_of_pair = finding.pair < due_.size();
+  verdict.is_below = (is_lost && is_of_pair) || !(verdict.beyond >= -3.0 * tolerance_);
+  verdict.is_guide_left = (is_lost && !is_of_pair) || !(verdict.guide_room >= -3.0);
+  verdict.is_undecided =
+      finding.clearance == Clearance::undecided && !verdict.is_below && !verdict.is_guide_left;
   return verdict;
 }
 

@@ -117,8 +117,8 @@ TEST_F(Live, AnInstrumentBeginsWithAllBodiesClearAndItsPortBesideTheMesh) {
   EXPECT_TRUE((base.rotation * base.rotation.transpose()).isIdentity(1e-12));
   EXPECT_NEAR(base.rotation.determinant(), 1.0, 1e-12);
   EXPECT_GT(distance_to(mesh->bounds(), base.position), 0.0);
-  oracle::InstrumentOracle judge(std::make_shared<const oracle::TriangleTree>(mesh),
-                                 oracle::judged_psm(), base);
+  oracle::InstrumentOracle judge(std::make_shared<const monitor::TriangleTree>(mesh),
+                                 monitor::judged_psm(), base);
   judge.move_to(facts.at("start").at("positions").get<std::vector<double>>());
   EXPECT_GE(judge.clearance(0.5), 0.5);
   EXPECT_LT(judge.clearance(judge.bodies() - 1, 30.0), 25.0) << "the jaw is before the surface";

@@ -232,7 +232,7 @@ INSTANTIATE_TEST_SUITE_P(
         instrument("ACornerOfABladeThatIsForgotten", "blade", "saddle",
                    {.of_setup = cut_off_a_corner}),
         instrument("ACornerOfAConvexToolThatIsForgotten", "convex_tool", "saddle",
-                   {.of_setup = cut_off_a_corner}),
+                   {.of_setup = cut_off_a_corner}, Breach::too_near, 1, 40'000),
         instrument("AToolThatDoesNotGiveWay", "stuck", "saddle", {.of_step = freeze}),
         instrument("AMarginThatIsTenTolerancesTooSmall", "convex_tool", "saddle",
                    {.margin_less = 10.0}),

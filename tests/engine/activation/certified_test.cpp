@@ -48,7 +48,7 @@ class Scene {
   Neighborhood near_;
 };
 
-constexpr StepOptions options{.radius = 1.0, .margin = 0.2, .recovery = 0.05};
+constexpr StepOptions usual_options{.radius = 1.0, .margin = 0.2, .recovery = 0.05};
 
 /// Returns a square at z = 0, free above.
 Surface table() {
@@ -58,7 +58,7 @@ Surface table() {
 Vec3 above(double height) { return {1.0, 0.5, height}; }
 
 TEST(CertifiedRule, ItsToleranceIsThatOfTheSpecification) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   const Vec3 far(1e3, -2e3, 0.3);
   scene.open(far, Vec3::Zero());
   const double longest = std::sqrt(200.0);
@@ -66,7 +66,7 @@ TEST(CertifiedRule, ItsToleranceIsThatOfTheSpecification) {
 }
 
 TEST(CertifiedRule, AtItsMarginATipIsClear) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   for (const double height : {0.2, 0.3, 0.2 - 1e-12}) {
     const Opening opening = scene.open(above(height), Vec3(0, 0, -0.5));
     EXPECT_EQ(opening.status, Status::free) << height;
@@ -75,7 +75,7 @@ TEST(CertifiedRule, AtItsMarginATipIsClear) {
 }
 
 TEST(CertifiedRule, AToleranceDecidesWhereTheMarginIsLost) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   scene.open(above(1.0), Vec3::Zero());
   const double tau = scene.tau();
   EXPECT_EQ(scene.open(above(0.2 - 2.5 * tau), Vec3(0, 0, -0.5)).status, Status::free);
@@ -83,7 +83,7 @@ TEST(CertifiedRule, AToleranceDecidesWhereTheMarginIsLost) {
 }
 
 TEST(CertifiedRule, TooCloseItLeadsStraightAwayByTheRecovery) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   const Opening opening = scene.open(above(0.1), Vec3::Zero());
   EXPECT_EQ(opening.status, Status::recovering);
   EXPECT_LT((opening.target - Vec3(0, 0, 0.05)).norm(), 1e-15);
@@ -92,7 +92,7 @@ TEST(CertifiedRule, TooCloseItLeadsStraightAwayByTheRecovery) {
 }
 
 TEST(CertifiedRule, TooCloseWhatLeadsAlongOrAwayIsKept) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   const Vec3 down = scene.open(above(0.1), Vec3(0.3, -0.4, -0.5)).target;
   EXPECT_LT((down - Vec3(0.3, -0.4, 0.05)).norm(), 1e-15);
   const Vec3 up = scene.open(above(0.1), Vec3(0.3, -0.4, 0.5)).target;
@@ -106,7 +106,7 @@ TEST(CertifiedRule, TooCloseWhatLeadsAlongOrAwayIsKept) {
 }
 
 TEST(CertifiedRule, OnTheSurfaceNoSideIsFree) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   EXPECT_EQ(scene.open(above(0.0), Vec3(0, 0, 0.5)).status, Status::touching);
   const double tau = scene.tau();
   EXPECT_EQ(scene.open(above(3.0 * tau), Vec3(0, 0, 0.5)).status, Status::touching);
@@ -123,13 +123,13 @@ TEST(CertifiedRule, AMarginThatRoundingHidesIsRefused) {
 }
 
 TEST(CertifiedRule, MoreTrianglesThanRoomIsAStatus) {
-  Scene scene(table(), options, 1);
+  Scene scene(table(), usual_options, 1);
   EXPECT_EQ(scene.open(Vec3(0, 0, 0.5), Vec3(0, 0, -0.5)).status, Status::over_capacity);
   EXPECT_EQ(scene.open(Vec3(0, 0, 0.5), Vec3(0, 0, 0.5)).status, Status::free);
 }
 
 TEST(CertifiedRule, LooksWhereMotionsMayLead) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   const Vec3 tip = above(1.0), desired(0.2, -0.1, -0.6);
   scene.open(tip, desired);
   Random random(2);
@@ -147,7 +147,7 @@ TEST(CertifiedRule, LooksWhereMotionsMayLead) {
 }
 
 TEST(CertifiedRule, WhatIsFreeIsAccepted) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   scene.open(above(0.2), Vec3(0.5, 0.5, 0.0));
   EXPECT_EQ(scene.rule.judge(scene.input, Vec3(0.5, 0.5, 0.0), scene.planes).verdict,
             Verdict::accepted);
@@ -156,7 +156,7 @@ TEST(CertifiedRule, WhatIsFreeIsAccepted) {
 
 TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
   const Mesh mesh(make_shape("gear"));
-  Scene scene(make_shape("gear"), options);
+  Scene scene(make_shape("gear"), usual_options);
   Random random(3);
   std::size_t objections = 0;
   for (const Vec3& tip : surface_points(mesh, 400, 0.25, random)) {
@@ -182,7 +182,7 @@ TEST(CertifiedRule, AnObjectionIsAPlaneThatExcludesTheTrialAndNotTheTip) {
 }
 
 TEST(CertifiedRule, ATrialAgainstItsOwnPlaneIsBlocked) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   const Vec3 trial(0.1, 0.0, -0.8);
   scene.open(Vec3(1.0, -3.0, 0.7), trial);
   EXPECT_EQ(scene.rule.judge(scene.input, trial, scene.planes).verdict, Verdict::objected);
@@ -195,7 +195,7 @@ TEST(CertifiedRule, ATrialAgainstItsOwnPlaneIsBlocked) {
 
 TEST(CertifiedRule, StandingStillIsAlwaysAccepted) {
   for (const char* name : {"cortex", "needles", "triangle_soup", "fan", "thin_plates"}) {
-    Scene scene(make_shape(name), options);
+    Scene scene(make_shape(name), usual_options);
     Random random(4);
     for (const Vec3& tip : surface_points(*scene.mesh, 30, random.uniform(0.01, 0.5), random)) {
       const Opening opening = scene.open(tip, random.direction());
@@ -223,7 +223,7 @@ TEST(CertifiedRule, OnlyOffsetsThatAskForMotionAreRelaxed) {
 TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
   for (const char* name : {"sphere", "gear", "cortex", "saddle_terrain", "star_bumps"}) {
     const Mesh mesh(make_shape(name));
-    Scene scene(make_shape(name), options);
+    Scene scene(make_shape(name), usual_options);
     Random random(5);
     std::size_t changed = 0;
     for (const Vec3& tip : surface_points(mesh, 150, 0.25, random)) {
@@ -254,7 +254,7 @@ TEST(CertifiedRule, TurnedPlanesAllowTheTipAndTheMotionAsBefore) {
 }
 
 TEST(CertifiedRule, IdlePlanesAreDroppedByATurn) {
-  Scene scene(table(), options);
+  Scene scene(table(), usual_options);
   const Vec3 target(0.5, 0.0, -0.6);
   scene.open(Vec3(1.0, -3.0, 0.7), target);
   scene.planes.push({Vec3::UnitZ(), -0.5, 0});

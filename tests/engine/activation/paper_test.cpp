@@ -29,18 +29,18 @@ constexpr TriangleId t2 = 1;
 constexpr double far_enough = 20.0;
 
 /// An entry of Table I, {normal, closest point} of a triangle. The test computes the closest point.
-struct Bracket {
+struct TableEntry {
   TriangleId triangle;
   Vec3 normal;
 };
 
 void expect_planes(const std::shared_ptr<const Mesh>& mesh, const Vec3& tip,
-                   const std::vector<Bracket>& expected) {
+                   const std::vector<TableEntry>& expected) {
   PaperRule rule;
   const std::vector<HalfSpace> planes = planes_at(mesh, rule, tip, far_enough);
   ASSERT_EQ(planes.size(), expected.size());
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    const Bracket& bracket = expected[i];
+    const TableEntry& bracket = expected[i];
     const Vec3 to_closest = closest_point(mesh->triangle(bracket.triangle), tip).offset;
     EXPECT_EQ(planes[i].source, bracket.triangle);
     EXPECT_LT((planes[i].normal - bracket.normal).norm(), 1e-15);

@@ -50,8 +50,8 @@ double size_of(const Triangle& triangle, const Vec3& z) {
 }
 
 double distance_between(const Triangle& triangle, const Vec3& z) {
-  const oracle::Segment way{Vec3::Zero(), z};
-  const oracle::Bracket bracket = oracle::bracket_distance(way, triangle);
+  const monitor::Segment way{Vec3::Zero(), z};
+  const monitor::Bracket bracket = monitor::bracket_distance(way, triangle);
   if (bracket.high - bracket.low < 1e-13 * size_of(triangle, z)) return bracket.estimate;
   return oracle::exact_distance(way, triangle, 0.0).distance;
 }

@@ -19,16 +19,13 @@ namespace {
 using oracle::Breach;
 using oracle::RobotVerdict;
 
-// An instrument gets a new start after this many cycles, earlier if mesh or robot are drawn.
-constexpr std::uint64_t cycles_of_a_start = 2000;
-constexpr std::uint64_t cycles_of_a_drawn_start = 400;
 constexpr std::size_t block = 500;      // cycles until the margin is raised or lowered
 constexpr double raise = 0.5;           // [mm]
 constexpr double blocked_below = 0.05;  // fraction of the commanded motion
 constexpr double useful_above = 0.05;   // fraction of the largest reduction of the cost
 constexpr double movable_above = 0.1;   // fraction of the commanded motion
 constexpr double strayed_above = 1.05;  // multiple of the error without motion
-// Searches one of this many blocked cycles, because a search costs like a thousand cycles.
+// Searches on average one of this many blocked cycles, because a search costs like a thousand.
 constexpr std::uint64_t sampled = 2000;
 constexpr std::uint64_t sampled_where_drawn = 100;
 constexpr int hopeless_after = 50;     // consecutive cycles without a proved motion
@@ -45,10 +42,10 @@ struct Missed {
   double moving, standing;
 };
 
-Missed missed(const RobotSetup& setup, const oracle::JudgedRobot& robot,
+Missed missed(const RobotSetup& setup, const monitor::JudgedRobot& robot,
               std::span<const double> from, std::span<const double> to, const Twist& desired) {
-  const auto before = oracle::place(robot, setup.start.base, from);
-  const auto after = oracle::place(robot, setup.start.base, to);
+  const auto before = monitor::place(robot, setup.start.base, from);
+  const auto after = monitor::place(robot, setup.start.base, to);
   const Vec3& flange = setup.robot.flange.position;
   const Vec3 way = after.back().at(flange) - before.back().at(flange);
   const Mat3 turned = (after.back().axes * before.back().axes.transpose()).cast<double>();
@@ -84,7 +81,7 @@ class RobotAttempt {
         judged_(setup_.robot.judged()),
         chain_(setup_.robot.make(setup_.start.base).chain()),
         subject_(campaign.make_subject(setup_)),
-        judge_(judged_scene(setup_), chain_, random, setup_.start.positions, setup_.options,
+        judge_(judged_scene(setup_), chain_, setup_.start.positions, setup_.options,
                subject_->tolerance()),
         attacker_(*setup_.meshes[0].scene, random, setup_.speed),
         positions_(setup_.start.positions) {
@@ -199,6 +196,7 @@ class RobotAttempt {
       ++tally_.in_mesh;
       tally_.deepest = std::max(tally_.deepest, -verdict.least);
     }
+    tally_.undecided += verdict.is_undecided ? 1 : 0;
     if (verdict.limits_broken) tally_.count(Breach::limits_broken);
     if (verdict.is_guide_left) tally_.count(Breach::guide_left);
     tally_.least_beyond = std::min(tally_.least_beyond, verdict.beyond);
@@ -226,11 +224,13 @@ class RobotAttempt {
     if (!(task.share(made) < blocked_below)) return;
     const std::uint64_t usual = setup_.is_drawn ? sampled_where_drawn : sampled;
     const std::uint64_t every = campaign_.searched > 0 ? campaign_.searched : usual;
-    if (tally_.blocked++ % every != 0 || setup_.scenario->moves) return;
+    ++tally_.blocked;
+    if (setup_.scenario->moves || random_.below(every) != 0) return;
     const Search found =
         search(task, positions_, {made.data(), positions_.size()}, judge_, random_);
     ++tally_.samples;
-    tally_.excess += found.saved;
+    // A multiple of 2^-30: the sum of several million is exact, whatever their order.
+    tally_.excess += std::ldexp(std::round(std::ldexp(found.saved, 30)), -30);
     tally_.useful += found.saved > useful_above ? 1 : 0;
     tally_.movable += found.share >= movable_above ? 1 : 0;
   }
@@ -240,7 +240,7 @@ class RobotAttempt {
   Tally& tally_;
   Random& random_;
   RobotSetup setup_;
-  oracle::JudgedRobot judged_;
+  monitor::JudgedRobot judged_;
   Chain chain_;
   std::unique_ptr<RobotSubject> subject_;
   std::optional<MotionConstraint> point_;  // a ball at the tip alone, timed for comparison
@@ -265,6 +265,9 @@ class RobotAttack final : public Attack {
         scenario_(*kind.scenario),
         robot_(std::move(robot)),
         is_drawn_(!arena.load || robot_ == nullptr || scenario_.carrier == Carrier::slides),
+        length_(is_drawn_ ? cycles_of_a_drawn_trajectory : cycles_of_a_trajectory),
+        trajectories_(trajectory_count(campaign.cycles, length_)),
+        next_(campaign.shard.index - 1),
         loaded_(std::move(loaded)) {}
 
   std::uint64_t begin() override {
@@ -275,41 +278,79 @@ class RobotAttack final : public Attack {
       *loaded_ = std::make_shared<Scene>(std::move(scenes.front()));
     }
     if (*loaded_) row.triangles = (*loaded_)->mesh()->triangle_count();
+    // A row whose first trajectory has no start ends, in every shard.
+    if (!is_begun_ && !is_done()) {
+      random_ = random_of(0);
+      if (!draw()) {
+        const std::uint64_t count = campaign_.shard.count;
+        row.startless = (trajectories_ - next_ + count - 1) / count;
+        next_ = trajectories_;
+      }
+    }
+    is_begun_ = true;
+    if (is_done()) return 0;
+    trajectory_ = next_;
+    next_ += campaign_.shard.count;
+    random_ = random_of(trajectory_);
+    return std::min(length_, campaign_.cycles - trajectory_ * length_);
+  }
+
+  bool cycle(std::uint64_t number) override {
+    row.now = trajectory_ * length_ + number + 1;
+    if (!attempt_) {
+      std::optional<RobotSetup> setup = draw();
+      if (!setup) {
+        ++row.startless;
+        return false;
+      }
+      ++row.starts;
+      row.period = std::max(row.period, setup->options.period);
+      attempt_.emplace(campaign_, std::move(*setup), random_, *this);
+      start_ = number;
+    }
+    if (!attempt_->cycle(number - start_)) attempt_.reset();
+    return true;
+  }
+
+  bool is_done() const override { return next_ >= trajectories_; }
+
+ private:
+  /// Returns the random numbers of a trajectory, which are independent of all others.
+  Random random_of(std::uint64_t trajectory) const {
     const auto number = static_cast<std::uint64_t>(&scenario_ - scenarios().data());
-    const int most_misses = is_drawn_ ? 20 : 1;  // another draw may have a start
+    Random of_seed(campaign_.seed + 1000 * number);
+    return Random(of_seed.bits() ^ trajectory);
+  }
+
+  /// Draws a setup. Returns nothing if several draws find no start.
+  std::optional<RobotSetup> draw() {
     const auto draw_mesh = [&](Random& random) {
       return *loaded_ ? *loaded_ : arena_.draw(random);
     };
     const auto options = [&](const Chain& chain) {
       return options_of(campaign_, chain, row.speed);
     };
-    for (int misses = 0; !is_done(); row.is_out_of_starts = ++misses >= most_misses) {
-      Random of_seed(campaign_.seed + 1000 * number);
-      random_ = Random(of_seed.bits() ^ draws_++);
-      auto setup = draw_setup(scenario_, robot_.get(), row.speed, random_, draw_mesh, options);
-      if (!setup) continue;
-      setup->is_drawn = is_drawn_;
-      ++row.starts;
-      row.period = setup->options.period;
-      attempt_.emplace(campaign_, std::move(*setup), random_, *this);
-      return std::min(is_drawn_ ? cycles_of_a_drawn_start : cycles_of_a_start,
-                      campaign_.cycles - row.cycles);
+    std::optional<RobotSetup> setup;
+    for (int left = is_drawn_ ? 20 : 1; !setup && left > 0; --left) {  // another draw may have one
+      setup = draw_setup(scenario_, robot_.get(), row.speed, random_, draw_mesh, options);
     }
-    return 0;
+    if (setup) setup->is_drawn = is_drawn_;
+    return setup;
   }
 
-  bool cycle(std::uint64_t number) override { return attempt_->cycle(number); }
-  bool is_done() const override { return row.is_out_of_starts || row.cycles >= campaign_.cycles; }
-
- private:
   const Campaign& campaign_;
   const Arena& arena_;
   const Scenario& scenario_;
   std::shared_ptr<const RobotUnderTest> robot_;  // null: drawn for each start
   bool is_drawn_;                                // mesh or robot change with each setup
+  std::uint64_t length_;                         // of a trajectory [cycles]
+  std::uint64_t trajectories_;                   // of all shards
+  std::uint64_t next_;                           // the number of the next one
   std::shared_ptr<std::shared_ptr<Scene>>
       loaded_;  // shared by all rows of the mesh; null until the first one
-  std::uint64_t draws_ = 0;
+  bool is_begun_ = false;
+  std::uint64_t trajectory_ = 0;  // the current one
+  std::uint64_t start_ = 0;       // of the attempt, in the trajectory [cycles]
   Random random_{0};
   std::optional<RobotAttempt> attempt_;
 };

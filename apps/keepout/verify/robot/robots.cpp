@@ -26,13 +26,13 @@ constexpr double sliding_velocity = 25.0;  // [mm/s]
 /// A drawn robot: table and bodies in the form of the judge, and the limits that the library needs
 /// in addition.
 struct Drawn {
-  oracle::JudgedRobot judged;
+  monitor::JudgedRobot judged;
   std::vector<JointLimits> limits;
 };
 
-Body body_of(const oracle::JudgedBody& judged) {
+Body body_of(const monitor::JudgedBody& judged) {
   Body body{.name = "body", .radius = judged.radius};
-  for (const oracle::JudgedPoint& point : judged.points) {
+  for (const monitor::JudgedPoint& point : judged.points) {
     body.points.push_back({point.link, point.position});
   }
   return body;
@@ -43,7 +43,7 @@ RobotUnderTest robot_of(Drawn drawn) {
   RobotUnderTest robot{.name = "drawn", .description = ""};
   std::vector<DenavitHartenberg> table;
   for (std::size_t k = 0; k < drawn.judged.table.size(); ++k) {
-    const oracle::TableRow& row = drawn.judged.table[k];
+    const monitor::TableRow& row = drawn.judged.table[k];
     const JointLimits& limits = drawn.limits[k];
     table.push_back({.name = "joint",
                      .kind = row.slides ? JointKind::prismatic : JointKind::revolute,
@@ -58,7 +58,7 @@ RobotUnderTest robot_of(Drawn drawn) {
   }
   robot.joints = joints_of(table, DhConvention::modified).joints;
   robot.flange.position = drawn.judged.bodies.back().points.back().position;
-  for (const oracle::JudgedBody& body : drawn.judged.bodies) robot.bodies.push_back(body_of(body));
+  for (const monitor::JudgedBody& body : drawn.judged.bodies) robot.bodies.push_back(body_of(body));
   robot.model = std::move(drawn.judged);
   return robot;
 }
@@ -71,7 +71,7 @@ std::vector<Joint> all_joints(const Chain& chain) {
 }
 
 RobotUnderTest known_robot(std::string name, std::string description, const Instrument& instrument,
-                           oracle::JudgedRobot model, std::vector<RobotUnderTest::Range> starts) {
+                           monitor::JudgedRobot model, std::vector<RobotUnderTest::Range> starts) {
   return {std::move(name),
           std::move(description),
           all_joints(instrument.chain()),
@@ -109,7 +109,7 @@ RobotUnderTest robot_of_files([[maybe_unused]] const std::string& urdf,
     robot.starts.push_back(start_of(joint));
   }
   for (const Body& body : robot.bodies) {
-    oracle::JudgedBody& judged = robot.model.bodies.emplace_back();
+    monitor::JudgedBody& judged = robot.model.bodies.emplace_back();
     judged.radius = body.radius;
     for (const LinkPoint& point : body.points)
       judged.points.push_back({point.link, point.position});
@@ -135,8 +135,8 @@ double drawn_radius(Random& random) {
 
 /// Returns a body of points around a place of a link; the last point is the place itself. Half of
 /// the bodies are flat.
-oracle::JudgedBody blade_at(int link, const Vec3& place, double size, Random& random) {
-  oracle::JudgedBody blade{.points = {}, .radius = 0.3 * drawn_radius(random)};
+monitor::JudgedBody blade_at(int link, const Vec3& place, double size, Random& random) {
+  monitor::JudgedBody blade{.points = {}, .radius = 0.3 * drawn_radius(random)};
   const Vec3 normal = random.direction();
   const bool is_flat = random.uniform() < 0.5;
   for (std::size_t i = 0, count = 2 + random.below(6); i < count; ++i) {
@@ -158,7 +158,7 @@ void add_slides(Drawn& drawn, double range) {
 
 /// Returns a tip that carries `body`, as a robot of three prismatic joints. The step of a tip has
 /// no joint limits, so the joints are longer than any attempt.
-RobotUnderTest tip_with(oracle::JudgedBody body) {
+RobotUnderTest tip_with(monitor::JudgedBody body) {
   Drawn drawn;
   add_slides(drawn, 1e5);
   drawn.judged.bodies.push_back(std::move(body));
@@ -172,10 +172,10 @@ RobotUnderTest tip_with(oracle::JudgedBody body) {
 std::span<const RobotUnderTest> robots_under_test() {
   static const std::array<RobotUnderTest, 2> robots{
       known_robot("psm", "six joints about a port: a da Vinci manipulator with an 8 mm instrument",
-                  psm(), oracle::judged_psm(),
+                  psm(), monitor::judged_psm(),
                   {{-0.6, 0.6}, {-0.5, 0.5}, {90.0, 125.0}, {-2.0, 2.0}, {-0.6, 0.6}, {-0.6, 0.6}}),
       known_robot("seven_joint_arm", "seven revolute joints and a straight shaft, without a port",
-                  seven_joint_arm(), oracle::judged_seven_joint_arm(),
+                  seven_joint_arm(), monitor::judged_seven_joint_arm(),
                   {{-1, 1}, {0.2, 0.9}, {-1, 1}, {-1.6, -0.8}, {-1, 1}, {0.3, 1.2}, {-1, 1}})};
   return robots;
 }
@@ -250,13 +250,13 @@ RobotUnderTest robot_with_stuck_bodies(Random& random) {
   add_slides(drawn, 500.0);
   const auto beside = [&](int link) {
     const Vec3 place = random.uniform(8.0, 16.0) * random.direction();
-    return random.uniform() < 0.5 ? oracle::JudgedBody{{{link, place}}, random.uniform(0.1, 2.0)}
+    return random.uniform() < 0.5 ? monitor::JudgedBody{{{link, place}}, random.uniform(0.1, 2.0)}
                                   : blade_at(link, place, 4.0, random);
   };
   drawn.judged.bodies.push_back(beside(0));
   drawn.judged.bodies.push_back(beside(1));
   drawn.judged.bodies.push_back(random.uniform() < 0.5
-                                    ? oracle::JudgedBody{{{4, Vec3::Zero()}}, drawn_radius(random)}
+                                    ? monitor::JudgedBody{{{4, Vec3::Zero()}}, drawn_radius(random)}
                                     : blade_at(4, Vec3::Zero(), 6.0, random));
   RobotUnderTest robot = robot_of(std::move(drawn));
   robot.starts = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
@@ -264,7 +264,7 @@ RobotUnderTest robot_with_stuck_bodies(Random& random) {
 }
 
 RobotUnderTest with_blade(RobotUnderTest robot, Random& random) {
-  const oracle::JudgedPoint tip = robot.model.bodies.back().points.back();
+  const monitor::JudgedPoint tip = robot.model.bodies.back().points.back();
   robot.model.bodies.push_back(blade_at(tip.link, tip.position, random.uniform(2.0, 12.0), random));
   robot.bodies.push_back(body_of(robot.model.bodies.back()));
   return robot;

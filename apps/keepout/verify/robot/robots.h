@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "keepout/fixtures/random.h"
-#include "keepout/oracle/judged_robot.h"
+#include "keepout/monitor/judged_robot.h"
 #include "keepout/robot/instrument.h"
 
 namespace keepout::app {
@@ -23,12 +23,12 @@ struct RobotUnderTest {
   std::vector<Joint> joints = {};
   Pose flange = {};
   std::vector<Body> bodies = {};
-  oracle::JudgedRobot model = {};  // the same robot in the form of the judge
+  monitor::JudgedRobot model = {};  // the same robot in the form of the judge
   std::vector<Range> starts = {};  // start range of each joint [rad or length]
 
   /// Returns the instrument on a base.
   Instrument make(const Pose& base) const { return {Chain(joints, base, flange), bodies}; }
-  const oracle::JudgedRobot& judged() const noexcept { return model; }
+  const monitor::JudgedRobot& judged() const noexcept { return model; }
   /// Returns true if the first body is a shaft that passes through a port of the base.
   bool has_port() const noexcept;
 };

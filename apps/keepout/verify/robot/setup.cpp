@@ -51,7 +51,7 @@ void set_swinging(MeshMotion& motion, double speed, const Vec3& center, Random& 
 
 /// Puts another mesh beside the tool, clear of all bodies. Returns false if many tries find no
 /// place.
-bool put_beside(SetupMesh& mesh, const oracle::JudgedRobot& robot, const RobotStart& start,
+bool put_beside(SetupMesh& mesh, const monitor::JudgedRobot& robot, const RobotStart& start,
                 const Vec3& tool, double margin, Random& random) {
   const Mesh& surface = *mesh.scene->mesh();
   for (int i = 0; i < 100; ++i) {
@@ -65,7 +65,7 @@ bool put_beside(SetupMesh& mesh, const oracle::JudgedRobot& robot, const RobotSt
   return false;
 }
 
-using Links = std::vector<oracle::LinkFrame>;
+using Links = std::vector<monitor::LinkFrame>;
 
 /// Draws a region around a place. The place is in it or, in one of four cases, slightly outside.
 void draw_region(oracle::JudgedGuide& guide, const Vec3& place, Random& random) {
@@ -88,15 +88,15 @@ void draw_region(oracle::JudgedGuide& guide, const Vec3& place, Random& random) 
   guide.origin = place + depth * off;
 }
 
-oracle::JudgedGuide draw_guide(const oracle::JudgedRobot& robot, const Links& links, bool is_of_tip,
+oracle::JudgedGuide draw_guide(const monitor::JudgedRobot& robot, const Links& links, bool is_of_tip,
                                Random& random) {
   using Kind = oracle::JudgedGuide::Kind;
   oracle::JudgedGuide guide{.band = std::pow(10.0, random.uniform(-3.0, -1.5))};
-  const oracle::JudgedBody& body = robot.bodies[random.below(robot.bodies.size())];
+  const monitor::JudgedBody& body = robot.bodies[random.below(robot.bodies.size())];
   const double kind = random.uniform();
   if (is_of_tip || kind < 0.5) {
     // A point of the base would not move.
-    const oracle::JudgedPoint& of_body =
+    const monitor::JudgedPoint& of_body =
         body.points.front().link > 0 ? body.points.front() : body.points.back();
     guide.first = is_of_tip ? robot.bodies.back().points.back() : of_body;
     draw_region(guide, links[static_cast<std::size_t>(guide.first.link)].at(guide.first.position),
@@ -104,7 +104,7 @@ oracle::JudgedGuide draw_guide(const oracle::JudgedRobot& robot, const Links& li
   } else if (kind < 0.75) {
     guide.kind = Kind::axis;
     guide.first = {static_cast<int>(robot.table.size()), random.direction()};
-    const oracle::LinkFrame& link = links.back();
+    const monitor::LinkFrame& link = links.back();
     const Vec3 now = link.at(guide.first.position) - link.at(Vec3::Zero());
     const double angle = random.uniform(0.02, 0.5);
     const bool is_out = random.uniform() < 0.25;
@@ -218,14 +218,14 @@ std::optional<RobotSetup> draw_setup(
                                 setup.options.margin, random, ahead);
   if (!start) return std::nullopt;
   setup.start = *start;
-  const oracle::JudgedRobot judged = setup.robot.judged();
+  const monitor::JudgedRobot judged = setup.robot.judged();
   if (scenario.moves) {
     // A random frame of the world, so that no two frames are equal.
     const Pose world{random.uniform(0.0, 50.0) * random.direction(), drawn_rotation(random)};
     setup.meshes[0].motion.first = world;
     setup.start.base = world * setup.start.base;
   }
-  const Links links = oracle::place(judged, setup.start.base, setup.start.positions);
+  const Links links = monitor::place(judged, setup.start.base, setup.start.positions);
   const Vec3 tool = axis_of(judged.bodies.back(), links).to;
   const std::size_t meshes = scenario.meshes > 1 ? 2 + random.below(scenario.meshes - 1) : 1;
   for (std::size_t m = 1; m < meshes; ++m) {

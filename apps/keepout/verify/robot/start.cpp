@@ -41,7 +41,7 @@ std::optional<Target> between_walls(Scene& scene, const SurfacePoint& on, double
 
 }  // namespace
 
-double clearance(const oracle::JudgedRobot& robot, const RobotStart& start, const Scene& scene,
+double clearance(const monitor::JudgedRobot& robot, const RobotStart& start, const Scene& scene,
                  double reach) {
   oracle::InstrumentOracle judge(scene.tree(), robot, start.base);
   judge.move_to(start.positions);
@@ -50,7 +50,7 @@ double clearance(const oracle::JudgedRobot& robot, const RobotStart& start, cons
 
 std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, Begin begin,
                                      double margin, Random& random, double ahead) {
-  const oracle::JudgedRobot judged = robot.judged();
+  const monitor::JudgedRobot judged = robot.judged();
   const double tool = judged.bodies.back().radius;
   // The tip starts at most `ahead` from the surface.
   if (begin != Begin::wedged && margin + tool > ahead) return std::nullopt;
@@ -67,8 +67,8 @@ std::optional<RobotStart> find_start(Scene& scene, const RobotUnderTest& robot, 
       start.positions.push_back(random.uniform(low, high));
     }
     // The base follows from the place of the tool, with a random rotation about the tool.
-    const oracle::Segment axis =
-        axis_of(judged.bodies.back(), oracle::place(judged, {}, start.positions));
+    const monitor::Segment axis =
+        axis_of(judged.bodies.back(), monitor::place(judged, {}, start.positions));
     const bool has_length = axis.from != axis.to;
     const Vec3 along = has_length ? Vec3(axis.to - axis.from) : random.direction();
     const double roll = random.uniform(-std::numbers::pi, std::numbers::pi);

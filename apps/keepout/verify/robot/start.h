@@ -24,7 +24,7 @@ struct RobotStart {
 };
 
 /// Returns the smallest clearance of all bodies from the mesh; infinite beyond `reach`. [length]
-double clearance(const oracle::JudgedRobot& robot, const RobotStart& start, const Scene& scene,
+double clearance(const monitor::JudgedRobot& robot, const RobotStart& start, const Scene& scene,
                  double reach);
 
 /// Draws a start whose bodies maintain the margin, unless they must overlap; empty if many tries

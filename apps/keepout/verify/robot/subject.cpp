@@ -120,7 +120,7 @@ class TipSubject final : public RobotSubject {
     const Vec3 tip = state_.flange().position;
     if (!is_hull_) return 2e-10 * lengths + 4e-16 * tip.lpNorm<1>();
     double size = 0.0;
-    for (const oracle::JudgedPoint& point : bodies_.back().points) {
+    for (const monitor::JudgedPoint& point : bodies_.back().points) {
       size = std::max(size, point.position.norm());
     }
     return 1e-12 * (longest_edge_ + 2.0 * size + 2.0 * options_.margin + tip.lpNorm<1>()) +
@@ -131,7 +131,7 @@ class TipSubject final : public RobotSubject {
   std::unique_ptr<ActivationRule> rule() const {
     if (!is_hull_) return std::make_unique<CertifiedRule>();
     std::vector<Vec3> points;
-    for (const oracle::JudgedPoint& point : bodies_.back().points) {
+    for (const monitor::JudgedPoint& point : bodies_.back().points) {
       points.push_back(state_.at(point.link, point.position) - state_.flange().position);
     }
     return std::make_unique<ConvexToolRule>(ConvexTool::hull(points, bodies_.back().radius));
@@ -139,7 +139,7 @@ class TipSubject final : public RobotSubject {
 
   Chain chain_;
   ChainState state_;
-  std::vector<oracle::JudgedBody> bodies_;
+  std::vector<monitor::JudgedBody> bodies_;
   bool is_hull_;
   double longest_edge_;  // of the mesh [length]
   StepOptions options_;

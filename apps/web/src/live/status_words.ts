@@ -13,6 +13,7 @@ const words: Readonly<Record<string, string>> = {
   beyond_reach: "the motion is longer than the motion sphere: make the sphere larger",
   over_capacity: "too many triangles are near the tool: make the motion sphere smaller",
   out_of_budget: "the cycle ended before a motion was proved: the tool waits",
+  unconfirmed: "the monitor did not confirm the motion: the tool waits",
   unsolved: "no motion could be proved in this direction: move the hand another way",
 };
 

@@ -71,6 +71,7 @@ class FreePolytope {
   struct Turn {
     double distance;  // [length]
     std::uint32_t hit;
+    std::array<std::uint8_t, 3> corner;  // the order of the triangle's corners
   };
   struct Query;
 

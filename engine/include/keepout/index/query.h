@@ -67,6 +67,7 @@ class Neighborhood {
 
   /// Returns the mesh.
   const Mesh& mesh() const noexcept { return *mesh_; }
+  const std::shared_ptr<const Mesh>& shared_mesh() const noexcept { return mesh_; }
   /// Returns the index.
   const SpatialIndex& index() const noexcept { return *index_; }
 

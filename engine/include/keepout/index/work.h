@@ -7,11 +7,10 @@
 
 namespace keepout::work {
 
-/// The nominal time of a work unit: the median of instruments' cycles on an AMD EPYC, on AVX2 and
-/// AVX-512. The weights of the certified rule and of instruments are from least squares over
-/// recorded cycles, near earlier estimates. Those of hulls, guides and queries are estimates. A
-/// candidate has the weight of empty caches, because the budget must bound the worst cycle. [ns]
-inline constexpr double unit_ns = 30.0;
+// A work unit takes about 30 ns: the median of instruments' cycles on an AMD EPYC, on AVX2 and
+// AVX-512. The weights of the certified rule and of instruments are from least squares over
+// recorded cycles, near earlier estimates. Those of hulls, guides and queries are estimates. A
+// candidate has the weight of empty caches, because the budget must bound the worst cycle.
 
 // Traversals of an index along a motion.
 inline constexpr std::size_t boxes = 1;       // sixteen boxes in single precision
@@ -24,7 +23,7 @@ inline constexpr std::size_t sharpening = 6;  // the more accurate filter
 inline constexpr std::size_t nearest_box = 4;       // a node or a leaf; mostly cache misses
 inline constexpr std::size_t nearest_decision = 5;  // a triangle in double
 inline constexpr std::size_t nearest_in_order = 1;  // the same without cache misses
-inline constexpr std::size_t hit = 4;               // a candidate; mostly cache misses
+inline constexpr std::size_t hit = 10;  // finds and measures a candidate; mostly cache misses
 
 // The certified rule.
 inline constexpr std::size_t coverage = 1;  // a triangle against up to sixteen planes
@@ -38,6 +37,12 @@ inline constexpr std::size_t scan = 1;      // 64 entries of a list
 inline constexpr std::size_t polytope_hit = 8;     // reads the corners of a triangle, and sorts it
 inline constexpr std::size_t polytope_plane = 40;  // finds a plane
 inline constexpr std::size_t polytope_test = 2;    // a triangle against a plane
+
+// Convex tools.
+inline constexpr std::size_t tool_direction = 1;   // up to sixteen points along a direction
+inline constexpr std::size_t tool_separation = 4;  // from a triangle, and ...
+inline constexpr std::size_t tool_point = 1;       // ... for each point of the tool
+inline constexpr std::size_t tool_suspect = 3;     // sorts a triangle, for a trial
 
 // Quadratic programs: see Budget::spend_solve.
 inline constexpr std::size_t solve = 6;

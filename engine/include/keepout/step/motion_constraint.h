@@ -16,6 +16,7 @@
 #include "keepout/step/options.h"
 #include "keepout/step/side_watch.h"
 #include "keepout/step/solver.h"
+#include "keepout/step/tip_monitor.h"
 
 namespace keepout {
 
@@ -131,6 +132,13 @@ class MotionConstraint {
   /// Returns the guides.
   std::span<const Guide> guides() const noexcept;
 
+  /// Sets a monitor, which must confirm each motion from the next step on, or removes it (nullptr).
+  /// A step whose motion it does not confirm is `unconfirmed`. The monitor takes the mesh as the
+  /// caller gave it; from then on, follow() passes it each new mesh. Escapes (from the forbidden
+  /// side, or from the surface) are not monitored, because no clearance is promised for them.
+  /// Throws Error, and changes nothing, if the rule guards a whole tool.
+  void set_monitor(std::unique_ptr<TipMonitor> monitor);
+
   /// Forgets the last step, so that the next tip is classified again at any position. For motions
   /// that do not continue each other.
   void forget() noexcept { side_watch_.forget(); }
@@ -182,7 +190,8 @@ class MotionConstraint {
   HalfSpaceBuffer polytope_planes_;
   bool is_prepared_ = false;
   Inside inside_;
-  bool has_sides_;        // the mesh is watertight, and tips inside escape
+  bool has_sides_;                       // the mesh is watertight, and tips inside escape
+  std::unique_ptr<TipMonitor> monitor_;  // or null
   SideWatch side_watch_;  // of the tip that is stepped without a SideWatch of its own
 };
 

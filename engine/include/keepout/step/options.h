@@ -115,7 +115,7 @@ struct Capacity {
   std::size_t looks = 0;  // deprecated: use work_units
 
   /// The default for an index that traverses along motions.
-  static constexpr std::size_t work_units_of_traversals = std::size_t{1} << 16;
+  static constexpr std::size_t work_units_of_traversals = std::size_t{11} << 13;
   static constexpr std::size_t work_units_of_queries = std::size_t{1} << 22;  // not for real time
 
   /// Returns `work_units`, or if that is 0, the default for an index. Allocates.
@@ -133,7 +133,7 @@ inline constexpr std::array capacity_options{
                                   "Capacity for the caller's own rows."),
     option<&Capacity::work_units>(
         "max_work_units", "", {0, static_cast<double>(Budget::unlimited)},
-        "Work budget of a cycle, in work units; 0: 65,536 on wide_bvh, 4,194,304 on other "
+        "Work budget of a cycle, in work units; 0: 90,112 on wide_bvh, 4,194,304 on other "
         "indices.")};
 
 /// See table_of(const StepOptions&).

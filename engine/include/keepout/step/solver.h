@@ -32,6 +32,10 @@ struct StepProblem {
   /// The planes of the first rows, A_i = n_i^T J, b_i = offset, J (3, n); empty if unknown. If the
   /// solver reads planes (Solver::reads_planes), the first rows are not written.
   std::span<const HalfSpace> planes = {};
+  /// The bounds of single variables, which are the last rows; empty if unknown. The number 2 k says
+  /// that the row has a 1 for u_k and otherwise zeros, 2 k + 1 that it has a -1. The rows are
+  /// written all the same.
+  std::span<const std::uint8_t> box = {};
 };
 
 /// Writes the row of A for a plane: n^T J, with J (3, n) column by column. The order of each sum is

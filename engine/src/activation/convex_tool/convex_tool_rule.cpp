@@ -18,6 +18,22 @@ namespace {
 constexpr int most_strides = 64;
 constexpr int most_proposed_strides = 8;
 
+/// Returns the work units of a direction that is tried for all points of a tool.
+std::size_t direction_units(const ConvexTool& tool) noexcept {
+  return (1 + tool.points().size() / 16) * work::tool_direction;
+}
+
+/// Returns the work units of the exact kernel, if a tool and a triangle are apart.
+std::size_t separation_units(const ConvexTool& tool) noexcept {
+  return work::tool_separation + tool.points().size() * work::tool_point;
+}
+
+/// Returns the additional work units of the exact kernel, if they overlap.
+std::size_t overlap_units(const ConvexTool& tool) noexcept {
+  const std::size_t directions = 1 + tool.face_normals().size() + 3 * tool.edge_directions().size();
+  return separation_units(tool) + directions * direction_units(tool);
+}
+
 std::unique_ptr<NarrowPhase> or_exact(std::unique_ptr<NarrowPhase> given, const ConvexTool& tool) {
   if (given) return given;
   return std::make_unique<ExactNarrowPhase>(tool);
@@ -74,6 +90,7 @@ ConvexToolRule::Proof ConvexToolRule::quick_proof(const Hit& hit,
 /// the exact normal.
 ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& position,
                                                TriangleId triangle) noexcept {
+  budget().spend(separation_units(tool_));
   const Triangle corners = mesh().triangle(triangle);
   const NarrowPhaseAnswer proposed = narrow_phase_->separation(position, corners);
   if (proposed.answered()) {
@@ -82,8 +99,10 @@ ConvexToolRule::Proof ConvexToolRule::proof_of(double enough, const Vec3& positi
     const bool is_direction = std::abs(n.squaredNorm() - 1.0) < 1e-12;  // false for NaN
     if (is_direction && proof.distance > enough) return proof;
   }
+  if (!narrow_phase_->is_exact()) budget().spend(separation_units(tool_));
   const Separation exact =
       narrow_phase_->is_exact() ? proposed.separation : separation(tool_, position, corners);
+  if (exact.distance <= -tool_.radius()) budget().spend(overlap_units(tool_));
   return proof_along(exact.normal, position, triangle);
 }
 
@@ -95,12 +114,15 @@ Opening ConvexToolRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept 
   const Near* nearest = nullptr;
   const Ball ends = searched_ends(input);
   const double longest = (ends.center - input.tip).norm() + ends.radius + region_beyond * tau;
+  budget().spend(hits().size() * direction_units(tool_));
   for (const Hit& hit : hits()) {
+    if (budget().is_spent()) return {budget().failure()};
     Near near{hit.triangle, quick_proof(hit, input.tip), false};
     if (near.at_start.distance > input.clearance + longest) continue;  // no motion can reach it
     if (!(near.at_start.distance > input.clearance)) {
       near.at_start = proof_of(input.clearance, input.tip, hit.triangle);
       near.is_refined = true;
+      if (!(near.at_start.distance > touching_within * tau)) return {Status::touching};
     }
     near_.push(near);
     if (near_.overflowed()) return {Status::over_capacity};
@@ -118,8 +140,6 @@ Opening ConvexToolRule::open(const RuleInput& input, HalfSpaceBuffer&) noexcept 
     }
     return {};
   }
-  // This form of the condition is true for NaN.
-  if (!(closest.distance > touching_within * tau)) return {Status::touching};
   // No triangle may come closer than the nearest one, and all of them retreat.
   const double lift = std::min(input.recovery, input.clearance - closest.distance);
   for (Near& near : near_) {
@@ -141,6 +161,7 @@ void ConvexToolRule::find_suspects(const RuleInput& input, const Vec3& trial) no
     const double slope = near.at_start.normal.dot(trial);
     suspects_.push({&near, left > 0.0 && slope < 0.0 ? left / -slope : 0.0});
   }
+  budget().spend((1 + near_.size() / 8) * work::scan + suspects_.size() * work::tool_suspect);
   std::sort(suspects_.begin(), suspects_.end(), [](const Suspect& x, const Suspect& y) {
     return x.earliest < y.earliest || (x.earliest == y.earliest && x.near < y.near);
   });
@@ -202,6 +223,9 @@ Judgement ConvexToolRule::judge(const RuleInput& input, const Vec3& trial,
   bool is_answered = false;
   for (const auto& [near, earliest] : suspects_) {
     if (first && earliest > first->time) break;
+    // If the budget is spent, some triangles are not examined, so there is no conclusion.
+    if (budget().is_spent()) return {Verdict::blocked, 0.0};
+    budget().spend((planes.size() / 64) * work::scan);
     const bool answered = has_plane(near->triangle, planes.view());
     const double level = answered ? near->floor : near->demand;
     if (keeps_clear(*near, input, trial, level, planes.view())) continue;

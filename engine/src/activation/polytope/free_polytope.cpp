@@ -143,13 +143,24 @@ Status FreePolytope::prepare(Query& query, std::span<const Hit> hits) const noex
 
 std::span<const FreePolytope::Turn> FreePolytope::by_distance(std::span<const Hit> hits) noexcept {
   const std::span<Turn> turns(turns_.data(), hits.size());
-  for (std::uint32_t i = 0; i < turns.size(); ++i) turns[i] = {hits[i].closest.distance, i};
+  for (std::uint32_t i = 0; i < turns.size(); ++i) {
+    const auto& corner = corner_order(mesh_->triangle(hits[i].triangle)).corner;
+    turns[i] = {hits[i].closest.distance, i, {}};
+    std::copy(corner.begin(), corner.end(), turns[i].corner.begin());
+  }
   std::sort(turns.begin(), turns.end(), [&](const Turn& a, const Turn& b) {
     if (a.distance != b.distance) return a.distance < b.distance;
-    const Triangle one = mesh_->triangle(hits[a.hit].triangle);
-    const Triangle other = mesh_->triangle(hits[b.hit].triangle);
-    if (comes_before(one, other)) return true;
-    return !comes_before(other, one) && a.hit < b.hit;
+    // As comes_before(), which would order the corners for each comparison.
+    const std::array<VertexId, 3>& mine = mesh_->corners(hits[a.hit].triangle);
+    const std::array<VertexId, 3>& theirs = mesh_->corners(hits[b.hit].triangle);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3& one = mesh_->vertex(mine[a.corner[c]]);
+      const Vec3& other = mesh_->vertex(theirs[b.corner[c]]);
+      for (int axis = 0; axis < 3; ++axis) {
+        if (one[axis] != other[axis]) return one[axis] < other[axis];
+      }
+    }
+    return a.hit < b.hit;
   });
   return turns;
 }

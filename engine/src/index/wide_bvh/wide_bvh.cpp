@@ -9,6 +9,7 @@
 
 #include "../../parallel.h"
 #include "keepout/error.h"
+#include "keepout/rounding_mode.h"
 #include "traversal/tree_traversal.h"
 #include "tree.h"
 
@@ -78,6 +79,7 @@ void WideBvh::require_same_triangles(const Mesh* moved, unsigned threads) const 
 }
 
 void WideBvh::refit(std::shared_ptr<const Mesh> moved, unsigned threads) {
+  require_rounding_to_nearest();
   threads = thread_count(threads);
   require_same_triangles(moved.get(), threads);
   const LeafFill fill(*moved, threads);

@@ -17,16 +17,22 @@ struct InstrumentConstraintSettings {
   /// The directory of saved indices; only wide_bvh is saved. Empty: indices are not saved.
   std::filesystem::path index_cache = {};
   std::string solver = "active_set";  // see solver_backends()
-  InstrumentOptions options = {};     // the same in all cycles
-  InstrumentCapacity capacity = {};   // of the memory that all cycles use
+  bool monitor = false;  // a monitor confirms each motion: see InstrumentConstraint::set_monitor
+  InstrumentOptions options = {};    // the same in all cycles
+  InstrumentCapacity capacity = {};  // of the memory that all cycles use
   /// Called while building, with two kinds of harmless warnings. Either the index could not be
   /// saved, or steps are slow because the mesh is so large relative to the margin. May be empty.
   std::function<void(const std::string&)> warn = {};
 };
 
 /// The table of the settings that are neither in InstrumentOptions nor in InstrumentCapacity.
-inline constexpr std::array instrument_settings{option<&InstrumentConstraintSettings::solver>(
-    "solver", "Solver of the step problem: see solver_backends().")};
+inline constexpr std::array instrument_settings{
+    option<&InstrumentConstraintSettings::solver>(
+        "solver", "Solver of the step problem: see solver_backends()."),
+    option<&InstrumentConstraintSettings::monitor>("monitor",
+                                                   "True if an independent monitor must confirm "
+                                                   "each motion. A motion that it does not confirm "
+                                                   "is not made: the status is unconfirmed.")};
 
 /// See table_of(const StepOptions&).
 constexpr const auto& table_of(const InstrumentConstraintSettings&) { return instrument_settings; }

@@ -34,6 +34,7 @@ struct MotionConstraintSettings {
   /// The treatment of a tip that starts inside, for a ball with the certified rule. (The
   /// constructor of MotionConstraint accepts any rule, so its default is Inside::taken_as_is.)
   Inside inside = Inside::escape;
+  bool monitor = false;    // a monitor confirms each motion: see MotionConstraint::set_monitor
   Capacity capacity = {};  // for the largest step
 };
 
@@ -48,7 +49,11 @@ inline constexpr std::array motion_settings{
     option<&MotionConstraintSettings::inside, inside_names>(
         "inside",
         "Treatment of a tip that starts on the forbidden side: it escapes, or its side is not "
-        "checked.")};
+        "checked."),
+    option<&MotionConstraintSettings::monitor>("monitor",
+                                               "True if an independent monitor must confirm each "
+                                               "motion. A motion that it does not confirm "
+                                               "is not made: the status is unconfirmed.")};
 
 /// See table_of(const StepOptions&).
 constexpr const auto& table_of(const MotionConstraintSettings&) { return motion_settings; }

@@ -4,7 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "keepout/oracle/triangle_tree.h"
+#include "keepout/monitor/triangle_tree.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 

@@ -8,9 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "keepout/oracle/hull.h"
-#include "keepout/oracle/judged_robot.h"
-#include "keepout/oracle/triangle_tree.h"
+#include "keepout/monitor/hull.h"
+#include "keepout/monitor/judged_robot.h"
+#include "keepout/monitor/triangle_tree.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "keepout/oracle/judged_robot.h"
+#include "keepout/monitor/judged_robot.h"
+#include "keepout/monitor/motion_check.h"
+#include "keepout/oracle/distance.h"
 
 namespace keepout::oracle {
 
@@ -16,7 +18,7 @@ struct JudgedGuide {
     axis,          // the direction `first.position` of a link; the region is a ball about a unit
                    // vector, whose radius is the chord of an angle
     remote_center  // the point of the segment from `first` to `second` that is nearest to the
-                   // region's origin
+                   // origin of the region, which is a ball
   };
   enum class Region : std::uint8_t { half_space, slab, tube, ball };
 
@@ -33,5 +35,16 @@ struct JudgedGuide {
 /// Returns the distance of the guided point from its region, computed in long double; below 0
 /// inside. `links`: those of the robot, in the frame of the region. [length, or chord]
 double excess(const JudgedGuide& guide, std::span<const LinkFrame> links);
+
+/// Decides if the excess of a guide is at most `most` on the whole motion of the joints, with
+/// nothing left out between poses.
+///
+/// The excess is a convex function of the guided point, and changes by no more than this point
+/// moves. So the bounds of MotionCheck hold for it, with its sign reversed. The guided point of a
+/// remote center moves along the segment too. Let its fraction of the segment change by v in a part
+/// of the motion of the length w. The point whose fraction changes linearly has the second
+/// derivative M + 2 v / w (P of the first end + P of the second). It is no nearer to the origin.
+MotionFinding check_guide(const JudgedGuide& guide, const JudgedRobot& robot, const Pose& base,
+                          const InstrumentMotion& motion, double most);
 
 }  // namespace keepout::oracle

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "keepout/monitor/triangle_tree.h"
 #include "keepout/oracle/inside_test.h"
-#include "keepout/oracle/triangle_tree.h"
 
 namespace keepout::oracle {
 

@@ -11,6 +11,7 @@
 #include "keepout/index/spatial_index.h"
 #include "keepout/mesh/mesh.h"
 #include "keepout/robot/instrument.h"
+#include "keepout/robot/instrument_monitor.h"
 #include "keepout/robot/instrument_options.h"
 #include "keepout/robot/instrument_step.h"
 #include "keepout/step/solver.h"
@@ -115,6 +116,12 @@ class InstrumentConstraint {
   /// more guides than Guide::most, for link 0 or a link that the chain does not have, or if
   /// rounding hides a band. Allocates: not for the control path.
   void set_guides(std::vector<Guide> guides);
+
+  /// Sets a monitor, which must confirm each motion from the next step on, or removes it (nullptr).
+  /// A step whose motion it does not confirm is `unconfirmed`. add_mesh() and follow() pass it each
+  /// new mesh; the meshes so far must be its own already. Guides and joint limits are not
+  /// monitored.
+  void set_monitor(std::unique_ptr<InstrumentMonitor> monitor);
 
   /// Follows anatomy that has deformed: continues with a mesh and its index. The index may be the
   /// present one after a refit, or one built elsewhere meanwhile. All bodies are classified again.

@@ -102,7 +102,7 @@ inline constexpr std::array instrument_capacity_options{
                                         "Capacity for the rows of a cycle, joint limits apart."),
     option<&InstrumentCapacity::work_units>("max_work_units", "",
                                             {0, static_cast<double>(Budget::unlimited)},
-                                            "Work budget of a cycle, in work units; 0: 65,536 on "
+                                            "Work budget of a cycle, in work units; 0: 90,112 on "
                                             "wide_bvh, 4,194,304 on other indices.")};
 
 /// See table_of(const StepOptions&).

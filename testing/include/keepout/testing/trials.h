@@ -27,9 +27,10 @@ inline bool all_trials() {
   return all;
 }
 
-/// Returns true in a short test under sanitizers, which takes each path only a few times.
+/// Returns true in a short test under sanitizers or without optimization, which takes each path only
+/// a few times.
 inline bool few_trials() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
   return !all_trials();
 #else
   return false;
@@ -37,8 +38,8 @@ inline bool few_trials() {
 }
 
 /// Returns how many of `all` random trials a test makes, at least one. A long test makes all of
-/// them, a short test a quarter, and a short test under sanitizers a tenth. A test scales its
-/// expected counts with the same function.
+/// them, a short test a quarter, and a short test under sanitizers or without optimization a tenth. A
+/// test scales its expected counts with the same function.
 template <class Count>
 Count trials(Count all) {
   if (all_trials()) return all;

@@ -76,33 +76,36 @@ class Division {
   }
 
   static void split(Centers from, Centers to, std::size_t middle, unsigned threads) {
-    using Coordinates = std::array<float, 3>;
-    Coordinates low = from.front().position;
-    Coordinates high = low;
-    std::vector<std::array<Coordinates, 2>> shared(threads > 1 ? threads : 0, {low, high});
-    share_equally(from.size(), threads, [&](std::size_t part, std::size_t begin, std::size_t end) {
-      Coordinates least = from.front().position;
-      Coordinates most = least;
-      for (const Center& center : from.subspan(begin, end - begin)) {
+    struct Extent {
+      std::array<float, 3> low, high;
+      void include(const std::array<float, 3>& least, const std::array<float, 3>& most) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          least[axis] = std::min(least[axis], center.position[axis]);
-          most[axis] = std::max(most[axis], center.position[axis]);
+          low[axis] = std::min(low[axis], least[axis]);
+          high[axis] = std::max(high[axis], most[axis]);
         }
       }
-      (shared.empty() ? low : shared[part][0]) = least;
-      (shared.empty() ? high : shared[part][1]) = most;
-    });
-    for (const auto& [least, most] : shared) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], least[axis]);
-        high[axis] = std::max(high[axis], most[axis]);
+    };
+    Extent all{from.front().position, from.front().position};
+    const auto include = [&](Extent extent, std::size_t begin, std::size_t end) {
+      for (const Center& center : from.subspan(begin, end - begin)) {
+        extent.include(center.position, center.position);
       }
+      return extent;
+    };
+    if (threads > 1) {
+      std::vector<Extent> shared(threads, all);
+      share_equally(from.size(), threads,
+                    [&](std::size_t part, std::size_t begin, std::size_t end) {
+                      shared[part] = include(all, begin, end);
+                    });
+      for (const Extent& extent : shared) all.include(extent.low, extent.high);
+    } else {
+      all = include(all, 0, from.size());
     }
+    const auto& [low, high] = all;
     std::size_t axis = 0;
     for (const std::size_t other : {1u, 2u}) {
-      if (high[other] - low[other] > high[axis] - low[axis]) {
-        axis = other;
-      }
+      if (high[other] - low[other] > high[axis] - low[axis]) axis = other;
     }
     split_at(from, to, middle, low[axis], high[axis], threads,
              [axis](const Center& center) { return center.position[axis]; });

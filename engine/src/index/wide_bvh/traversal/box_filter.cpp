@@ -26,27 +26,27 @@ HWY_INLINE Cylinders cylinders_at(FloatTag d, const CylinderBlock& block, const 
 /// Returns approximately the point of each cylinder that is nearest to p.
 HWY_INLINE Vector nearest(FloatTag d, const Cylinders& c, const Vector& p) {
   const Vector way = p - c.middle;
-  const V along = dot(c.axis, way);
-  const Vector across = way - along * c.axis;
-  const V far2 = hn::Max(dot(across, across), hn::Set(d, 1e-30f));
+  const V along = product(c.axis, way);
+  const Vector across = sum_of(hn::Neg(along), c.axis, way);
+  const V far2 = hn::Max(product(across, across), hn::Set(d, 1e-30f));
   const V inside =
       hn::Min(hn::Mul(c.radius, hn::ApproximateReciprocalSqrt(far2)), hn::Set(d, 1.0f));
   const V height = hn::Max(hn::Min(along, c.half_height), hn::Neg(c.half_height));
-  return c.middle + height * c.axis + inside * across;
+  return sum_of(inside, across, sum_of(height, c.axis, c.middle));
 }
 
 /// Returns the half extent of each cylinder along a unit vector, or a little more.
 HWY_INLINE V half_extent(const Cylinders& c, const Vector& n) {
-  const V along = dot(c.axis, n);
-  const Vector across = n - along * c.axis;
-  return hn::Add(hn::Mul(c.half_height, hn::Abs(along)),
-                 hn::Mul(c.radius, hn::Sqrt(dot(across, across))));
+  const V along = product(c.axis, n);
+  const Vector across = sum_of(hn::Neg(along), c.axis, n);
+  return hn::MulAdd(c.half_height, hn::Abs(along),
+                    hn::Mul(c.radius, hn::Sqrt(product(across, across))));
 }
 
 /// Returns the clearance that a unit vector proves.
 HWY_INLINE V clear_along(FloatTag d, const Cylinders& c, const Vector& n,
                          const FloatLevels& levels) {
-  const V support = hn::Add(dot(n, c.middle), half_extent(c, n));
+  const V support = hn::Add(product(n, c.middle), half_extent(c, n));
   // No point of the cylinder is farther from the tip.
   const V far = hn::Add(norm1(c.middle), hn::Add(c.half_height, c.radius));
   return clear_of(d, support, far, levels);
@@ -98,9 +98,9 @@ void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float
                     const FloatLevels& levels, BoxEntries& entries) {
   const FloatTag d;
   const Vector z = all(d, motion);
-  const V per_length2 = hn::Div(hn::Set(d, 1.0f), hn::Max(dot(z, z), hn::Set(d, 1e-30f)));
+  const V per_length2 = hn::Div(hn::Set(d, 1.0f), hn::Max(product(z, z), hn::Set(d, 1e-30f)));
   const auto nearest_of_motion = [&](const Vector& to) {
-    const V along = hn::Mul(dot(to, z), per_length2);
+    const V along = hn::Mul(product(to, z), per_length2);
     return hn::Min(hn::Max(along, hn::Zero(d)), hn::Set(d, 1.0f)) * z;
   };
   std::uint32_t clear = 0;
@@ -111,7 +111,7 @@ void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float
     // The direction to about the point where the motion is nearest to the cylinder.
     const Vector near = nearest(d, its, nearest_of_motion(its.middle));
     const Proof proof = proof_along(d, its, nearest_of_motion(near) - near, levels);
-    const V along = dot(proof.n, z);
+    const V along = product(proof.n, z);
     V time = hn::Max(hn::Load(d, entries.time + lane), entry(d, proof, along));
     M is_clear = holds(d, proof, along);
     // A Newton step from the time so far, up to which the motion is clear.
@@ -119,7 +119,7 @@ void EnterCylinders(const CylinderBlock& block, const FloatTip& tip, const float
       const V at = hn::Min(time, hn::Set(d, 1.0f));
       const Vector there = at * z;
       const Proof later = proof_along(d, its, there - nearest(d, its, there), levels);
-      const V along_later = dot(later.n, z);
+      const V along_later = product(later.n, z);
       is_clear = hn::Or(is_clear, stays(d, later, along_later, at));
       time = hn::Max(time, entry(d, later, along_later));
       is_clear = hn::Or(is_clear, hn::Gt(time, hn::Set(d, 1.0f)));

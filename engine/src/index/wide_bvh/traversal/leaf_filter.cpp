@@ -29,12 +29,12 @@ HWY_INLINE Vector nearest(FloatTag d, const TriangleLanes& t, const Vector& p) {
   const Vector ap = p - t.a;
   const Vector bp = p - t.b;
   const Vector cp = p - t.c;
-  const V d1 = dot(ab, ap), d2 = dot(ac, ap);
-  const V d3 = dot(ab, bp), d4 = dot(ac, bp);
-  const V d5 = dot(ab, cp), d6 = dot(ac, cp);
-  const V va = hn::Sub(hn::Mul(d3, d6), hn::Mul(d5, d4));
-  const V vb = hn::Sub(hn::Mul(d5, d2), hn::Mul(d1, d6));
-  const V vc = hn::Sub(hn::Mul(d1, d4), hn::Mul(d3, d2));
+  const V d1 = product(ab, ap), d2 = product(ac, ap);
+  const V d3 = product(ab, bp), d4 = product(ac, bp);
+  const V d5 = product(ab, cp), d6 = product(ac, cp);
+  const V va = hn::MulSub(d3, d6, hn::Mul(d5, d4));
+  const V vb = hn::MulSub(d5, d2, hn::Mul(d1, d6));
+  const V vc = hn::MulSub(d1, d4, hn::Mul(d3, d2));
   const V along_bc = hn::Sub(d4, d3);
   const V along_cb = hn::Sub(d5, d6);
 
@@ -56,13 +56,13 @@ HWY_INLINE Vector nearest(FloatTag d, const TriangleLanes& t, const Vector& p) {
   take(hn::And(hn::Ge(d3, zero), hn::Le(d4, d3)), one, zero, one);
   take(hn::And(hn::Le(d1, zero), hn::Le(d2, zero)), zero, zero, one);
   const V share = hn::Div(one, whole);
-  return t.a + (hn::Mul(v, share) * ab + hn::Mul(w, share) * ac);
+  return sum_of(hn::Mul(v, share), ab, sum_of(hn::Mul(w, share), ac, t.a));
 }
 
 /// Returns the clearance that a unit vector proves.
 HWY_INLINE V clear_along(FloatTag d, const TriangleLanes& t, const Vector& n,
                          const FloatLevels& levels) {
-  const V support = hn::Max(dot(n, t.a), hn::Max(dot(n, t.b), dot(n, t.c)));
+  const V support = hn::Max(product(n, t.a), hn::Max(product(n, t.b), product(n, t.c)));
   const V far = hn::Max(norm1(t.a), hn::Max(norm1(t.b), norm1(t.c)));
   return clear_of(d, support, far, levels);
 }
@@ -118,12 +118,12 @@ std::uint32_t FindSuspects(const LeafFilter& filter, const float* motion, float 
   suspects.mask = 0;
   for (std::size_t lane = 0; lane < LeafBlock::lanes; lane += hn::Lanes(d)) {
     const Proof first = load(d, filter.at_tip, lane);
-    const V along_first = dot(first.n, z);
+    const V along_first = product(first.n, z);
     M clear = holds(d, first, along_first);
     V time = entry(d, first, along_first);
     if (filter.has_last) {
       const Proof last = load(d, filter.last, lane);
-      const V along = dot(last.n, z);
+      const V along = product(last.n, z);
       time = hn::Max(time, entry(d, last, along));
       clear = hn::Or(hn::Or(clear, holds(d, last, along)), hn::Le(leaving(d, last, along), time));
     }
@@ -161,7 +161,7 @@ void SharpenSuspects(const LeafBlock& leaf, const FloatTip& tip, const float* mo
       // rest.
       const V at = hn::Min(hn::Max(time, zero), until);
       const Proof proof = proof_at(d, t, at * z, levels);
-      const V along = dot(proof.n, z);
+      const V along = product(proof.n, z);
       time = hn::Max(time, entry(d, proof, along));
       clear = hn::Or(clear, hn::Or(stays(d, proof, along, at), hn::Gt(time, until)));
       last = select(asked, proof, last);

@@ -26,6 +26,17 @@ HWY_INLINE M lanes_of(FloatTag d, std::uint32_t mask, std::size_t lane) {
   return hn::RebindMask(d, hn::TestBit(hn::Set(du, mask), bit));
 }
 
+/// Returns a . b. Rounds once a term where the processor can, so the digits depend on it. Floats
+/// only prove clearance, so steps do not.
+HWY_INLINE V product(const Vector& a, const Vector& b) {
+  return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
+}
+
+/// Returns s a + b, rounded like product().
+HWY_INLINE Vector sum_of(V s, const Vector& a, const Vector& b) {
+  return {hn::MulAdd(s, a.x, b.x), hn::MulAdd(s, a.y, b.y), hn::MulAdd(s, a.z, b.z)};
+}
+
 /// Returns points of a block, relative to the tip.
 template <std::size_t Lanes>
 HWY_INLINE Vector relative(FloatTag d, const float (&from)[3][Lanes], std::size_t lane,
@@ -55,7 +66,7 @@ HWY_INLINE M has_direction(FloatTag d, V length2) {
 /// Returns the clearance that a unit vector proves for shapes with this support along it. `far`: no
 /// point of a shape is farther from the tip.
 HWY_INLINE V clear_of(FloatTag d, V support, V far, const FloatLevels& levels) {
-  const V rounding = hn::Add(hn::Mul(far, hn::Set(d, levels.relative)), hn::Set(d, levels.slack));
+  const V rounding = hn::MulAdd(far, hn::Set(d, levels.relative), hn::Set(d, levels.slack));
   return hn::Sub(hn::Sub(hn::Neg(support), hn::Set(d, levels.level)), rounding);
 }
 
@@ -64,7 +75,7 @@ HWY_INLINE V clear_of(FloatTag d, V support, V far, const FloatLevels& levels) {
 template <class Shapes>
 HWY_INLINE Proof proof_along(FloatTag d, const Shapes& shapes, const Vector& way,
                              const FloatLevels& levels) {
-  const V length2 = dot(way, way);
+  const V length2 = product(way, way);
   const Vector n = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(length2)) * way;
   return proof_if(d, has_direction(d, length2), n, clear_along(d, shapes, n, levels));
 }
@@ -104,7 +115,7 @@ HWY_INLINE V entry(FloatTag d, const Proof& proof, V along) {
 /// Returns true if the proof holds from a time of the motion on. `along`: n . z.
 HWY_INLINE M stays(FloatTag d, const Proof& proof, V along, V time) {
   const V zero = hn::Zero(d);
-  return hn::And(hn::Ge(along, zero), hn::Ge(hn::Add(proof.clear, hn::Mul(time, along)), zero));
+  return hn::And(hn::Ge(along, zero), hn::Ge(hn::MulAdd(time, along, proof.clear), zero));
 }
 
 /// Returns the time from which on a motion that moves away along the normal is surely beyond the

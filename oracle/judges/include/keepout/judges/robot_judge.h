@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "keepout/fixtures/random.h"
 #include "keepout/geometry/twist.h"
+#include "keepout/monitor/motion_check.h"
 #include "keepout/oracle/instrument_oracle.h"
 #include "keepout/oracle/judged_guide.h"
 #include "keepout/robot/instrument_options.h"
@@ -18,15 +18,20 @@ namespace keepout::oracle {
 
 /// The verdict on one cycle of an instrument.
 struct RobotVerdict {
-  /// The smallest clearance of all bodies at all poses; infinite beyond the margin. [length]
+  /// The smallest clearance of all bodies at the poses that were measured: start and end, and many
+  /// more if a body comes closer than promised. Infinite beyond the margin. [length]
   double least = std::numeric_limits<double>::infinity();
-  /// The smallest value of a clearance minus the promised clearance of its pair. [length]
+  /// The smallest value of a clearance minus the promised clearance of its pair, at these poses.
+  /// [length]
   double beyond = std::numeric_limits<double>::infinity();
   /// The smallest value of a guided point's depth in its region minus the promised depth, divided
-  /// by the tolerance of the guide.
+  /// by the tolerance of the guide, at these poses.
   double guide_room = std::numeric_limits<double>::infinity();
   bool is_below = false;       // a body came closer than promised, beyond rounding
   bool is_guide_left = false;  // a guide was left by more than promised, beyond rounding
+  /// Neither proved nor refuted on the whole motion: a clearance or a depth differs from the
+  /// promised one by less than rounding.
+  bool is_undecided = false;
   bool limits_broken = false;  // a joint left its limits, or moved farther than a cycle allows
 };
 
@@ -51,17 +56,14 @@ struct JudgedScene {
 /// step reported a degraded clearance. Guides are judged in the same way, with the depth in their
 /// region as clearance. Kinematics, distances and regions are those of the oracle.
 ///
-/// The judge samples a cycle at its start and end, and at a random pose in each eighth of it. Near
-/// the margin, it samples again around the worst pose. Two neighboring samples are up to a quarter
-/// of the motion apart. So the judge can miss a dip between two samples (docs/joint-space-step.md,
-/// "How it is tested"). Over a flat surface the dip is at most M / 128, with M the
-/// second-derivative bound. Over an edge or a corner it is at most half of the path between the
-/// samples. The samples are random, so the judge misses such a dip in some cycles only.
+/// The verdict covers the whole true motion, with nothing left out between poses: see MotionCheck
+/// and check_guide(). If a promise is broken, the judge measures many poses around the worst one,
+/// to report by how much.
 class RobotJudge {
  public:
-  /// `limits`: the chain that has the joint limits. It and `random` must outlive the judge.
-  RobotJudge(JudgedScene scene, const Chain& limits, Random& random,
-             std::span<const double> positions, const InstrumentOptions& options, double tolerance);
+  /// `limits`: the chain that has the joint limits. It must outlive the judge.
+  RobotJudge(JudgedScene scene, const Chain& limits, std::span<const double> positions,
+             const InstrumentOptions& options, double tolerance);
 
   /// Sets the options from the next cycle on.
   void follow(const InstrumentOptions& options);
@@ -79,18 +81,19 @@ class RobotJudge {
 
   /// Returns true if the joints may move to `next` in the coming cycle. No body may come closer
   /// than the margin minus a tenth of the band, and no guide may be left by more than a tenth of
-  /// its band. A body or a guide that starts beyond this must not get worse. Samples nine poses.
+  /// its band. A body or a guide that starts beyond this must not get worse. Samples nine poses,
+  /// and proves nothing between them: for searches that look for better motions.
   bool would_allow(std::span<const double> next);
 
-  /// Returns the smallest clearance of each body at the poses of the last cycle; infinite beyond
-  /// the margin. [length]
+  /// Returns the smallest clearance of each body at the measured poses of the last cycle; infinite
+  /// beyond the margin. [length]
   std::span<const double> least() const noexcept { return least_; }
 
-  /// Returns the oracle of the instrument beside the first mesh. Valid until the next call.
-  const InstrumentOracle& oracle() const noexcept { return meshes_.front().oracle; }
+  /// Returns the segment from a body's first point to its last one after the last cycle. [length]
+  Segment axis(std::size_t body) const;
 
   /// Returns the pose of a mesh after the last cycle.
-  const Pose& pose(std::size_t mesh) const noexcept { return meshes_[mesh].pose; }
+  const Pose& pose(std::size_t mesh) const noexcept { return motions_[mesh].pose; }
 
   /// Returns true if no body is closer than margin - band.
   bool is_recovered() const noexcept;
@@ -106,25 +109,27 @@ class RobotJudge {
   struct Mesh {
     InstrumentOracle oracle;
     double margin;  // of its own, or 0 [length]
-    Pose pose;
     Twist velocity = {};
   };
 
   double margin(std::size_t mesh) const noexcept;
   double tolerance(std::size_t kept) const noexcept;
-  Pose pose_at(const Mesh& mesh, double share) const;
   void measure(std::span<const double> next, double share);
+  void measure_guides(std::span<const double> positions);
   double measure_and_note(std::span<const double> next, double share);
   void open();
-  void sample(std::span<const double> next);
+  MotionFinding prove(std::span<const double> next);
+  void sample(std::span<const double> next, double at);
+  void advance(std::span<const double> next);
   RobotVerdict judge_promised(std::span<const double> next);
 
   std::size_t bodies_;
   Pose base_;
   std::vector<Mesh> meshes_;
+  std::vector<MeshMotion> motions_;  // of the meshes in this cycle
   std::vector<JudgedGuide> guides_;
+  MotionCheck check_;
   const Chain* limits_;
-  Random* random_;
   std::vector<double> positions_;
   std::vector<double> between_;
   InstrumentOptions options_;
@@ -133,6 +138,7 @@ class RobotJudge {
   bool is_placed_anew_ = false;
   std::vector<Kept> kept_;  // the pairs in the order of InstrumentConstraint, then the guides
   std::vector<double> distances_;
+  std::vector<double> due_;     // of the pairs, less rounding [length]
   std::vector<double> levels_;  // the clearance fractions that are promised to pairs
   std::vector<double> least_;   // of the last cycle [length]
 };

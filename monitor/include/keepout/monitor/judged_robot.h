@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "keepout/geometry/pose.h"
-#include "keepout/oracle/distance.h"
+#include "keepout/monitor/distance.h"
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 
 /// A row of a Denavit-Hartenberg table in Craig's convention: a rotation about x, a displacement
 /// along x, a rotation about z, a displacement along z. The joint turns about z or slides along z.
@@ -67,8 +67,12 @@ struct LinkFrame {
 /// link 0. Precondition: one position for each row [rad or length].
 std::vector<LinkFrame> place(const JudgedRobot& robot, const Pose& base,
                              std::span<const double> positions);
+/// Like place(robot, base, positions), but writes to `links`, one more than rows. Does not
+/// allocate.
+void place(const JudgedRobot& robot, const Pose& base, std::span<const double> positions,
+           std::span<LinkFrame> links) noexcept;
 
 /// Returns the segment from a body's first point to its last one.
 Segment axis_of(const JudgedBody& body, std::span<const LinkFrame> links);
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

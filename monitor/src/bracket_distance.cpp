@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "keepout/oracle/distance.h"
+#include "keepout/monitor/distance.h"
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 // All positions are relative to the segment's start, so an offset of the world costs one rounding
@@ -147,16 +147,17 @@ double separation(const Scene& scene, const Vec3& normal) noexcept {
 
 }  // namespace
 
-Bracket bracket_distance(const Segment& segment, const Triangle& triangle) noexcept {
+Gap gap_between(const Segment& segment, const Triangle& triangle) noexcept {
   Scene scene{{triangle[0] - segment.from, triangle[1] - segment.from, triangle[2] - segment.from},
               segment.to - segment.from,
               0.0};
   scene.squared_way = scene.way.squaredNorm();
   const double size = std::max({one_norm(scene.corners[0]), one_norm(scene.corners[1]),
                                 one_norm(scene.corners[2]), one_norm(scene.way)});
-  if (size == 0.0) return {0.0, 0.0, 0.0};  // doubles differ by 0 only if they are equal
+  if (size == 0.0)
+    return {{0.0, 0.0, 0.0}, Vec3::Zero()};  // doubles differ by 0 only if they are equal
   if (!(size >= least_size && size <= largest_size)) {
-    return {0.0, size, std::numeric_limits<double>::infinity()};
+    return {{0.0, size, std::numeric_limits<double>::infinity()}, Vec3::Zero()};
   }
   Pair best;
   for (int i = 0; i < 3; ++i) best.keep_nearer(scene.corner_to_way(i));
@@ -169,14 +170,11 @@ Bracket bracket_distance(const Segment& segment, const Triangle& triangle) noexc
   const double error = rounding * size;
   const double low = std::max(0.0, separation(scene, best.normal) - error);
   const double estimate = std::max(low, offset.norm());
-  return {low, estimate, estimate + error};
+  return {{low, estimate, estimate + error}, best.normal};
 }
 
-Bracket narrow_distance(const Segment& segment, const Triangle& triangle) {
-  const Bracket bracket = bracket_distance(segment, triangle);
-  if (bracket.narrow()) return bracket;
-  const double distance = exact_distance(segment, triangle, 0.0).distance;
-  return {distance * (1.0 - 0x1p-50), distance, distance * (1.0 + 0x1p-50)};
+Bracket bracket_distance(const Segment& segment, const Triangle& triangle) noexcept {
+  return gap_between(segment, triangle).distance;
 }
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

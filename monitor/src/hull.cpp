@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/oracle/hull.h"
+#include "keepout/monitor/hull.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 // A fraction of the cube of the hull's size: a smaller volume is treated as flat.
@@ -15,12 +15,13 @@ constexpr double flat = 1e-10;
 
 double cubed(double x) noexcept { return x * x * x; }
 
-double distance_of(const Vec3& point, const Vec3& from, const Vec3& to) noexcept {
+/// Returns the vector from a point to the nearest point of a segment.
+Vec3 way_to(const Vec3& from, const Vec3& to, const Vec3& point) noexcept {
   const Vec3 way = to - from;
   const Vec3 offset = point - from;
   const double squared = way.squaredNorm();
   const double along = squared > 0.0 ? std::clamp(offset.dot(way) / squared, 0.0, 1.0) : 0.0;
-  return (offset - along * way).norm();
+  return along * way - offset;
 }
 
 /// Returns the least and the largest signed volume, times six, of the tetrahedra of points and a
@@ -76,13 +77,18 @@ void Hull::move_to(std::span<const Vec3> points) {
 }
 
 double Hull::least_distance(const Vec3& point) const noexcept {
-  if (points_.size() < 3) return distance_of(point, points_.front(), points_.back());
+  if (points_.size() < 3) return way_to(points_.front(), points_.back(), point).norm();
   const Vec3 towards = center_ - point;
   const double length = towards.norm();
   if (!(length > 0.0)) return 0.0;
   double least = std::numeric_limits<double>::infinity();
   for (const Vec3& p : points_) least = std::min(least, towards.dot(p - point) / length);
   return std::max({0.0, least, length - radius_});
+}
+
+Vec3 Hull::way_from(const Vec3& point) const noexcept {
+  if (points_.size() < 3) return way_to(points_.front(), points_.back(), point);
+  return center_ - point;
 }
 
 bool Hull::contains(const Vec3& point) const noexcept {
@@ -107,8 +113,8 @@ Vec3 Hull::direction_from(const Triangle& triangle) const noexcept {
   Vec3 way = points_[0] - triangle[0];
   for (int i = 0; i < steps; ++i) {
     const auto lower = [&](const Vec3& a, const Vec3& b) { return way.dot(a) < way.dot(b); };
-    const Vec3 corner =
-        *std::ranges::min_element(points_, lower) - *std::ranges::max_element(triangle, lower);
+    const Vec3 corner = *std::min_element(points_.begin(), points_.end(), lower) -
+                        *std::max_element(triangle.begin(), triangle.end(), lower);
     const Vec3 step = corner - way;
     const double gain = -way.dot(step);
     if (!(gain > 1e-12 * way.squaredNorm())) break;
@@ -117,7 +123,10 @@ Vec3 Hull::direction_from(const Triangle& triangle) const noexcept {
   return way;
 }
 
-Bracket Hull::distance(const Triangle& triangle, double enough) const {
+/// Returns the least of the brackets that `between` returns for a segment, a triangle, and whether
+/// the segment is one of the hull.
+template <class Between>
+Bracket Hull::least(const Triangle& triangle, double enough, const Between& between) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Vec3 along = direction_from(triangle);
   const double length = along.norm();
@@ -136,27 +145,27 @@ Bracket Hull::distance(const Triangle& triangle, double enough) const {
     heights[i] = along.dot(points_[i] - center_) - rounding;
     lowest = std::min(lowest, heights[i]);
   }
-  const double highest = std::ranges::max(of_corners);
+  const double highest = *std::max_element(of_corners.begin(), of_corners.end());
   if (lowest - highest > enough) return {lowest - highest, length, length + rounding};
 
   double high = length + rounding;
   Bracket least{infinity, infinity, infinity};
-  const auto take = [&](const Segment& segment, const Triangle& other) {
-    const Bracket of = narrow_distance(segment, other);
+  const auto take = [&](const Segment& segment, const Triangle& other, bool is_of_hull) {
+    const Bracket of = between(segment, other, is_of_hull);
     least = {std::min(least.low, of.low), std::min(least.estimate, of.estimate),
              std::min(least.high, of.high)};
     high = std::min(high, of.high);
   };
   for (const auto& [i, j] : edges_) {
     if (std::min(heights[i], heights[j]) - highest > high) continue;
-    take({points_[i], points_[j]}, triangle);
+    take({points_[i], points_[j]}, triangle, true);
     if (high == 0.0) return least;
   }
   for (const auto& [i, j, k] : faces_) {
     const double low = std::min({heights[i], heights[j], heights[k]});
     for (std::size_t e = 0; e < 3; ++e) {
       if (low - std::max(of_corners[e], of_corners[(e + 1) % 3]) > high) continue;
-      take({triangle[e], triangle[(e + 1) % 3]}, {points_[i], points_[j], points_[k]});
+      take({triangle[e], triangle[(e + 1) % 3]}, {points_[i], points_[j], points_[k]}, false);
       if (high == 0.0) return least;
     }
   }
@@ -164,4 +173,25 @@ Bracket Hull::distance(const Triangle& triangle, double enough) const {
   return least;
 }
 
-}  // namespace keepout::oracle
+Bracket Hull::distance(const Triangle& triangle, BracketFunction between, double enough) const {
+  return least(triangle, enough, [between](const Segment& segment, const Triangle& other, bool) {
+    return between(segment, other);
+  });
+}
+
+Gap Hull::gap(const Triangle& triangle) const noexcept {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (points_.size() < 3) return gap_between({points_.front(), points_.back()}, triangle);
+  Gap nearest{{infinity, infinity, infinity}, Vec3::Zero()};
+  const auto between = [&nearest](const Segment& segment, const Triangle& other, bool is_of_hull) {
+    const Gap gap = gap_between(segment, other);
+    if (gap.distance.estimate < nearest.distance.estimate) {
+      nearest = {gap.distance, is_of_hull ? gap.direction : Vec3(-gap.direction)};
+    }
+    return gap.distance;
+  };
+  nearest.distance = least(triangle, infinity, between);
+  return nearest;
+}
+
+}  // namespace keepout::monitor

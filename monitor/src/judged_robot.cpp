@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/oracle/judged_robot.h"
+#include "keepout/monitor/judged_robot.h"
 
 #include <cmath>
 #include <cstddef>
 #include <numbers>
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 using Real = LinkFrame::Real;
@@ -16,9 +16,11 @@ void screw(LinkFrame& frame, int axis, Real angle, Real way) {
   if (angle == 0) return;
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
+  const Real cosine = std::cos(angle);
+  const Real sine = std::sin(angle);
   const Eigen::Matrix<Real, 3, 1> before = frame.axes.col(u);
-  frame.axes.col(u) = std::cos(angle) * before + std::sin(angle) * frame.axes.col(v);
-  frame.axes.col(v) = std::cos(angle) * frame.axes.col(v) - std::sin(angle) * before;
+  frame.axes.col(u) = cosine * before + sine * frame.axes.col(v);
+  frame.axes.col(v) = cosine * frame.axes.col(v) - sine * before;
 }
 
 /// Rotates a frame about an axis, which is given in this frame, and moves it along that axis.
@@ -26,6 +28,7 @@ void screw(LinkFrame& frame, int axis, Real angle, Real way) {
 void screw(LinkFrame& frame, const Vec3& axis, Real angle, Real way) {
   const Eigen::Matrix<Real, 3, 1> unit = axis.cast<Real>();
   frame.origin += way * (frame.axes * unit);
+  if (angle == 0) return;
   Eigen::Matrix<Real, 3, 3> across;
   across << 0, -unit.z(), unit.y(), unit.z(), 0, -unit.x(), -unit.y(), unit.x(), 0;
   const Eigen::Matrix<Real, 3, 3> turn = Eigen::Matrix<Real, 3, 3>::Identity() +
@@ -38,14 +41,20 @@ void screw(LinkFrame& frame, const Vec3& axis, Real angle, Real way) {
 
 std::vector<LinkFrame> place(const JudgedRobot& robot, const Pose& base,
                              std::span<const double> positions) {
+  std::vector<LinkFrame> links(robot.table.size() + 1);
+  place(robot, base, positions, links);
+  return links;
+}
+
+void place(const JudgedRobot& robot, const Pose& base, std::span<const double> positions,
+           std::span<LinkFrame> links) noexcept {
   constexpr Real right_angle = std::numbers::pi_v<Real> / 2;
-  std::vector<LinkFrame> links;
-  links.reserve(robot.table.size() + 1);
-  links.push_back({base.rotation.cast<Real>(), base.position.cast<Real>()});
+  links[0] = {base.rotation.cast<Real>(), base.position.cast<Real>()};
   for (std::size_t k = 0; k < robot.table.size(); ++k) {
     const TableRow& row = robot.table[k];
     const Real q = positions[k];
-    LinkFrame link = links.back();
+    LinkFrame& link = links[k + 1];
+    link = links[k];
     link.origin += link.axes * row.before.position.cast<Real>();
     link.axes = (link.axes * row.before.rotation.cast<Real>()).eval();
     screw(link, 0, row.alpha_quarters * right_angle, row.a);
@@ -56,9 +65,7 @@ std::vector<LinkFrame> place(const JudgedRobot& robot, const Pose& base,
       screw(link, 2, row.theta_quarters * right_angle, row.d);
       screw(link, row.axis, row.slides ? 0 : q, row.slides ? q : 0);
     }
-    links.push_back(link);
   }
-  return links;
 }
 
 Segment axis_of(const JudgedBody& body, std::span<const LinkFrame> links) {
@@ -95,4 +102,4 @@ JudgedRobot judged_seven_joint_arm() {
                      {{shaft_end, {7, Vec3(0.0, 0.0, 308.0)}}, 2.0}}};
 }
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

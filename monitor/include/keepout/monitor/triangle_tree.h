@@ -3,14 +3,15 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
 #include "keepout/ids.h"
 #include "keepout/mesh/mesh.h"
-#include "keepout/oracle/distance.h"
+#include "keepout/monitor/distance.h"
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 
 /// An axis-aligned box. [length]
 struct Bounds {
@@ -46,6 +47,13 @@ inline Bounds inflated(const Bounds& box, double reach) noexcept {
   return {low - (low.abs() * 0x1p-52 + 1e-300), high + (high.abs() * 0x1p-52 + 1e-300)};
 }
 
+/// Bounds of a search: the number of triangles, and the work that is left, one unit for each node
+/// (null: unlimited).
+struct SearchLimit {
+  std::size_t triangles = std::numeric_limits<std::size_t>::max();
+  std::uint64_t* work = nullptr;
+};
+
 /// Finds the triangles in a region. It is a binary tree of boxes, split at the median center along
 /// the longest side. Its depth is log2 n and its size 2 n for any triangles: huge, equal or in one
 /// place. It is immutable, so any number of threads may use it.
@@ -69,15 +77,17 @@ class TriangleTree {
   void collect_along(const Segment& segment, std::vector<TriangleId>& out) const;
 
   /// Appends each triangle within `reach` [length, >= 0] of the segment once, and perhaps others.
-  void collect_within(double reach, const Segment& segment, std::vector<TriangleId>& out) const;
+  /// Returns false if a limit ended the search.
+  bool collect_within(double reach, const Segment& segment, std::vector<TriangleId>& out,
+                      const SearchLimit& limit = {}) const;
 
   struct Nearest {
     TriangleId triangle;
     Bracket distance;  // low holds for all triangles; estimate and high for `triangle`
   };
-  /// Returns the triangle whose estimated distance from the point is least, with a narrow bracket.
-  /// The distance is 0 if and only if the point is on the mesh.
-  Nearest nearest(const Vec3& point) const;
+  /// Returns the triangle whose estimated distance from the point is least, with a bracket as
+  /// narrow as those of `between`.
+  Nearest nearest(const Vec3& point, BracketFunction between) const;
 
  private:
   struct Node {
@@ -93,12 +103,14 @@ class TriangleTree {
 
   std::uint32_t build(std::vector<Item>& items, std::size_t first, std::size_t count);
   template <class Test>
-  void collect_where(const Test& test, std::vector<TriangleId>& out) const;
-  void visit_nearest(std::uint32_t node, const Segment& point, Nearest& best, double& low) const;
+  bool collect_where(const Test& test, std::vector<TriangleId>& out,
+                     const SearchLimit& limit) const;
+  void visit_nearest(std::uint32_t node, const Segment& point, BracketFunction between,
+                     Nearest& best, double& low) const;
 
   std::shared_ptr<const Mesh> mesh_;
   std::vector<Node> nodes_;
   std::vector<TriangleId> order_;
 };
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor

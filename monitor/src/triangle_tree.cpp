@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "keepout/oracle/triangle_tree.h"
+#include "keepout/monitor/triangle_tree.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
 
-namespace keepout::oracle {
+namespace keepout::monitor {
 namespace {
 
 constexpr std::size_t leaf_size = 4;
@@ -109,14 +109,20 @@ std::uint32_t TriangleTree::build(std::vector<Item>& items, std::size_t first, s
 }
 
 template <class Test>
-void TriangleTree::collect_where(const Test& test, std::vector<TriangleId>& out) const {
+bool TriangleTree::collect_where(const Test& test, std::vector<TriangleId>& out,
+                                 const SearchLimit& limit) const {
   std::array<std::uint32_t, largest_depth> waiting{};
   std::size_t size = 0;
   waiting[size++] = 0;
   while (size > 0) {
     const std::uint32_t index = waiting[--size];
     const Node& node = nodes_[index];
+    if (limit.work != nullptr) {
+      if (*limit.work == 0) return false;
+      --*limit.work;
+    }
     if (!test(node.bounds)) continue;
+    if (node.count > limit.triangles - out.size()) return false;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       if (test(bounds_of(mesh_->triangle(order_[i])))) out.push_back(order_[i]);
     }
@@ -124,32 +130,33 @@ void TriangleTree::collect_where(const Test& test, std::vector<TriangleId>& out)
     waiting[size++] = node.next;
     waiting[size++] = index + 1;
   }
+  return true;
 }
 
 void TriangleTree::collect(const Bounds& box, std::vector<TriangleId>& out) const {
-  collect_where([&box](const Bounds& bounds) { return bounds.overlaps(box); }, out);
+  collect_where([&box](const Bounds& bounds) { return bounds.overlaps(box); }, out, {});
 }
 
 void TriangleTree::collect_along(const Segment& segment, std::vector<TriangleId>& out) const {
-  collect_where(TouchedBy(segment), out);
+  collect_where(TouchedBy(segment), out, {});
 }
 
-void TriangleTree::collect_within(double reach, const Segment& segment,
-                                  std::vector<TriangleId>& out) const {
-  collect_where(WithinOf(reach, segment), out);
+bool TriangleTree::collect_within(double reach, const Segment& segment,
+                                  std::vector<TriangleId>& out, const SearchLimit& limit) const {
+  return collect_where(WithinOf(reach, segment), out, limit);
 }
 
-TriangleTree::Nearest TriangleTree::nearest(const Vec3& point) const {
+TriangleTree::Nearest TriangleTree::nearest(const Vec3& point, BracketFunction between) const {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Nearest best{no_triangle, {infinity, infinity, infinity}};
   double low = infinity;
-  visit_nearest(0, {point, point}, best, low);
+  visit_nearest(0, {point, point}, between, best, low);
   best.distance.low = low;
   return best;
 }
 
-void TriangleTree::visit_nearest(std::uint32_t index, const Segment& point, Nearest& best,
-                                 double& low) const {
+void TriangleTree::visit_nearest(std::uint32_t index, const Segment& point, BracketFunction between,
+                                 Nearest& best, double& low) const {
   // Skipped triangles are farther than an examined one, and so farther than `low`.
   const auto may_be_nearer = [&best](double distance) {
     return distance * (1.0 - 0x1p-48) <= best.distance.high;
@@ -158,7 +165,7 @@ void TriangleTree::visit_nearest(std::uint32_t index, const Segment& point, Near
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
     const Triangle triangle = mesh_->triangle(order_[i]);
     if (!may_be_nearer(distance_from(bounds_of(triangle), point.from))) continue;
-    const Bracket distance = narrow_distance(point, triangle);
+    const Bracket distance = between(point, triangle);
     low = std::min(low, distance.low);
     if (distance.estimate < best.distance.estimate || best.triangle == no_triangle) {
       best = {order_[i], distance};
@@ -173,8 +180,8 @@ void TriangleTree::visit_nearest(std::uint32_t index, const Segment& point, Near
     std::swap(distances[0], distances[1]);
   }
   for (int i = 0; i < 2; ++i) {
-    if (may_be_nearer(distances[i])) visit_nearest(children[i], point, best, low);
+    if (may_be_nearer(distances[i])) visit_nearest(children[i], point, between, best, low);
   }
 }
 
-}  // namespace keepout::oracle
+}  // namespace keepout::monitor
