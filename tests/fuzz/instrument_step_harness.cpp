@@ -185,7 +185,7 @@ class InstrumentCase {
   void begin() {
     for (std::size_t m = 0; m < meshes_.size(); ++m) guard_.place(m, guard_.place_of(m));
     has_motion_ = false;
-    judge_.emplace(scene(), chain(), random_, q_, guard_.options(), guard_.tolerance());
+    judge_.emplace(scene(), chain(), q_, guard_.options(), guard_.tolerance());
   }
 
   template <class Make>
@@ -330,7 +330,7 @@ class InstrumentCase {
   void set_options() {
     InstrumentOptions options = any_instrument_options(source_);
     ignore_errors([&] { guard_.set_options(options); });
-    begin();
+    judge_->follow(guard_.options());  // the certified clearance stays
   }
 
   /// Places a mesh, with a velocity.
@@ -354,22 +354,21 @@ class InstrumentCase {
   }
 
   void deform() {
-    auto& [mesh, index, margin] = meshes_[source_.below(meshes_.size())];
-    const auto number =
-        static_cast<std::size_t>(std::ranges::find(meshes_, mesh, &Placed::mesh) - meshes_.begin());
-    const auto moved = deformed(*mesh, source_);
-    index->refit(moved, 1);
+    const std::size_t number = source_.below(meshes_.size());
+    Placed& placed = meshes_[number];
+    const auto moved = deformed(*placed.mesh, source_);
+    placed.index->refit(moved, 1);
     require(guard_.step(q_, twist_).status == Status::mesh_changed, "no step on an outdated mesh");
     bool is_followed = false;
     ignore_errors([&] {
-      guard_.follow(moved, index, number);
+      guard_.follow(moved, placed.index, number);
       is_followed = true;
     });
     if (is_followed) {
-      mesh = moved;
+      placed.mesh = moved;
     } else {  // its size does not suit the margin
-      index->refit(mesh, 1);
-      guard_.follow(mesh, index, number);
+      placed.index->refit(placed.mesh, 1);
+      guard_.follow(placed.mesh, placed.index, number);
     }
     begin();
   }
@@ -389,7 +388,6 @@ class InstrumentCase {
   std::vector<double> q_;
   Twist twist_;
   bool has_motion_ = false;  // a mesh moves
-  Random random_{1};         // of the judge
   std::optional<oracle::RobotJudge> judge_;
 };
 

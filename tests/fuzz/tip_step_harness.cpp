@@ -146,7 +146,8 @@ class TipCase {
 
   void judge(const Motion& motion, const Step& step) {
     Motion judged = motion;
-    if (!guard_.guides().empty()) judged.desired = step.motion;  // guides may demand more motion
+    // A recovery toward a guide may be longer than the desired motion.
+    if (!guard_.guides().empty() && step.status == Status::recovering) judged.desired = step.motion;
     const auto verdict = judge_ ? judge_->judge(judged, step) : oracle::TipVerdict{};
     if (verdict.breach) {
       throw Finding("the theorem of the tip: " + std::string(name(*verdict.breach)));
