@@ -358,7 +358,7 @@ class InstrumentCase {
     Placed& placed = meshes_[number];
     const auto moved = deformed(*placed.mesh, source_);
     placed.index->refit(moved, 1);
-    require(guard_.step(q_, twist_).status == Status::mesh_changed, "no step on an outdated mesh");
+    require(!guard_.step(q_, twist_).ok(), "no step on an outdated mesh");
     bool is_followed = false;
     ignore_errors([&] {
       guard_.follow(moved, placed.index, number);

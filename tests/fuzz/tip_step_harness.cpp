@@ -146,8 +146,9 @@ class TipCase {
 
   void judge(const Motion& motion, const Step& step) {
     Motion judged = motion;
-    // A recovery toward a guide may be longer than the desired motion.
-    if (!guard_.guides().empty() && step.status == Status::recovering) judged.desired = step.motion;
+    // Guides pull a tip back that is outside of their regions.
+    const auto is_outside = [](const GuideState& guide) { return guide.excess > 0.0; };
+    if (std::ranges::any_of(step.guides, is_outside)) judged.desired = step.motion;
     const auto verdict = judge_ ? judge_->judge(judged, step) : oracle::TipVerdict{};
     if (verdict.breach) {
       throw Finding("the theorem of the tip: " + std::string(name(*verdict.breach)));
