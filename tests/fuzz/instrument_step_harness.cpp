@@ -124,7 +124,10 @@ class InstrumentCase {
 
   /// Begins to judge at the present joints. Meshes stop.
   void begin() {
-    for (std::size_t m = 0; m < meshes_.size(); ++m) guard_.place(m, guard_.place_of(m));
+    for (std::size_t m = 0; m < meshes_.size(); ++m) {
+      // A mesh that has moved too far away cannot be placed there.
+      if (!is_ok(guard_.place(m, guard_.place_of(m)))) guard_.place(m, {});
+    }
     has_motion_ = false;
     judge_.emplace(scene(), chain(), q_, guard_.options(), guard_.tolerance());
   }
