@@ -52,6 +52,7 @@ Registration read_registration(const Settings& settings) {
   if (!in) throw Error("cannot read the registration '" + file + "'");
   Eigen::Matrix4d matrix;
   nlohmann::json json;
+  std::string doubt;
   try {
     json = nlohmann::json::parse(in);
     const auto& rows = json.at("mesh_from_robot");
@@ -62,11 +63,12 @@ Registration read_registration(const Settings& settings) {
       for (int k = 0; k < 4; ++k) matrix(i, k) = row[k];
     }
     if (json.at("unit") != "mm") throw Error(file + ": the 'unit' of the translation must be mm");
+    doubt = json.value("doubt", std::string());
   } catch (const nlohmann::json::exception& error) {
     throw Error(
         file + " is no registration of 'keepout register --json': " + app::printable(error.what()));
   }
-  if (const auto doubt = json.value("doubt", std::string()); !doubt.empty()) {
+  if (!doubt.empty()) {
     throw Error(file + ": do not trust this registration: " + app::printable(doubt));
   }
   const auto margin = json.find("margin");

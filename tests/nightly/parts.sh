@@ -198,8 +198,8 @@ part_campaign_instruments() {
 
 # part fuzzing: readers, protocols and steps with random input (libFuzzer)
 part_fuzzing() {
-  need "$root/tests/fuzz/run"
-  "$root/tests/fuzz/run" "$minutes"
+  need clang++
+  "$root/tests/fuzz/run" --in-all "$minutes"
 }
 
 # part mutations: the tests detect defects in engine, solvers and robot; results of earlier nights count too

@@ -67,7 +67,12 @@ void report(const ReportOptions& options, std::ostream& out) {
   if (missing.empty()) {
     print_report(*outputs.stream("--out"), record);
   } else {
-    print_plain_page(*outputs.stream("--out"), record);
+    try {
+      print_plain_page(*outputs.stream("--out"), record);
+    } catch (const Json::exception&) {
+      throw Error(options.record.string() +
+                  ": is no whole record: a table or a picture of an experiment is damaged");
+    }
     out << "a plain page of tables and pictures: " << missing << '\n';
   }
   outputs.commit();

@@ -227,5 +227,20 @@ TEST_F(HostileNode, OfAnInstrumentSendsOnlyJointsWithinTheirLimits) {
   EXPECT_GT(sent, most / 10);
 }
 
+// Found by fuzzing: a doubt that is no text ended the program with an exception of the JSON
+// library.
+TEST(Registration, WithAMemberOfAnotherTypeIsAnError) {
+  const TemporaryFolder folder;
+  for (const char* member : {"\"doubt\":5", "\"doubt\":null", "\"unit\":5"}) {
+    const auto file = folder.write(
+        "registration.json", R"({"mesh_from_robot":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]],)"
+                             R"("unit":"mm",)" +
+                                 std::string(member) + "}");
+    EXPECT_CONTAINS(error_of([&] { load_scene({.mesh = "cube", .registration = file}); }),
+                    file.string())
+        << member;
+  }
+}
+
 }  // namespace
 }  // namespace keepout::crtk

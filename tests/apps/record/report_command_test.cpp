@@ -132,6 +132,10 @@ TEST_F(Report, OfExperimentsIsPlainAsLongAsItsFrontEndIsMissing) {
   const Outcome plain = succeeded(run("report e.json", without));
   EXPECT_CONTAINS(plain.output, "a plain page");
   EXPECT_CONTAINS(folder_.contents("e.html"), "<h1>so</h1>");
+  Json damaged = head;
+  damaged["experiments"] = {{{"title", "of pushes"}, {"headline", "so"}}};
+  folder_.write("damaged.json", damaged.dump());
+  expect_refused("report damaged.json", "damaged.json: is no whole record", without);
   ASSERT_EQ(run("report e.json").status, 0);
   EXPECT_EQ(record_in("e.html"), head);
   EXPECT_TRUE(folder_.contents("e.html").starts_with("<p>report</p>"));
