@@ -39,14 +39,14 @@ StepOptions any_options(double size, Source& source) {
   return options;
 }
 
-/// Returns true if a triangle is so thin that its normal does not classify a tip.
+/// Returns true if a triangle is so thin that rounding may classify a tip beside it.
 bool has_sliver(const Mesh& mesh) {
   for (TriangleId t = 0; t < mesh.triangle_count(); ++t) {
     const Triangle c = mesh.triangle(t);
     double longest2 = 0.0;
     for (int e = 0; e < 3; ++e)
       longest2 = std::max(longest2, (c[(e + 1) % 3] - c[e]).squaredNorm());
-    if (!((c[1] - c[0]).cross(c[2] - c[0]).norm() > 1.01e-5 * longest2)) return true;
+    if (!((c[1] - c[0]).cross(c[2] - c[0]).norm() > 1e-8 * longest2)) return true;
   }
   return false;
 }
@@ -127,7 +127,6 @@ class TipCase {
     audit_.emplace(guard_.guides(), tip_);
     const bool has_sides = inside_ == Inside::escape && is_watertight(*mesh_);
     judge_.reset();
-    // A tip closer to a sliver than the sliver's width may be classified wrongly.
     if (has_sides && has_sliver(*mesh_)) return;
     if (count_self_intersections(*mesh_, *tree_) > 0) {
       other_.reset();         // ties between triangles at the same place depend on the index

@@ -124,7 +124,14 @@ bool starts_inside(const Mesh& mesh, const Probe& probe,
     if (std::abs(side) > std::abs(from_behind)) from_behind = side;
   }
   if (from_behind == 0.0) from_behind = unit_normal(probe.faced).dot(probe.segment);
-  return from_behind > 0.0;
+  // The probe changes sides at each sliver before that, whatever its winding.
+  bool is_behind = from_behind > 0.0;
+  for (const TriangleId t : candidates) {
+    const Triangle triangle = mesh.triangle(t);
+    if (are_slivers_asked || !is_sliver(triangle)) continue;
+    if (met_at(triangle, probe.start, probe.segment) < first - 1e-12) is_behind = !is_behind;
+  }
+  return is_behind;
 }
 
 /// Classifies a point that is not far away: see find_side.

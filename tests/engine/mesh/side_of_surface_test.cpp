@@ -85,6 +85,25 @@ TEST_P(SideOfSolid, AgreesWithAnIndependentInsideTest) {
   EXPECT_GT(outside, test::trials(300u));
 }
 
+/// Found by fuzzing: one face of this tetrahedron is a sliver, whose neighbors are 6e-6 apart.
+TEST(SideOfThinPart, IsKnownBeyondASliver) {
+  const Vec3 beyond(-0.71015840860635471, -10.000006624243852, -9.9691710871848631);
+  Classifier classify(
+      {{Vec3(-9.9981689173723964, -10.0, -10.0), Vec3(6.0, -10.0, -9.9468986037994966),
+        Vec3(-10.0, -10.0, -10.0), Vec3(-10.0, 4.8439765011062796, -9.9658197909514001)},
+       {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}});
+  Random random(1);
+  std::size_t asked = 0;
+  for (int i = 0; i < test::trials(3000); ++i) {
+    const Vec3 tip = beyond + std::pow(10.0, random.uniform(-6.0, 1.0)) * -Vec3::UnitY() +
+                     std::pow(10.0, random.uniform(-8.0, 0.0)) * random.direction();
+    if (classify.distance(tip) < 1e-7) continue;  // some tolerances of a step
+    ++asked;
+    ASSERT_EQ(classify(tip)->is_outside, !classify.inside(tip)) << tip.transpose();
+  }
+  EXPECT_GT(asked, test::trials(2000u));
+}
+
 TEST_P(SideOfSolid, TheWayLeadsToTheSurfaceFromInsideAndOffItFromOutside) {
   Classifier classify(rotated(make_shape(GetParam().shape), GetParam().rotation));
   Random random(2);
