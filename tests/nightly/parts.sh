@@ -198,7 +198,7 @@ part_campaign_instruments() {
 
 # part fuzzing: readers, protocols and steps with random input (libFuzzer)
 part_fuzzing() {
-  need clang++
+  need clang++-16
   "$root/tests/fuzz/run" --in-all "$minutes"
 }
 
