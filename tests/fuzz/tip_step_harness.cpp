@@ -121,7 +121,8 @@ class TipCase {
     begin();
   }
 
-  /// Begins to judge at the present tip. `may_escape`: it is led out of the forbidden side.
+  /// Begins to judge at the present tip. `may_escape`: the step may lead it out of the forbidden
+  /// side.
   void begin(bool may_escape = true) {
     surface_.emplace(mesh_);
     audit_.emplace(guard_.guides(), tip_);
