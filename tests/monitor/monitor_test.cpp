@@ -467,10 +467,17 @@ TEST(Monitor, AllocatesNothingAfterConstruction) {
   drive(tip, *mesh, 150, random, [&](const Vec3&, const Step&) {});  // one start
   before = allocations();
   std::vector<Vec3> tips = surface_points(*mesh, 50, 0.6, random);
+  const std::vector<Vec3> inside = surface_points(*mesh, 50, -0.3, random);
+  tips.insert(tips.end(), inside.begin(), inside.end());
+  tips.insert(tips.end(), mesh->vertices().begin(), mesh->vertices().begin() + 50);
+  int escapes = 0;
   std::vector<double> q{0.0, 0.0, 30.0, 0.0, 0.0, 0.0};
   before = allocations();
   for (const Vec3& place : tips) {
-    tip.step({.tip = place, .desired = random.uniform(0.0, 1.9) * random.direction()});
+    tip.forget();
+    const Step step =
+        tip.step({.tip = place, .desired = random.uniform(0.0, 1.9) * random.direction()});
+    escapes += step.status == Status::recovering ? 1 : 0;
   }
   for (int i = 0; i < 200; ++i) {
     const InstrumentStep step = instrument.step(q, {.linear = random.direction() - Vec3::UnitZ()});
@@ -478,6 +485,7 @@ TEST(Monitor, AllocatesNothingAfterConstruction) {
   }
   counted = allocations() - before;
   EXPECT_EQ(counted, 0u);
+  EXPECT_GT(escapes, 50);
 }
 
 }  // namespace

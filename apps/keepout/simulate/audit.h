@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "keepout/index/query.h"
-#include "keepout/oracle/inside_test.h"
 #include "keepout/monitor/triangle_tree.h"
+#include "keepout/oracle/inside_test.h"
 
 namespace keepout::app {
 
@@ -33,7 +33,9 @@ class Audit {
   SurfaceKind surface() const noexcept { return inside_ ? SurfaceKind::closed : SurfaceKind::open; }
 
   /// Returns the unsigned distance to the surface. [mm]
-  double distance(const Vec3& point) const { return tree_->nearest(point, oracle::narrow_distance).distance.estimate; }
+  double distance(const Vec3& point) const {
+    return tree_->nearest(point, oracle::narrow_distance).distance.estimate;
+  }
 
   /// Returns the side of the surface that a point is on. An open surface has sides only near it.
   Side side(const Vec3& point) { return side(point, distance(point)); }
@@ -86,9 +88,9 @@ class PathAudit {
 
   Audit* audit_;
   Vec3 at_;
-  double distance_;   // of at_ from the surface [mm]
-  Side here_;         // of the surface, at at_
-  Side side_;         // last side where the tip was clear of the surface; `touching` before the first
+  double distance_;  // of at_ from the surface [mm]
+  Side here_;        // of the surface, at at_
+  Side side_;  // last side where the tip was clear of the surface; `touching` before the first
   bool met_ = false;  // whether the tip has met the surface since then
 };
 

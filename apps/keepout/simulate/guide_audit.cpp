@@ -41,8 +41,8 @@ JudgedGuide::Region judged(Region::Kind kind) {
 /// Returns the excess of the tip of a MotionConstraint, which is link 0.
 double excess_at(const JudgedGuide& guide, const Vec3& tip) {
   using Real = monitor::LinkFrame::Real;
-  const std::array links{
-      monitor::LinkFrame{.axes = Eigen::Matrix<Real, 3, 3>::Identity(), .origin = tip.cast<Real>()}};
+  const std::array links{monitor::LinkFrame{.axes = Eigen::Matrix<Real, 3, 3>::Identity(),
+                                            .origin = tip.cast<Real>()}};
   return excess(guide, links);
 }
 

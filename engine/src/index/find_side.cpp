@@ -124,7 +124,8 @@ bool starts_inside(const Mesh& mesh, const Probe& probe,
     if (std::abs(side) > std::abs(from_behind)) from_behind = side;
   }
   if (from_behind == 0.0) from_behind = unit_normal(probe.faced).dot(probe.segment);
-  // The probe changes sides at each sliver before that, whatever its winding.
+  // The probe changes sides at each sliver that it meets before the deciding triangle. Slivers may
+  // be turned over, so their winding does not count.
   bool is_behind = from_behind > 0.0;
   for (const TriangleId t : candidates) {
     const Triangle triangle = mesh.triangle(t);

@@ -24,7 +24,7 @@ struct RobotUnderTest {
   Pose flange = {};
   std::vector<Body> bodies = {};
   monitor::JudgedRobot model = {};  // the same robot in the form of the judge
-  std::vector<Range> starts = {};  // start range of each joint [rad or length]
+  std::vector<Range> starts = {};   // start range of each joint [rad or length]
 
   /// Returns the instrument on a base.
   Instrument make(const Pose& base) const { return {Chain(joints, base, flange), bodies}; }

@@ -88,8 +88,8 @@ void draw_region(oracle::JudgedGuide& guide, const Vec3& place, Random& random) 
   guide.origin = place + depth * off;
 }
 
-oracle::JudgedGuide draw_guide(const monitor::JudgedRobot& robot, const Links& links, bool is_of_tip,
-                               Random& random) {
+oracle::JudgedGuide draw_guide(const monitor::JudgedRobot& robot, const Links& links,
+                               bool is_of_tip, Random& random) {
   using Kind = oracle::JudgedGuide::Kind;
   oracle::JudgedGuide guide{.band = std::pow(10.0, random.uniform(-3.0, -1.5))};
   const monitor::JudgedBody& body = robot.bodies[random.below(robot.bodies.size())];

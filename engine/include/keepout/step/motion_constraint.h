@@ -133,10 +133,10 @@ class MotionConstraint {
   std::span<const Guide> guides() const noexcept;
 
   /// Sets a monitor, which must confirm each motion from the next step on, or removes it (nullptr).
-  /// A step whose motion it does not confirm is `unconfirmed`. The monitor takes the mesh as the
-  /// caller gave it; from then on, follow() passes it each new mesh. Escapes (from the forbidden
-  /// side, or from the surface) are not monitored, because no clearance is promised for them.
-  /// Throws Error, and changes nothing, if the rule guards a whole tool.
+  /// A step whose motion it does not confirm is `unconfirmed`. The monitor must already have the
+  /// present mesh; follow() passes it each new one. For an escape, the monitor confirms where the
+  /// tip starts, because no clearance is promised. Throws Error, and changes nothing, if the rule
+  /// guards a whole tool.
   void set_monitor(std::unique_ptr<TipMonitor> monitor);
 
   /// Forgets the last step, so that the next tip is classified again at any position. For motions

@@ -15,16 +15,17 @@
 
 namespace keepout::monitor {
 
-/// The bounds of a monitor's work and memory. A motion that needs more is not confirmed.
+/// The bounds of a monitor's work and memory. A motion that needs more is not confirmed. A motion
+/// of an instrument takes one check, and that of a tip at most four.
 struct MonitorCapacity {
   std::size_t triangles = 16'384;  // near one body
-  std::uint64_t work = 65'536;     // of a motion, in units of about 0.1 µs
+  std::uint64_t work = 65'536;     // of a check, in units of about one distance
 };
 
 /// Returns a monitor of a tip beside a mesh. It confirms a motion if MotionCheck proves that the
 /// tip stays min(required clearance, its distance at the start) - 4 tau away. Tau is that of
-/// docs/certified-step.md. Monitors may share the tree of a mesh. A tip within 8 tau of the surface
-/// is never confirmed. Throws Error without a tree.
+/// docs/certified-step.md. Monitors may share the tree of a mesh. A tip within 4 tau of the surface
+/// is confirmed only if it escapes. Throws Error without a tree.
 std::unique_ptr<TipMonitor> make_tip_monitor(std::shared_ptr<const TriangleTree> mesh,
                                              const MonitorCapacity& capacity = {});
 

@@ -21,7 +21,7 @@ struct MonitoredMotion {
   };
   /// A pair. [length]
   struct OfPair {
-    double certified = 0.0;  // clearance of the body; -infinity: none
+    double certified = 0.0;  // of the body; -infinity without a certified clearance
     /// Margin - band. A body that starts at this clearance, or is not far below, must be certified
     /// accordingly; -infinity for a degraded pair.
     double target = 0.0;
