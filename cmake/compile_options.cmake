@@ -50,6 +50,10 @@ endfunction()
 function(keepout_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  if(EMSCRIPTEN)
+    # A module of its own needs no position-independent code, which would be larger.
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  endif()
   # No fused multiply-add: it rounds differently on different machines, but decisions must be equal.
   target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
                                            -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor)
