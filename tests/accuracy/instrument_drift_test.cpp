@@ -44,8 +44,8 @@ TEST_P(InstrumentDrift, NoBodyOrGuideLosesMoreThanItsToleranceInManyCycles) {
   std::vector<double> q{0, 0, 0, 0, 0, 0};
   const auto tip = [&] { return test::state_of(chain, q).at(6, jaw); };
   q[2] = tip().z() - goal.z() - 3.0;
-  Random random(4), samples(5);
-  oracle::RobotJudge judge(std::move(scene), chain, samples, q, guard.options(), guard.tolerance());
+  Random random(4);
+  oracle::RobotJudge judge(std::move(scene), chain, q, guard.options(), guard.tolerance());
   const int cycles = test::trials(1'000'000);
   int in_contact = 0;
   int stopped = 0;

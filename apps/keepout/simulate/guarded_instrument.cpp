@@ -345,6 +345,7 @@ class GuardedInstrument final : public SimulatedTool {
              {"margin", trimmed(margin_) + " mm"},
              {"seed", std::to_string(options_.strokes.seed)},
              {"index", options_.constraint.index}}});
+    if (options_.constraint.monitor) record["settings"]["monitor"] = "confirms each motion";
     if (has_guides) record["settings"]["guides"] = listed(options_.guides);
     if (!options_.bodies.empty()) record["settings"]["bodies"] = options_.bodies.string();
     if (!options_.notice.empty()) record["account"].push_back(options_.notice);

@@ -293,6 +293,7 @@ Json settings_of(const SimulateOptions& options) {
                 {"seed", std::to_string(options.strokes.seed)},
                 {"strokes", std::to_string(options.strokes.count)},
                 {"cycles per stroke", std::to_string(options.strokes.cycles)}};
+  if (options.constraint.monitor) settings["monitor"] = "confirms each motion";
   if (!options.guides.empty()) settings["guides"] = listed(options.guides);
   return settings;
 }

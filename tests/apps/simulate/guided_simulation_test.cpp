@@ -157,7 +157,7 @@ TEST(SimulateGuides, OfAnInstrumentAreKeptInEachModeThatHasThem) {
 
 /// Removes the members that differ between runs: times, and properties of the machine.
 Json without_times(Json record) {
-  for (const char* name : {"date", "machine", "account"}) record.erase(name);
+  for (const char* name : {"date", "command", "machine", "account"}) record.erase(name);
   for (Json& run : record["runs"]) {
     for (const char* name : {"rate_khz", "p50_us", "p99_us", "p999_us", "max_us"}) {
       run["summary"].erase(name);
@@ -181,6 +181,16 @@ TEST(SimulateTool, TwoRunsWithGuidesDifferInTimesOnly) {
     EXPECT_EQ(summary["guides_left"], 0U) << extent;
     EXPECT_GT(summary["limited"], 20U) << extent;
   }
+}
+
+TEST(SimulateGuides, AMonitorChangesNoStepThatItConfirms) {
+  const test::CommandFolder folder;
+  const std::string arguments = "cube --strokes 3 --cycles 200 --guide slab:0,0,0:1,0,0:4 ";
+  Json monitored = record_of(folder, arguments + "--monitor true");
+  EXPECT_EQ(monitored["settings"].erase("monitor"), 1U);
+  EXPECT_TRUE(without_times(monitored) == without_times(record_of(folder, arguments)));
+  EXPECT_CONTAINS(folder.run("simulate cube --tool blade:20:6:1 --monitor true").output,
+                  "a monitor confirms the motions of a ball");
 }
 
 TEST(SimulateGuides, TellOfMistakes) {

@@ -62,6 +62,26 @@ TEST(SimulateRobot, TheSameSeedGivesTheSameAndAnotherDoesNot) {
   EXPECT_NE(one, record("2"));
 }
 
+TEST(SimulateRobot, AMonitorChangesNoCertifiedStepAndRefusesLinearizedStepsThatBreakThePromise) {
+  const test::CommandFolder folder;
+  const std::string arguments = "--strokes 3 --cycles 100 --speed 5 ";
+  const Json alone = record_of_robot(folder, arguments);
+  const Json monitored = record_of_robot(folder, arguments + "--monitor true");
+  EXPECT_FALSE(alone["settings"].contains("monitor"));
+  EXPECT_TRUE(monitored["settings"].contains("monitor"));
+  for (std::size_t r = 0; r < 4; ++r) {
+    const Json& row = alone["rows"][r];
+    const Json& same = monitored["rows"][r];
+    if (row["mode"] != "linearized") {
+      EXPECT_EQ(row, same);
+      continue;
+    }
+    EXPECT_GT(row["below"], 0U);
+    EXPECT_EQ(same["below"], 0U);
+    EXPECT_GT(same["refused"], row["refused"]);
+  }
+}
+
 TEST(SimulateRobot, KeepsAStrokeOfEachMannerThatBeginsAlikeInAllModes) {
   const test::CommandFolder folder;
   const Json record = record_of_robot(folder, "--strokes 4 --cycles 100 --speed 5");
