@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <numeric>
 
+#include "activation/polytope/free_polytope_triangle.h"
 #include "keepout/error.h"
 #include "keepout/fixtures/counterexamples.h"
 #include "keepout/fixtures/poses.h"
@@ -497,6 +498,40 @@ TEST(FreePolytope, EveryStatusHasANameAndAReason) {
     EXPECT_NE(name(status), "unknown");
     EXPECT_NE(reason(status, Subject::polytope), "unknown status");
   }
+}
+
+TEST(SupportWithin, IsThatOfTheSamplesOfTheTriangleInTheBall) {
+  constexpr int steps = 200;
+  Random random(9);
+  int parts = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vec3 at = random.uniform(0.0, 0.9) * random.direction();
+    Triangle corners;
+    for (Vec3& corner : corners) corner = at + random.uniform(0.1, 3.0) * random.direction();
+    const Vec3 normal = random.direction();
+    double most = -test::infinity;  // of samples: a grid on the triangle, and points of its sides
+    double spacing = 0.0;
+    const auto add = [&](const Vec3& p) {
+      if (p.norm() <= 1.0) most = std::max(most, normal.dot(p));
+    };
+    for (int side = 0; side < 3; ++side) {
+      const Vec3 first = corners[side], along = corners[(side + 1) % 3] - first;
+      spacing = std::max(spacing, along.norm() / steps);
+      for (int i = 0; i <= 50 * steps; ++i) add(first + along * (i / (50.0 * steps)));
+    }
+    for (int i = 0; i <= steps; ++i) {
+      for (int j = 0; j <= steps - i; ++j) {
+        add(corners[0] + (i * (corners[1] - corners[0]) + j * (corners[2] - corners[0])) / steps);
+      }
+    }
+    const double support =
+        support_within(triangle_from_tip(corners, Vec3::Zero()), normal, 1.0, 1e-9);
+    EXPECT_GE(support, most - 1e-12) << trial;
+    if (most == -test::infinity) continue;  // a part may lie between the samples
+    EXPECT_LE(support, most + 2.0 * spacing) << trial;
+    ++parts;
+  }
+  EXPECT_GT(parts, 100);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "brute_force.h"
 #include "index/pd_tree/tree.h"
 #include "index/wide_bvh/tree.h"
 #include "keepout/activation/paper.h"
@@ -249,6 +250,25 @@ TEST(PaperBlocks, WithJointsOrRowsAllPlanesArePosed) {
     EXPECT_TRUE(are_equal(got.planes, expected.planes));
     EXPECT_EQ(got.motion, expected.motion);
   }
+}
+
+TEST(PaperBlocks, ATriangleCountsJustWithinTheBallAndNotJustBeyond) {
+  PaperForms forms(make_shape("cortex"));
+  Random random(2);
+  std::size_t reached = 0;
+  on_each_simd_target([&] {
+    for (const Vec3& tip : surface_points(*forms.mesh, 30, 0.4, random)) {
+      const double distance = distance_to(*forms.mesh, tip);
+      for (const double relative : {-1e-6, -1e-7, -1e-8, 1e-8, 1e-7, 1e-6}) {
+        const auto [got, expected] = forms.start(tip, distance * (1.0 + relative), 0.0);
+        ASSERT_EQ(got, expected);
+        ASSERT_EQ(forms.triangles(), forms.plain_triangles()) << relative;
+        ASSERT_EQ(forms.triangles() > 0, relative > 0.0) << relative;
+        reached += forms.triangles();
+      }
+    }
+  });
+  EXPECT_GT(reached, 300u);
 }
 
 TEST(PaperBlocks, WhatIsBeyondTheCapacityEndsAsWithThePlainRule) {

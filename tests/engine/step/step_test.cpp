@@ -105,6 +105,16 @@ TEST(Step, TooManyTrianglesOrPlanesIsAStatusAndNoMotion) {
   }
 }
 
+TEST(Step, ABudgetThatPaysForTooFewTrianglesIsNotALackOfCapacity) {
+  const auto mesh = mesh_of("sphere");
+  for (const std::uint64_t units : {work::hit * 10, work::hit * 10 + 1, work::hit * 11 - 1}) {
+    auto constraint = guard<AllFaces>(mesh, {.radius = 20.0, .margin = 0.0}, {.work_units = units});
+    const Step step = constraint.step({.tip = {0, 0, 55}, .desired = {0, 0, -1}});
+    EXPECT_EQ(step.status, Status::out_of_budget) << units;
+    EXPECT_EQ(step.motion, Vec3::Zero());
+  }
+}
+
 TEST(Step, JointsMoveTheTipAsTheJacobianSays) {
   auto constraint =
       guard<PaperRule>(mesh_of("cube"), {.radius = 5.0, .margin = 0.0, .damping = 1e-9});
