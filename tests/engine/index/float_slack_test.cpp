@@ -263,6 +263,27 @@ TEST(FloatSlack, ATraversalCacheHasEveryBoxThatItsBallTouches) {
   }
 }
 
+TEST(FloatSlack, ATraversalCacheCoversNoMoreThanItsBall) {
+  const WideBvh index(mesh_of("cortex"));
+  TraversalCache cache;
+  cache.cover(index.tree(), {Vec3(0, 0, 50), 2.0});
+  /// Returns the radius of the largest ball around a point that is covered.
+  const auto covered_from = [&](const Vec3& center) {
+    double in = 0.0, out = 100.0;
+    for (int halving = 0; halving < 60; ++halving) {
+      const double middle = 0.5 * (in + out);
+      (cache.covers({center, middle}) ? in : out) = middle;
+    }
+    return in;
+  };
+  const double radius = covered_from(Vec3(0, 0, 50));
+  ASSERT_GE(radius, 2.0);
+  for (const double share : {0.01, 0.3, 0.9}) {
+    const double moved = share * radius;
+    EXPECT_NEAR(covered_from(Vec3(0, moved, 50)), radius - moved, 1e-9);
+  }
+}
+
 // Each cylinder must contain the child cylinders, not only the triangles. The child cylinders have
 // their own slack, which would hide a missing slack here.
 TEST(FloatSlack, CylindersOfNodesHoldTheCylindersBelow) {
