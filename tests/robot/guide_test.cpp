@@ -333,10 +333,11 @@ TEST(Guide, RefusesWhatIsNone) {
 
 /// An instrument under one guide, far from a wall.
 struct Guided {
-  Guided(Instrument instrument, const Guide& its_guide)
+  Guided(Instrument instrument, const Guide& its_guide, const InstrumentCapacity& capacity = {})
       : guide(its_guide),
         mesh(wall(1e3)),
-        guard(guard_of(mesh, std::move(instrument), {.damping = 0.0, .check_sides = false})) {
+        guard(guard_of(mesh, std::move(instrument), {.damping = 0.0, .check_sides = false},
+                       capacity)) {
     guard.set_guides({guide});
   }
 
@@ -401,6 +402,27 @@ TEST(GuidedPath, OfAPointThatTurnsIsKeptInTheMiddleOfItsArc) {
     EXPECT_EQ(step.increment[0] > (1.0 - 1e-9) * turn, missing < 0.0)
         << "the whole motion is made if it is clear";
   }
+}
+
+TEST(GuidedPath, IsProvedOrNotMadeWhereverTheBudgetEnds) {
+  constexpr double lever = 100.0;
+  const double band = 0.002;
+  const LinkPoint point{1, Vec3(lever, 0, 0)};
+  const Vec3 limit(lever - 0.01, 0, 0);  // the motion from -0.02 to 0.02 leaves it in the middle
+  const Guide guide =
+      Guide::point("limit", point, Region::half_space(limit, -Vec3::UnitX())).with_band(band);
+  const std::vector<double> q{-0.02};
+  int made = 0, ended = 0;
+  for (std::uint64_t units = 1; units < 3000; units += 1 + units / 50) {
+    SCOPED_TRACE(units);
+    Guided arm({Chain({{.kind = JointKind::revolute}}), {{"point", {point}, 0.5}}}, guide,
+               {.work_units = units});
+    const InstrumentStep step = arm.guard.step(q, std::vector<double>{0.04});
+    EXPECT_LE(arm.farthest_out(q, step.increment), band + 3.0 * arm.guard.tolerance());
+    (step.ok() ? made : ended) += 1;
+  }
+  EXPECT_GT(made, 10);
+  EXPECT_GT(ended, 10);
 }
 
 }  // namespace

@@ -149,6 +149,28 @@ TEST(Separation, ParallelEdgesAndFacesAreNoExceptions) {
   }
 }
 
+TEST(Separation, OfPointsInOnePlaneIsRight) {
+  // All differences of two points are in one plane, so they span no tetrahedron.
+  Random random(8);
+  const ConvexTool square =
+      ConvexTool::hull(std::vector<Vec3>{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+  int apart = 0;
+  for (int i = 0; i < 500; ++i) {
+    Triangle triangle;
+    for (Vec3& corner : triangle) {
+      for (int axis = 0; axis < 2; ++axis) {
+        corner[axis] = i % 2 == 0 ? random.uniform(-3.0, 3.0)
+                                  : static_cast<double>(random.below(13)) * 0.5 - 3.0;
+      }
+      corner[2] = 0.0;
+    }
+    const double expected = reference(square, triangle);
+    ASSERT_NEAR(separation(square, Vec3::Zero(), triangle).distance, expected, 1e-14) << i;
+    apart += expected > 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(apart, 100);
+}
+
 TEST(Separation, ASmallTurnOfParallelEdgesCostsFewDigits) {
   Random random(5);
   double worst = 0.0;

@@ -42,6 +42,16 @@ TEST(SideWatch, ATipThatTheCallerMovesInsideIsFound) {
   EXPECT_EQ(constraint.step({.tip = {3, 4, 50.9}, .desired = {0, 0, -0.1}}).status, Status::free);
 }
 
+TEST(SideWatch, AfterARecoveryTheSurroundingsAreNotTakenForFree) {
+  auto constraint = guard();  // of a margin of 0.2
+  const Step step = constraint.step({.tip = {3, 4, 50.03}, .desired = {0, 0, -0.1}});
+  ASSERT_EQ(step.status, Status::recovering);
+  // Less than half of the margin away from the path of that step, but inside.
+  const Step inside = constraint.step({.tip = {3, 4, 49.99}, .desired = {0, 0, -0.1}});
+  EXPECT_EQ(inside.status, Status::recovering);
+  EXPECT_GT(inside.motion.z(), 0.0);
+}
+
 TEST(SideWatch, AfterForgettingATipIsPlacedAnewHoweverNear) {
   // A cube in a cube. Between them, the side depends on the nearer surface, unless a step has led
   // there.

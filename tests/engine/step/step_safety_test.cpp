@@ -55,6 +55,24 @@ TEST(StepSafety, ASolverThatClaimsOptimalityAndGivesNothingIsNotBelieved) {
   EXPECT_EQ(step.motion, Vec3::Zero());
 }
 
+TEST(StepSafety, APartOfATrialHasNoActiveRowsOfALostSolution) {
+  const std::array<std::uint32_t, 1> first_row{0};
+  int solves = 0;
+  auto constraint =
+      guard_of<PdTree>(mesh_of("cube"), {.radius = 5.0, .margin = 0.2},
+                       solver_that([&](const StepProblem& problem, Solution& solution) {
+                         if (++solves > 1) return SolveStatus::iteration_limit;
+                         solution.u = {problem.desired.data(), 3};
+                         solution.active = first_row;
+                         return SolveStatus::optimal;
+                       }));
+  const Step step = constraint.step({.tip = above_the_cube, .desired = {0, 0, -1}});
+  EXPECT_EQ(step.status, Status::truncated);
+  EXPECT_EQ(solves, 2);
+  EXPECT_NEAR(step.motion.z(), -0.3, 1e-6);
+  EXPECT_TRUE(step.active.empty());
+}
+
 TEST(StepSafety, AnAbsurdCapacityIsRefusedBeforeMemoryIsAskedFor) {
   const auto mesh = mesh_of("cube");
   for (const Capacity& capacity :

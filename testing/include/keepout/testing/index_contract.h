@@ -314,6 +314,29 @@ TEST_P(IndexContract, ATraversalShowsEveryTriangleThatAMotionComesNear) {
   EXPECT_GT(clear, 50u);
 }
 
+TEST_P(IndexContract, ATraversalShowsAllOfVeryManyTrianglesThatAMotionReachesAtTheSameTime) {
+  const auto mesh = mesh_of(make_sphere(0.5));
+  const auto index = GetParam().make(mesh);
+  if (!index->traverses()) return;
+  ASSERT_GT(mesh->triangle_count(), 100'000u);
+  const Vec3 center = mesh->bounds().center();
+  const double level = 0.5 * mesh->bounds().size().z() - 0.5;  // the surface is 0.5 farther away
+  const Vec3 motion(0.0, 0.0, 5.0);
+  Budget budget;
+  const auto traversal = index->traverse_along_motions(budget);
+  ASSERT_TRUE(traversal->begin({center, {center, 10.0 + level}, level, 5.0}));
+  ShownTriangles shown(*mesh, center);
+  shown.start(MotionTraversal::never);
+  traversal->traversal(motion, shown);
+  std::size_t near = 0;
+  for (TriangleId t = 0; t < mesh->triangle_count(); ++t) {
+    if (closest_point(mesh->triangle(t), center + motion).distance > level) continue;
+    ASSERT_TRUE(shown.triangles().contains(t)) << t;
+    ++near;
+  }
+  EXPECT_GT(near, 50'000u);
+}
+
 TEST_P(IndexContract, ATraversalSpendsWorkAndStopsWithoutBudget) {
   const auto mesh = mesh_of("star_bumps");
   const auto index = GetParam().make(mesh);
