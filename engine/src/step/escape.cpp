@@ -75,7 +75,7 @@ std::optional<Step> step_of_tip_inside(Neighborhood& neighborhood, const Motion&
   if (side->is_outside) return std::nullopt;
   if (may_escape(request, options, neighborhood.mesh()) && side->distance <= options.deepest) {
     const Step escape = escape_step(*side, neighborhood, request, options, memory);
-    if (memory.guides.allow(escape.motion)) return escape;
+    if (!escape.motion.isZero(0.0) && memory.guides.allow(escape.motion)) return escape;
   }
   return Step{.status = Status::inside, .distance = side->distance};
 }

@@ -2,6 +2,7 @@
 #include "keepout/index/wide_bvh.h"
 
 #include <cstring>
+#include <set>
 
 #include "engine/index/exact_index.h"
 #include "keepout/error.h"
@@ -199,6 +200,43 @@ TEST(WideBvh, RefusesToBeRefitToOtherTriangles) {
   EXPECT_THROW(index.refit(mesh_of(more)), Error);
   EXPECT_TRUE(are_equal(index.tree(), was.tree()));
   EXPECT_EQ(&index.mesh(), mesh.get());
+}
+
+/// Collects the triangles that a traversal shows.
+class Shown final : public TriangleVisitor {
+ public:
+  double visit(TriangleId triangle, std::uint32_t&, const Triangle*) noexcept override {
+    triangles.insert(triangle);
+    return MotionTraversal::never;
+  }
+
+  std::set<TriangleId> triangles;
+};
+
+TEST(WideBvh, ATraversalCountsEachLeafThatItFills) {
+  const auto mesh = mesh_of("gear");
+  const WideBvh index(mesh);
+  const Vec3 tip = mesh->vertex(0), motion(2.0, 0.0, 0.0);
+  Budget budget;
+  const auto traversal = index.traverse_along_motions(budget);
+  ASSERT_TRUE(traversal->begin({tip, {tip, 12.0}, 10.0, 2.0}));
+  Shown shown;
+  const auto spent_on_it = [&] {
+    const std::size_t before = budget.spent();
+    traversal->traversal(motion, shown);
+    return budget.spent() - before;
+  };
+  const std::size_t first = spent_on_it();
+  std::set<std::size_t> leaves;  // with triangles that were shown; more may have been filled
+  for (std::size_t i = 0; i < index.tree().leaves().size(); ++i) {
+    const LeafBlock& leaf = index.tree().leaves()[i];
+    for (std::size_t lane = 0; lane < LeafBlock::lanes && leaf.is_used(lane); ++lane) {
+      if (shown.triangles.contains(leaf.triangle(lane))) leaves.insert(i);
+    }
+  }
+  ASSERT_GT(leaves.size(), 5u);
+  // The second traversal does all the same, but finds the leaves filled.
+  EXPECT_GE(first, spent_on_it() + leaves.size() * work::leaf);
 }
 
 }  // namespace

@@ -52,6 +52,26 @@ TEST(SideWatch, AfterARecoveryTheSurroundingsAreNotTakenForFree) {
   EXPECT_GT(inside.motion.z(), 0.0);
 }
 
+TEST(SideWatch, ATipInAGapWithoutRoomEscapesOrSaysThatItDoesNot) {
+  Surface surface = make_shape("cube");
+  const auto first = static_cast<VertexId>(surface.vertices.size());
+  for (const Vec3& corner : {Vec3(-9, -9, 50), Vec3(9, -9, 50), Vec3(0, 9, 50), Vec3(0, 0, 60)}) {
+    surface.vertices.push_back(corner + Vec3(3, 4, 1e-9));
+  }
+  for (const Corners& c : {Corners{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}) {
+    surface.triangles.push_back({c[0] + first, c[1] + first, c[2] + first});
+  }
+  int stuck = 0;
+  for (int i = 0; i <= 40; ++i) {
+    auto constraint = make_motion_constraint(mesh_of(surface), {});
+    const Vec3 tip(3, 4, 50 + 2.5e-11 * i);
+    const Step step = constraint.step({.tip = tip, .desired = {0, 0, 0.1}});
+    EXPECT_EQ(step.ok(), !step.motion.isZero(0.0)) << i << ' ' << name(step.status);
+    stuck += step.ok() ? 0 : 1;
+  }
+  EXPECT_GT(stuck, 5);
+}
+
 TEST(SideWatch, AfterForgettingATipIsPlacedAnewHoweverNear) {
   // A cube in a cube. Between them, the side depends on the nearer surface, unless a step has led
   // there.

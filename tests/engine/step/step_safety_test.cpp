@@ -73,6 +73,23 @@ TEST(StepSafety, APartOfATrialHasNoActiveRowsOfALostSolution) {
   EXPECT_TRUE(step.active.empty());
 }
 
+TEST(StepSafety, IterationsOfASolverSpendTheBudget) {
+  int iterations = 1;
+  auto constraint =
+      guard_of<PdTree>(mesh_of("cube"), {.radius = 5.0, .margin = 0.2},
+                       solver_that([&](const StepProblem& problem, Solution& solution) {
+                         solution.u = {problem.desired.data(), 3};
+                         solution.iterations = iterations;
+                         return SolveStatus::optimal;
+                       }));
+  const Motion motion{.tip = above_the_cube, .desired = {0, 0, 0.5}};
+  EXPECT_TRUE(constraint.step(motion).ok());
+  const std::size_t with_one = constraint.work_units();
+  iterations = 101;
+  EXPECT_TRUE(constraint.step(motion).ok());
+  EXPECT_GE(constraint.work_units(), with_one + 100 * work::iteration);
+}
+
 TEST(StepSafety, AnAbsurdCapacityIsRefusedBeforeMemoryIsAskedFor) {
   const auto mesh = mesh_of("cube");
   for (const Capacity& capacity :
