@@ -20,9 +20,10 @@ Vec3 escape_motion(Neighborhood& neighborhood, const Vec3& tip, const SideOfSurf
 
 /// Classifies a tip. Returns the whole step if the classification decides it, and nothing for a tip
 /// on the free side. The step of a tip on the forbidden side is its escape. The status is `inside`,
-/// with zero motion, if the tip is deeper than options.deepest, if a guide forbids the escape, if no
-/// free place is nearby, or with a Jacobian or rows. It is a failure if budget or capacity did not
-/// suffice to classify the tip. Preconditions: the mesh is watertight; the request is not refused.
+/// with zero motion, if the tip is deeper than options.deepest, or no free place is nearby. It is
+/// `inside` also if a guide forbids the escape, and with a Jacobian or rows. The step fails if
+/// budget or capacity did not suffice to classify the tip. Preconditions: the mesh is watertight;
+/// the request is not refused.
 std::optional<Step> step_of_tip_inside(Neighborhood& neighborhood, const Motion& request,
                                        const StepOptions& options, TipMemory& memory) noexcept;
 
