@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "keepout/index/wide_bvh.h"
 
+#include <cmath>
 #include <cstring>
+#include <numbers>
 #include <set>
 
 #include "engine/index/exact_index.h"
@@ -237,6 +239,35 @@ TEST(WideBvh, ATraversalCountsEachLeafThatItFills) {
   ASSERT_GT(leaves.size(), 5u);
   // The second traversal does all the same, but finds the leaves filled.
   EXPECT_GE(first, spent_on_it() + leaves.size() * work::leaf);
+}
+
+TEST(WideBvh, ATraversalShowsAllOfThousandsOfPatchesThatWaitForTheirTime) {
+  // Patches at random heights: each box of many patches is reached early, and each patch later.
+  constexpr int across = 120;
+  Random random(7);
+  Surface surface;
+  for (int patch = 0; patch < across * across; ++patch) {
+    const Vec3 middle(patch % across, patch / across, random.uniform(0.0, 4.0));
+    const auto first = static_cast<VertexId>(surface.vertices.size());
+    surface.vertices.push_back(middle);
+    for (int corner = 0; corner < 16; ++corner) {
+      const double angle = corner * std::numbers::pi / 8.0;
+      surface.vertices.push_back(middle + 0.2 * Vec3(std::cos(angle), std::sin(angle), 0.0));
+      const auto next = static_cast<VertexId>((corner + 1) % 16);
+      surface.triangles.push_back(
+          {first, first + 1 + static_cast<VertexId>(corner), first + 1 + next});
+    }
+  }
+  const auto mesh = mesh_of(std::move(surface));
+  const WideBvh index(mesh);
+  constexpr double level = 2000.0;
+  const Vec3 tip(0.5 * across, 0.5 * across, level + 4.1), motion(0.0, 0.0, -8.0);
+  Budget budget;
+  const auto traversal = index.traverse_along_motions(budget);
+  ASSERT_TRUE(traversal->begin({tip, {tip, 8.0 + level}, level, 8.0}));
+  Shown shown;
+  traversal->traversal(motion, shown);
+  EXPECT_EQ(shown.triangles.size(), mesh->triangle_count());
 }
 
 }  // namespace
