@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 sys.dont_write_bytecode = True  # the source tree stays clean
@@ -21,14 +22,7 @@ PARTS = ROOT / "tests" / "nightly" / "parts.sh"
 RUNS = ROOT / "out" / "nightly"
 OURS = {"--without", "--minutes", "--resume", "-h", "--help"}
 SKIPPED = 77  # the exit status of a part that lacks what it needs
-
-
-class Stopped(Exception):
-    """Ctrl-C or SIGTERM."""
-
-
-def stop(*_):
-    raise Stopped
+STOP = threading.Event()  # set by Ctrl-C and SIGTERM
 
 
 def titles():
@@ -98,13 +92,12 @@ def run_part(part, folder, minutes, of_ctest):
     with open(log, "wb") as out:
         process = in_bash([f"part_{part}", *of_ctest], {"minutes": str(minutes), "results": str(files)}, stdout=out,
                           stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, start_new_session=True)
-        try:
-            while process.poll() is None:
-                show_progress(log, time.monotonic() - began)
-                time.sleep(0.5)
-            status = {0: "passed", SKIPPED: "skipped"}.get(process.returncode, "failed")
-        except Stopped:
+        while process.poll() is None and not STOP.wait(0.5):
+            show_progress(log, time.monotonic() - began)
+        if process.poll() is None:
             end(process)
+        else:
+            status = {0: "passed", SKIPPED: "skipped"}.get(process.returncode, "failed")
     if not any(files.iterdir()):
         files.rmdir()
     return {"status": status, "seconds": round(time.monotonic() - began), **page.extract(log, status)}
@@ -138,25 +131,22 @@ def main():
     folder, run = open_run(arguments.resume)
     results = run["results"]
     for name in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(name, stop)
-    try:
-        for part in chosen:
-            if arguments.resume and results.get(part, {}).get("status") == "passed":
-                continue
-            print(f"==> {part}: {parts[part]} (log: {folder / part}.log)", file=sys.stderr, flush=True)
-            results[part] = run_part(part, folder, arguments.minutes, of_ctest)
-            result = results[part]
-            show = " ".join([result["status"], "in", page.duration(result["seconds"]), *result["notes"][:3]])
-            print(f"    {show}", file=sys.stderr, flush=True)
-            (folder / "results.json").write_text(json.dumps(run, indent=1), encoding="utf-8")
-            (folder / "index.html").write_text(page.html(run, parts), encoding="utf-8")
-            if result["status"] == "stopped":
-                break
-    except Stopped:
-        pass
+        signal.signal(name, lambda *_: STOP.set())
+    for part in chosen:
+        if arguments.resume and results.get(part, {}).get("status") == "passed":
+            continue
+        if STOP.is_set():
+            break
+        print(f"==> {part}: {parts[part]} (log: {folder / part}.log)", file=sys.stderr, flush=True)
+        results[part] = run_part(part, folder, arguments.minutes, of_ctest)
+        result = results[part]
+        show = " ".join([result["status"], "in", page.duration(result["seconds"]), *result["notes"][:3]])
+        print(f"    {show}", file=sys.stderr, flush=True)
+        (folder / "results.json").write_text(json.dumps(run, indent=1), encoding="utf-8")
+        (folder / "index.html").write_text(page.html(run, parts), encoding="utf-8")
     bad = [part for part, result in results.items() if result["status"] in ("failed", "stopped")]
     print(f"==> {page.headline(run, parts)} {folder}/index.html", file=sys.stderr)
-    return 1 if bad or not results else 0
+    return 1 if bad or STOP.is_set() or not results else 0
 
 
 if __name__ == "__main__":
