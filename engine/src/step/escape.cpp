@@ -54,16 +54,19 @@ bool may_escape(const Motion& request, const StepOptions& options, const Mesh& m
          longest_escape(options) >= escape_clearance(mesh, options);
 }
 
-Step escape_step(const SideOfSurface& side, Neighborhood& neighborhood, const Motion& request,
-                 const StepOptions& options, TipMemory& memory) noexcept {
+/// Returns the step of an escape. Returns nothing if there is no way out, or a guide forbids it.
+std::optional<Step> escape_step(const SideOfSurface& side, Neighborhood& neighborhood,
+                                const Motion& request, const StepOptions& options,
+                                TipMemory& memory) noexcept {
   const Vec3 motion =
       without_signed_zeros(escape_motion(neighborhood, request.tip, side, longest_escape(options),
                                          escape_clearance(neighborhood.mesh(), options)));
+  if (motion.isZero(0.0) || !memory.guides.allow(motion)) return std::nullopt;
   memory.store_result(request, motion, 1.0, {}, Relaxation::none, {});
-  return {.status = Status::recovering,
-          .motion = motion,
-          .increment = memory.increment(),
-          .distance = side.distance};
+  return Step{.status = Status::recovering,
+              .motion = motion,
+              .increment = memory.increment(),
+              .distance = side.distance};
 }
 
 }  // namespace
@@ -74,8 +77,9 @@ std::optional<Step> step_of_tip_inside(Neighborhood& neighborhood, const Motion&
   if (!side) return Step{.status = neighborhood.budget().failure()};
   if (side->is_outside) return std::nullopt;
   if (may_escape(request, options, neighborhood.mesh()) && side->distance <= options.deepest) {
-    const Step escape = escape_step(*side, neighborhood, request, options, memory);
-    if (!escape.motion.isZero(0.0) && memory.guides.allow(escape.motion)) return escape;
+    if (const auto escape = escape_step(*side, neighborhood, request, options, memory)) {
+      return escape;
+    }
   }
   return Step{.status = Status::inside, .distance = side->distance};
 }
@@ -85,9 +89,7 @@ std::optional<Step> escape_from_surface(Neighborhood& neighborhood, const Motion
   if (!may_escape(request, options, neighborhood.mesh())) return std::nullopt;
   const auto side = find_side(neighborhood, request.tip);
   if (!side) return std::nullopt;
-  const Step escape = escape_step(*side, neighborhood, request, options, memory);
-  if (escape.motion.isZero(0.0) || !memory.guides.allow(escape.motion)) return std::nullopt;
-  return escape;
+  return escape_step(*side, neighborhood, request, options, memory);
 }
 
 }  // namespace keepout

@@ -74,8 +74,9 @@ class MotionCheck {
 
   /// Decides if each pair keeps its due clearance: the distance of the body's surface. Pairs are
   /// numbered mesh by mesh. A pair that is due -infinity is not examined. Stops at the first pair
-  /// that loses its clearance. Takes at most `work` units, each about the time of one distance. Trusts positions
-  /// and poses to be exact: a due clearance must be lower by their rounding. [length]
+  /// that loses its clearance. Takes at most `work` units, each about the time of one distance.
+  /// Trusts positions and poses to be exact: a due clearance must be lower by their rounding.
+  /// [length]
   MotionFinding check(const InstrumentMotion& motion, std::span<const double> due,
                       std::uint64_t work = unlimited);
 
